@@ -1,0 +1,62 @@
+"""Validation at the boundary: each check returns the value or says what came and what is allowed."""
+
+import math
+from collections.abc import Iterable
+
+from mjbeer.exceptions import ParameterError
+
+
+def number(name: str, value: float, unit: str = "") -> float:
+    """Return `value` as a finite float.
+
+    Raises:
+      ParameterError: if it is no number, NaN or infinite.
+    """
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {value!r}") from None
+    if isinstance(value, (str, bytes, bool)) or not math.isfinite(result):
+        raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {value!r}")
+    return result
+
+
+def positive(name: str, value: float, unit: str = "") -> float:
+    """Return `value` as a finite float greater than zero.
+
+    Raises:
+      ParameterError: if it is not.
+    """
+    result = number(name, value, unit)
+    if result <= 0:
+        raise ParameterError(f"{name} must be greater than 0{_in(unit)}, got {value!r}")
+    return result
+
+
+def non_negative(name: str, value: float, unit: str = "") -> float:
+    """Return `value` as a finite float of zero or more.
+
+    Raises:
+      ParameterError: if it is not.
+    """
+    result = number(name, value, unit)
+    if result < 0:
+        raise ParameterError(f"{name} must be 0 or greater{_in(unit)}, got {value!r}")
+    return result
+
+
+def choice(name: str, value: str, allowed: Iterable[str]) -> str:
+    """Return `value` if it is one of the `allowed` names.
+
+    Raises:
+      ParameterError: if it is not; the message lists the names.
+    """
+    names = tuple(allowed)
+    if not isinstance(value, str) or value not in names:
+        listed = ", ".join(repr(each) for each in names)
+        raise ParameterError(f"{name} must be one of {listed}; got {value!r}")
+    return value
+
+
+def _in(unit: str) -> str:
+    return f" [{unit}]" if unit else ""

@@ -1,0 +1,151 @@
+"""Every scene as one conservative degree of freedom.
+
+With the rolling constraint and the conserved momentum eliminated, each scene obeys
+
+    1/2 J(phi) phi_dot^2 + V(phi) = E,
+    J = base + chord sin^2(phi/2) + swing sin^2(phi),
+    V = -slope phi - depth cos(phi - bottom).
+
+A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no
+slope (eq. 16, and eqs. 46 and 47 with u eliminated). All coefficients of J are
+non-negative, so J never cancels.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mjbeer.can import Can
+from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
+from mjbeer.load import Load
+
+
+@dataclass(frozen=True)
+class Oscillator:
+    """Coefficients of J [kg m^2] and V [J]."""
+
+    base: float
+    chord: float
+    swing: float
+    slope: float
+    depth: float
+    bottom: float
+
+    @classmethod
+    def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
+        """Load that slides without friction about the axis (section 3 of the paper)."""
+        rolling = can.mass + can.inertia / can.radius**2
+        total = load.mass + rolling
+        moment = load.mass * load.offset
+        # g sin(alpha) - A, with A the steady acceleration of footnote 4
+        lag = gravity * math.sin(incline) * (can.inertia / can.radius**2) / total
+        normal = gravity * math.cos(incline)
+        return cls(
+            base=load.inertia + moment * load.offset * rolling / total,
+            chord=0.0,
+            swing=moment * load.offset * load.mass / total,
+            slope=0.0,
+            depth=moment * math.hypot(normal, lag),
+            bottom=math.atan2(-lag, normal),
+        )
+
+    @classmethod
+    def frozen(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
+        """Load that is rigidly attached to the can (appendix A of the paper)."""
+        radius, offset = can.radius, load.offset
+        inertia = load.inertia + load.mass * (radius - offset) ** 2
+        return cls(
+            base=inertia + can.inertia + can.mass * radius**2,
+            chord=4 * load.mass * radius * offset,
+            swing=0.0,
+            slope=(load.mass + can.mass) * gravity * radius * math.sin(incline),
+            depth=load.mass * gravity * offset,
+            bottom=-incline,
+        )
+
+    def mirrored(self) -> "Oscillator":
+        """The same motion seen from behind: phi and the incline change sign."""
+        return Oscillator(self.base, self.chord, self.swing, -self.slope, self.depth, -self.bottom)
+
+    def inertia(self, phi: np.ndarray) -> np.ndarray:
+        """J at `phi` [rad], in [kg m^2]."""
+        return self.base + self.chord * np.sin(phi / 2) ** 2 + self.swing * np.sin(phi) ** 2
+
+    def potential(self, phi: np.ndarray) -> np.ndarray:
+        """V at `phi` [rad], in [J]."""
+        return -self.slope * phi - self.depth * np.cos(phi - self.bottom)
+
+    def drop(self, phi: np.ndarray, start: float) -> np.ndarray:
+        """V(start) - V(phi) [J] without the cancellation of the plain difference."""
+        turned = phi - start
+        middle = (phi + start) / 2 - self.bottom
+        return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
+
+    def acceleration(self, phi: np.ndarray, phi_dot: np.ndarray) -> np.ndarray:
+        """phi_ddot [rad/s^2] from the equation of motion, (16) and (52) for massless cans."""
+        inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)
+        torque = self.slope - self.depth * np.sin(phi - self.bottom)
+        return (torque - inertia_slope * phi_dot**2 / 2) / self.inertia(phi)
+
+    def equilibrium(self) -> float:
+        """Angle of stable equilibrium [rad]: eq. (53) for a frozen load.
+
+        Raises:
+          NoEquilibriumError: if nothing holds the load (it is balanced, or there is no
+            gravity), or if the slope is more than it can hold.
+        """
+        if self.depth == 0:
+            raise NoEquilibriumError(
+                "nothing restores the load: it is balanced about the axis (offset 0 m) or gravity is 0 m/s^2, "
+                "so no angle is a stable equilibrium"
+            )
+        if abs(self.slope) > self.depth:
+            raise NoEquilibriumError("the incline is steeper than the load can hold")
+        return self.bottom + math.asin(self.slope / self.depth)
+
+    def frequency(self) -> float:
+        """Angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
+        rest = self.equilibrium()
+        stiffness = math.sqrt((self.depth - self.slope) * (self.depth + self.slope))
+        return math.sqrt(stiffness / float(self.inertia(np.float64(rest))))
+
+    def barrier(self) -> float:
+        """The unstable equilibrium that bounds libration on the downhill side [rad] (slope >= 0)."""
+        return self.bottom + math.pi - (self.equilibrium() - self.bottom)
+
+    def separatrix(self) -> tuple[float, float]:
+        """The angles between which the largest libration about the equilibrium swings [rad]."""
+        if self.slope < 0:
+            low, high = self.mirrored().separatrix()
+            return -high, -low
+        top = self.barrier()
+        if self.slope == 0:
+            return top - 2 * math.pi, top
+        return self.turning_point(top, 0.0, top - 2 * math.pi, self.equilibrium()), top
+
+    def turning_point(self, start: float, kinetic: float, outer: float, inner: float) -> float:
+        """Where the motion that passes `start` [rad] with `kinetic` energy [J] turns, between two angles.
+
+        At `outer` the motion is energetically forbidden, at `inner` allowed.
+        """
+        from scipy.optimize import brentq
+
+        def left(phi: float) -> float:
+            return kinetic + float(self.drop(np.float64(phi), start))
+
+        return float(brentq(left, outer, inner, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=500))
+
+    def require_libration(self, phi: float) -> None:
+        """Check that a release from rest at `phi` [rad] swings about the equilibrium.
+
+        Raises:
+          NoLibrationError: if it does not; the message names the separatrix.
+        """
+        low, high = self.separatrix()
+        if not low < phi < high:
+            rest = self.equilibrium()
+            raise NoLibrationError(
+                f"amplitude {phi - rest:.6g} rad is not inside the separatrix: released from rest, the load "
+                f"swings about its equilibrium only for amplitudes between {low - rest:.6g} and {high - rest:.6g} rad"
+            )
