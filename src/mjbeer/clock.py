@@ -23,7 +23,7 @@ _TO_INTEGRAL = np.stack([np.append(chebyshev.chebint(row, lbnd=-1), 0)[: _DEGREE
 _RESOLVED = 3e-15  # relative size of the last coefficients: a few roundings of the values themselves
 # Where the rate is itself a small difference, near a barrier, its rounding error is more than that. It shows
 # as coefficients that are small and have stopped falling; a series that still falls drops 1000-fold in six.
-_SMALL, _FALLING = 1e-8, 0.1
+_SMALL, _FALLING = 1e-6, 0.1
 _DEEPEST = 60  # halvings of one interval; each gains a bit, and no double has more to give
 
 Rate = Callable[[np.ndarray], np.ndarray]

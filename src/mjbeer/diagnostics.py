@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from mjbeer.trajectory import Trajectory
 
 ENERGY_DRIFT = 1e-3
-"""Largest relative energy drift that is trusted. The phase error of a run is of the order of its energy
-error, so beyond this a motion of a few swings is wrong by more than the width of a plotted line."""
+"""Largest relative energy drift that is trusted. With every scene, integrator and way of rolling, timesteps
+of 0.2 to 8 ms and amplitudes to 2.5 rad, phi is at most 0.015 rad off after 2 s where the drift is less."""
 SLIP = 1e-3
 """Largest slip that is trusted, in radii: a milliradian of roll angle."""
 LIFT = 1e-3
@@ -42,9 +42,14 @@ def kinetic_energy(trajectory: Trajectory) -> np.ndarray:
 
 
 def energy_drift(trajectory: Trajectory) -> float:
-    """Largest change of energy, relative to the largest kinetic energy or the load's weight on its arm."""
-    load, gravity = trajectory.scene.load, trajectory.scene.gravity
-    scale = max(float(kinetic_energy(trajectory).max()), load.mass * gravity * load.offset)
+    """Largest change of energy, relative to the largest kinetic energy of the swing, J phi_dot^2 / 2.
+
+    The energy of a whole can that runs away down the incline would hide what happens to the swing. A motion
+    that hardly swings is compared with a hundredth of the load's weight on its arm, a swing of 0.14 rad.
+    """
+    form = trajectory.scene.oscillator
+    swing = float(np.max(form.inertia(trajectory.phi) * trajectory.phi_dot**2)) / 2
+    scale = max(swing, form.depth / 100)
     change = float(np.abs(trajectory.energy - trajectory.energy[0]).max())
     return change / scale if scale > 0 else 0.0
 
@@ -101,7 +106,7 @@ def warnings(trajectory: Trajectory) -> tuple[str, ...]:
     drift = trajectory.energy_drift
     if drift > ENERGY_DRIFT:
         found.append(
-            f"energy drifts by {drift:.2g} of the largest in play (trusted up to {ENERGY_DRIFT:g}): "
+            f"energy drifts by {drift:.2g} of the swing's own (trusted up to {ENERGY_DRIFT:g}): "
             "take a smaller timestep or a better integrator"
         )
     slid = float(np.abs(trajectory.slip).max()) / radius

@@ -3,11 +3,12 @@
 Each kind of motion has a phase psi in which dt/dpsi is smooth and positive, turning
 points included:
 
-- libration between phi_1 and phi_2: phi = c + d sin psi, where
-  E - V = (phi - phi_1)(phi_2 - phi) D and D is the second divided difference of -V,
-  so dt/dpsi = sqrt(J / 2D);
-- a run that turns at phi_1 and then goes downhill for ever: phi = phi_1 + psi^2;
-- a run without a turning point ahead: phi = start +- psi.
+- libration between two turning points: phi = c + d sin psi;
+- a run that turns at phi_1 and goes downhill ever after: phi = phi_1 + psi^2;
+- a run far from any turning point: phi = start +- psi.
+
+E - V, which dt/dpsi divides by, is taken as a chord of V from a turning point, or from
+the barrier that is near: as the plain difference it would lose its digits there.
 """
 
 import math
@@ -17,9 +18,7 @@ import numpy as np
 
 from mjbeer.clock import Clock
 from mjbeer.exceptions import NoLibrationError
-from mjbeer.oscillator import Oscillator
-
-_SINC_TERMS = 26  # z^26/53! is under 1e-16 for z <= pi^2, the largest that a libration needs
+from mjbeer.oscillator import Oscillator, sinc, sinc_gap
 
 
 @dataclass(frozen=True)
@@ -40,25 +39,25 @@ class Libration:
 
     def rate(self, psi: np.ndarray) -> np.ndarray:
         """dt/dpsi [s]."""
-        phi = self.centre + self.half_width * np.sin(psi)
-        return np.sqrt(self.oscillator.inertia(phi) / (2 * self._curvature(phi)))
+        width = 2 * self.half_width
+        return self._rate(width * np.sin(math.pi / 4 + psi / 2) ** 2, width * np.sin(math.pi / 4 - psi / 2) ** 2)
+
+    def phase(self, phi: float, phi_dot: float) -> float:
+        """psi at `phi` [rad] and `phi_dot` [rad/s]; beside a turning point it is phi_dot that tells."""
+        rate = float(self._rate(np.float64(phi - self.low), np.float64(self.high - phi)))
+        return math.atan2(phi - self.centre, phi_dot * rate)
 
     def period(self) -> float:
         """Time of one full swing [s]."""
         return Clock(self.rate, 0.0, 2 * math.pi).period
 
-    def _curvature(self, phi: np.ndarray) -> np.ndarray:
-        depth, bottom = self.oscillator.depth, self.oscillator.bottom
-        x, low, high = phi - bottom, self.low - bottom, self.high - bottom
-        if self.oscillator.slope == 0:  # the well is symmetric, and the difference a product
-            return depth / 2 * _sinc((high + x) / 2) * _sinc((high - x) / 2)
-        middle_low, middle_high = (x + low) / 2, (x + high) / 2
-        half_low, half_high = (x - low) / 2, (x - high) / 2
-        even = (
-            np.cos((middle_low + middle_high) / 2) * _sinc((high - low) / 4) * (_sinc(half_low) + _sinc(half_high))
-        )
-        odd = (np.sin(middle_low) + np.sin(middle_high)) * (half_low + half_high)
-        return depth / 4 * (even - odd * _sinc_difference(half_low**2, half_high**2))
+    def _rate(self, above_low: np.ndarray, below_high: np.ndarray) -> np.ndarray:
+        # dt/dpsi = sqrt(J / 2D) with E - V = p q D, p and q the distances from the ends. The chord of V from an
+        # end gives D well on that side; the weights q^2 (q + 3p) and p^2 (p + 3q) lead over from one to the other.
+        p, q = above_low, below_high
+        from_low = _chord(self.oscillator, self.low, 1, p) * q * (q + 3 * p)
+        from_high = _chord(self.oscillator, self.high, -1, q) * p * (p + 3 * q)
+        return np.sqrt(self.oscillator.inertia(self.low + p) * (p + q) ** 3 / (2 * (from_low + from_high)))
 
 
 def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libration | None:
@@ -67,7 +66,7 @@ def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libra
     `phi` lies in the well around the equilibrium, and the slope is not negative.
     """
     rest, top = oscillator.equilibrium(), oscillator.barrier()
-    if kinetic + float(oscillator.drop(np.float64(rest), phi)) <= 0:
+    if oscillator.surplus(np.float64(rest), phi, kinetic) <= 0:
         return None
     low = high = phi
     if kinetic > 0 or phi < rest:
@@ -82,12 +81,10 @@ def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libra
 
 def period(oscillator: Oscillator, amplitude: float) -> float:
     """Period [s] of the swing released from rest `amplitude` [rad] from the equilibrium."""
-    if oscillator.slope < 0:
-        return period(oscillator.mirrored(), -amplitude)
-    if amplitude == 0:
-        return 2 * math.pi / oscillator.frequency()
     start = oscillator.equilibrium() + amplitude
     oscillator.require_libration(start)
+    if oscillator.slope < 0:
+        oscillator, start = oscillator.mirrored(), -start
     swing = libration(oscillator, start)
     return 2 * math.pi / oscillator.frequency() if swing is None else swing.period()
 
@@ -107,13 +104,13 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
         top = oscillator.barrier()
         turns = 2 * math.pi * math.ceil((phi0 - top) / (2 * math.pi))
         start = phi0 - turns
-        spare = kinetic + float(oscillator.drop(np.float64(top), start))
+        if kinetic == 0 and not top - 2 * math.pi < start < top:
+            return _rest(time, phi0)
+        spare = oscillator.surplus(np.float64(top), start, kinetic)
         if spare < 0:
             swing = libration(oscillator, start, kinetic)
             phi, phi_dot = _rest(time, start) if swing is None else _librate(swing, time, start, phi_dot0)
             return phi + turns, phi_dot
-        if kinetic == 0 and start == top:
-            return _rest(time, phi0)
         if spare == 0:
             raise NoLibrationError(
                 f"phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s lies exactly on the separatrix: the motion "
@@ -121,9 +118,10 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
             )
     if kinetic == 0 and (oscillator.slope == 0 or oscillator.acceleration(np.float64(phi0), np.float64(0)) == 0):
         return _rest(time, phi0)
-    if oscillator.slope == 0 or phi_dot0 > 0:
+    # Within about a radian of its turning point a run needs the phase that is smooth there.
+    if oscillator.slope == 0 or (phi_dot0 > 0 and kinetic > 2 * oscillator.depth + oscillator.slope):
         return _run(oscillator, time, phi0, kinetic, math.copysign(1.0, phi_dot0))
-    return _roll_down(oscillator, time, phi0, kinetic)
+    return _roll_down(oscillator, time, phi0, phi_dot0, kinetic)
 
 
 def _rest(time: np.ndarray, phi: float) -> tuple[np.ndarray, np.ndarray]:
@@ -131,11 +129,7 @@ def _rest(time: np.ndarray, phi: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _librate(swing: Libration, time: np.ndarray, start: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
-    sine = max(-1.0, min(1.0, (start - swing.centre) / swing.half_width))
-    psi0 = math.asin(sine) if phi_dot0 >= 0 else math.pi - math.asin(sine)
-    if phi_dot0 == 0:
-        psi0 = math.copysign(math.pi / 2, sine)
-    psi = Clock(swing.rate, psi0, 2 * math.pi).phase(time)
+    psi = Clock(swing.rate, swing.phase(start, phi_dot0), 2 * math.pi).phase(time)
     phi_dot = swing.half_width * np.cos(psi) / swing.rate(psi)
     return swing.centre + swing.half_width * np.sin(psi), phi_dot
 
@@ -145,51 +139,46 @@ def _run(
 ) -> tuple[np.ndarray, np.ndarray]:
     def rate(psi: np.ndarray) -> np.ndarray:
         phi = phi0 + sign * psi
-        return np.sqrt(oscillator.inertia(phi) / (2 * (kinetic + oscillator.drop(phi, phi0))))
+        return np.sqrt(oscillator.inertia(phi) / (2 * oscillator.surplus(phi, phi0, kinetic)))
 
     psi = Clock(rate, 0.0, 2 * math.pi if oscillator.slope == 0 else None).phase(time)
     return phi0 + sign * psi, sign / rate(psi)
 
 
 def _roll_down(
-    oscillator: Oscillator, time: np.ndarray, phi0: float, kinetic: float
+    oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float, kinetic: float
 ) -> tuple[np.ndarray, np.ndarray]:
     turn = phi0 if kinetic == 0 else _uphill_turn(oscillator, phi0, kinetic)
 
     def rate(psi: np.ndarray) -> np.ndarray:
-        middle = turn + psi**2 / 2 - oscillator.bottom
-        fall = oscillator.slope - oscillator.depth * np.sin(middle) * _sinc(psi**2 / 2)
-        return np.sqrt(2 * oscillator.inertia(turn + psi**2) / fall)
+        rolled = psi**2
+        fall = _chord(oscillator, turn, 1, rolled)
+        if oscillator.slope < oscillator.depth:  # beside a barrier the surplus there tells, not the chord
+            past = np.remainder(turn + rolled - oscillator.barrier() + math.pi, 2 * math.pi) - math.pi
+            distant = np.maximum(rolled, 1e-300)
+            surplus = oscillator.surplus(turn + rolled, phi0, kinetic)
+            fall = np.where(np.abs(past) < rolled, surplus / distant, fall)
+        return np.sqrt(2 * oscillator.inertia(turn + rolled) / fall)
 
-    psi = Clock(rate, -math.sqrt(phi0 - turn)).phase(time)
+    psi0 = phi_dot0 / 2 * float(rate(np.sqrt(phi0 - turn)))  # phi0 - turn itself may have no digits
+    psi = Clock(rate, psi0).phase(time)
     return turn + psi**2, 2 * psi / rate(psi)
 
 
 def _uphill_turn(oscillator: Oscillator, phi0: float, kinetic: float) -> float:
-    """Where a run up the incline turns [rad]: the first zero of E - V below `phi0`."""
+    """Where a run up the incline turns, or a run down it came from [rad]: the first zero of E - V below `phi0`."""
     if oscillator.slope >= oscillator.depth:
         outer = phi0 - (kinetic + 2 * oscillator.depth) / oscillator.slope - 1
         return oscillator.turning_point(phi0, kinetic, outer, phi0)
     top, rest = oscillator.barrier(), oscillator.equilibrium()
     top -= 2 * math.pi * math.ceil((top - phi0) / (2 * math.pi))
-    spare = kinetic + float(oscillator.drop(np.float64(top), phi0))
+    spare = float(oscillator.surplus(np.float64(top), phi0, kinetic))
     top -= 2 * math.pi * max(0, math.ceil(spare / (2 * math.pi * oscillator.slope)))
     well = rest + 2 * math.pi * math.ceil((top - rest) / (2 * math.pi))
     return oscillator.turning_point(phi0, kinetic, top, min(phi0, well))
 
 
-def _sinc(x: np.ndarray | float) -> np.ndarray:
-    """sin(x)/x, to full relative precision at its zeros as well, unlike np.sinc."""
-    x = np.where(x == 0, 1e-300, x)
-    return np.sin(x) / x
-
-
-def _sinc_difference(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """(s(p) - s(q)) / (p - q) for s(z) = sin(sqrt z)/sqrt z, by its series, for 0 <= p, q <= pi^2."""
-    total, power, mixed, factor = np.zeros_like(p), np.ones_like(q), np.ones_like(p), 1.0
-    for k in range(1, _SINC_TERMS):
-        factor /= -(2 * k) * (2 * k + 1)
-        total += factor * mixed
-        power = power * q
-        mixed = mixed * p + power
-    return total
+def _chord(oscillator: Oscillator, end: float, sign: int, length: np.ndarray) -> np.ndarray:
+    """(V(end) - V(end + sign length)) / length [N m], smooth through length 0."""
+    pull = sign * (oscillator.force(end) * sinc(length) + oscillator.slope * sinc_gap(length))
+    return pull - oscillator.depth * np.cos(end - oscillator.bottom) * length / 2 * sinc(length / 2) ** 2

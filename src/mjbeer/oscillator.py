@@ -82,6 +82,31 @@ class Oscillator:
         middle = (phi + start) / 2 - self.bottom
         return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
 
+    def surplus(self, phi: np.ndarray, start: float, kinetic: float) -> np.ndarray:
+        """E - V(phi) [J] of the motion that passes `start` with `kinetic` energy (slope >= 0).
+
+        Beside a barrier it is counted from there, so that it keeps its digits where it is small.
+        """
+        plain = kinetic + self.drop(phi, start)
+        if self.slope >= self.depth:
+            return plain
+        top = self.barrier()
+        return np.where(np.cos(phi - top) < 0.5, plain, kinetic - self._below(start - top) + self._below(phi - top))
+
+    def _below(self, past: np.ndarray | float) -> np.ndarray:
+        """V(barrier) - V(barrier + past) [J]."""
+        return self.slope * past * sinc_gap(past) + 2 * self.stiffness() * np.sin(past / 2) ** 2
+
+    def stiffness(self) -> float:
+        """V'' at the equilibrium, -V'' at the barrier [J]."""
+        return math.sqrt((self.depth - self.slope) * (self.depth + self.slope))
+
+    def force(self, phi: float) -> float:
+        """-V' at `phi` [N m], with all its digits beside the equilibrium and the barrier as well (slope >= 0)."""
+        if self.slope >= self.depth:
+            return self.slope - self.depth * math.sin(phi - self.bottom)
+        return 2 * self.depth * math.sin((phi - self.barrier()) / 2) * math.sin((phi - self.equilibrium()) / 2)
+
     def acceleration(self, phi: np.ndarray, phi_dot: np.ndarray) -> np.ndarray:
         """phi_ddot [rad/s^2] from the equation of motion, (16) and (52) for massless cans."""
         inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)
@@ -107,8 +132,7 @@ class Oscillator:
     def frequency(self) -> float:
         """Angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
         rest = self.equilibrium()
-        stiffness = math.sqrt((self.depth - self.slope) * (self.depth + self.slope))
-        return math.sqrt(stiffness / float(self.inertia(np.float64(rest))))
+        return math.sqrt(self.stiffness() / float(self.inertia(np.float64(rest))))
 
     def barrier(self) -> float:
         """The unstable equilibrium that bounds libration on the downhill side [rad] (slope >= 0)."""
@@ -132,7 +156,7 @@ class Oscillator:
         from scipy.optimize import brentq
 
         def left(phi: float) -> float:
-            return kinetic + float(self.drop(np.float64(phi), start))
+            return float(self.surplus(np.float64(phi), start, kinetic))
 
         return float(brentq(left, outer, inner, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=500))
 
@@ -149,3 +173,17 @@ class Oscillator:
                 f"amplitude {phi - rest:.6g} rad is not inside the separatrix: released from rest, the load "
                 f"swings about its equilibrium only for amplitudes between {low - rest:.6g} and {high - rest:.6g} rad"
             )
+
+
+def sinc(x: np.ndarray | float) -> np.ndarray:
+    """sin(x)/x, to full relative precision at its zeros as well, unlike np.sinc."""
+    x = np.where(x == 0, 1e-300, x)
+    return np.sin(x) / x
+
+
+def sinc_gap(x: np.ndarray | float) -> np.ndarray:
+    """1 - sin(x)/x, by its series where the difference would cancel."""
+    square, series = np.minimum(np.square(x), 1), np.ones_like(x)
+    for k in range(17, 1, -2):
+        series = 1 - square / ((k + 1) * (k + 2)) * series
+    return np.where(np.abs(x) < 1, square / 6 * series, 1 - sinc(x))

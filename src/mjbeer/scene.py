@@ -151,9 +151,9 @@ def frozen(
 
 def pendulum(
     incline: float = INCLINE,
-    wheel_mass: float = 0.05,
-    load_mass: float = 0.2,
-    offset: float = 0.02,
+    wheel_mass: float = 0.2,
+    load_mass: float = 0.1,
+    offset: float = 0.025,
     radius: float = RADIUS,
     length: float = LENGTH,
     gravity: float = GRAVITY,
@@ -161,7 +161,7 @@ def pendulum(
     """A hoop wheel with a simple pendulum on its axle: appendix B.
 
     `incline` [rad], masses M and m [kg], length b of the pendulum `offset` [m]. The paper gives no
-    numbers; the defaults are a pendulum that weighs as much as half a can of beer, in a light wheel.
+    numbers: the defaults are ours, a wheel of the can's size and a bob that weighs half as much.
     """
     return Scene(Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset), incline, "sliding", gravity)
 

@@ -47,7 +47,7 @@ class Trajectory:
 
     @property
     def energy_drift(self) -> float:
-        """Largest change of energy over the run, relative to the largest energy in play."""
+        """Largest change of energy over the run, relative to the largest kinetic energy of the swing."""
         return diagnostics.energy_drift(self)
 
     @property

@@ -1,0 +1,99 @@
+"""Simulate a scene with MuJoCo."""
+
+import math
+
+import numpy as np
+
+from mjbeer import checks, state, stepping
+from mjbeer.exceptions import ParameterError
+from mjbeer.model import DOP853, FRICTION, build
+from mjbeer.scene import Scene
+from mjbeer.trajectory import Trajectory
+
+_ON_A_STEP = 1e-6
+"""How far from a multiple of the timestep a requested time may be, in timesteps: what rounding can do to it."""
+
+
+def simulate(
+    scene: Scene,
+    duration: float,
+    phi0: float,
+    phi_dot0: float = 0.0,
+    rolling: str = "reduced",
+    integrator: str = "RK4",
+    timestep: float = 1e-3,
+    tolerance: float | None = None,
+    times: np.ndarray | None = None,
+    friction: float = FRICTION,
+) -> Trajectory:
+    """Motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
+
+    The start is `phi0` [rad], `phi_dot0` [rad/s], with the axis as in `exact`. `rolling` and `friction` are
+    those of `build`. `integrator` is one of MuJoCo's five, or "DOP853", an eighth-order one around MuJoCo's
+    forward dynamics; `timestep` [s] is fixed. Samples are at every timestep, or at `times` [s] from 0 on:
+    any for DOP853, multiples of the timestep for the others. MuJoCo's integrators end on the first multiple
+    of the timestep at or after `duration`.
+
+    With a `tolerance` [rad] the run is DOP853 with steps of its own, and is repeated until the error of phi
+    and u/a over the whole motion is below it (relative to the angle where that exceeds 1 rad); the estimate
+    is kept on the trajectory. `timestep` is then only the sampling interval, and what constraints are tuned
+    to. It is the error of integrating the model: that of the model itself is zero for "reduced", but not for
+    a soft constraint.
+
+    Raises:
+      ParameterError: on a parameter that is not allowed.
+      UnsupportedError: if MuJoCo has no such model.
+      DivergenceError: if the motion stops being finite.
+      ToleranceError: if the tolerance is not reached.
+    """
+    checks.positive("duration", duration, "s")
+    checks.number("phi0", phi0, "rad")
+    checks.number("phi_dot0", phi_dot0, "rad/s")
+    if tolerance is not None:
+        checks.positive("tolerance", tolerance, "rad")
+        integrator = DOP853
+    model = build(scene, rolling, integrator=integrator, timestep=timestep, friction=friction)
+    start = state.start(model, scene, float(phi0), float(phi_dot0))
+    moments = _moments(duration, timestep, times)
+    estimate = None
+    if integrator != DOP853:
+        steps = _steps(moments, timestep)
+        states, moments = stepping.step(model, start[None], steps)[0], steps * timestep
+    elif tolerance is None:
+        from mjbeer import dop853
+
+        states = dop853.integrate(model, start, moments, timestep=timestep)
+    else:
+        from mjbeer import tolerance as global_tolerance
+
+        solution = global_tolerance.solve(model, scene, start, moments, tolerance)
+        states, estimate = solution.states, solution.estimate
+    moved = state.read(model, scene, states)
+    fixed = timestep if tolerance is None else None
+    return Trajectory(scene, rolling, integrator, fixed, moments, **vars(moved), error_estimate=estimate)
+
+
+def _moments(duration: float, timestep: float, times: np.ndarray | None) -> np.ndarray:
+    """The times of the samples [s]."""
+    if times is None:
+        return timestep * np.arange(math.ceil(duration / timestep - _ON_A_STEP) + 1)
+    moments = np.asarray(times, dtype=float)
+    if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all() or (np.diff(moments) <= 0).any():
+        raise ParameterError("times must be a one-dimensional array of increasing finite times [s]")
+    if moments[0] < 0 or moments[-1] > duration * (1 + 1e-12):
+        raise ParameterError(
+            f"times must be between 0 and the duration {duration!r} s, got {moments[0]!r} to {moments[-1]!r}"
+        )
+    return moments
+
+
+def _steps(moments: np.ndarray, timestep: float) -> np.ndarray:
+    """Numbers of timesteps to the given times."""
+    steps = np.rint(moments / timestep).astype(np.int64)
+    off = np.abs(moments / timestep - steps)
+    if off.max() > _ON_A_STEP:
+        raise ParameterError(
+            f"MuJoCo's integrators have samples at multiples of the timestep {timestep!r} s only, not at "
+            f'{moments[off.argmax()]!r} s; integrator="DOP853" has them anywhere'
+        )
+    return steps
