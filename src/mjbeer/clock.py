@@ -21,9 +21,9 @@ _TO_SERIES = 2 / (_DEGREE + 1) * _COSINES
 _TO_SERIES[:, 0] /= 2
 _TO_INTEGRAL = np.stack([np.append(chebyshev.chebint(row, lbnd=-1), 0)[: _DEGREE + 2] for row in np.eye(_DEGREE + 1)])
 _RESOLVED = 3e-15  # relative size of the last coefficients: a few roundings of the values themselves
-# Where the rate is itself a small difference, near a barrier, its rounding error is more than that. It shows
-# as coefficients that are small and have stopped falling; a series that still falls drops 1000-fold in six.
-_SMALL, _FALLING = 1e-6, 0.1
+# The rounding of an angle of up to some 1000 rad makes the rate noisier than that, most of all near a barrier: a
+# panel sees it divided by its half-width. Noise shows as small coefficients that have stopped falling.
+_ANGLE, _FALLING = 1e-12, 0.1
 _DEEPEST = 60  # halvings of one interval; each gains a bit, and no double has more to give
 
 Rate = Callable[[np.ndarray], np.ndarray]
@@ -32,11 +32,13 @@ Rate = Callable[[np.ndarray], np.ndarray]
 class Clock:
     """t(psi) with t(start) = 0, and psi(t)."""
 
-    def __init__(self, rate: Rate, start: float, period: float | None = None) -> None:
-        """`rate` is dt/dpsi; `period` is its period in psi, if it has one."""
+    def __init__(self, rate: Rate, start: float, period: float | None = None, stretch: float = 1.0) -> None:
+        """`rate` is dt/dpsi; `period` is its period in psi, or `stretch` how much of a motion without one
+        is resolved first (then twice as much, and so on)."""
         self._rate = rate
         self._start = start
         self._phase_period = period
+        self._stretch = stretch
         self._edges = np.array([start])
         self._times = np.array([0.0])
         self._series = np.empty((0, _DEGREE + 1))
@@ -55,10 +57,9 @@ class Clock:
         if self._phase_period is not None:
             turns, time = np.divmod(time, self.period)
             return self._invert(time) + turns * self._phase_period
-        length = 1.0
         while self._times[-1] < np.max(time, initial=0.0):
-            self._extend(length)
-            length *= 2
+            self._extend(self._stretch)
+            self._stretch *= 2
         return self._invert(time)
 
     def _extend(self, length: float) -> None:
@@ -99,8 +100,8 @@ def _panels(rate: Rate, start: float, end: float) -> tuple[np.ndarray, np.ndarra
         middle, half = (lows + highs) / 2, (highs - lows) / 2
         series = rate(middle[:, None] + half[:, None] * _NODES) @ _TO_SERIES
         size, tail = np.abs(series).max(axis=1), np.abs(series[:, -3:]).max(axis=1)
-        stalled = tail >= _FALLING * np.abs(series[:, -9:-3]).max(axis=1)
-        resolved = (tail <= _RESOLVED * size) | (stalled & (tail <= _SMALL * size))
+        stalled = tail >= _FALLING * np.abs(series[:, -12:-3]).max(axis=1)
+        resolved = (tail <= _RESOLVED * size) | (stalled & (tail <= _ANGLE * (1 + 1 / half) * size))
         if depth == _DEEPEST - 1:
             resolved[:] = True
         # An interval no wider than the spacing of doubles cannot be halved.

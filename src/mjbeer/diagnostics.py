@@ -104,12 +104,12 @@ def warnings(trajectory: Trajectory) -> tuple[str, ...]:
     found = []
     radius = trajectory.scene.can.radius
     drift = trajectory.energy_drift
+    slid = float(np.abs(trajectory.slip).max()) / radius
     if drift > ENERGY_DRIFT:
         found.append(
             f"energy drifts by {drift:.2g} of the swing's own (trusted up to {ENERGY_DRIFT:g}): "
-            "take a smaller timestep or a better integrator"
+            "take a smaller timestep or a better integrator" + ("; slipping takes energy too" if slid > SLIP else "")
         )
-    slid = float(np.abs(trajectory.slip).max()) / radius
     if slid > SLIP:
         found.append(f"the can slips by {slid:.2g} radii (trusted up to {SLIP:g})")
     lifted = float(np.abs(trajectory.lift).max()) / radius

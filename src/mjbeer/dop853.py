@@ -63,7 +63,9 @@ def integrate(
             )  # fmt: skip
             evaluations += spent
             if status == _BLOCK_END and evaluations > limit:
-                raise DivergenceError(f"the DOP853 run was given up at t = {time:.6g} s after {evaluations} evaluations")
+                raise DivergenceError(
+                    f"the DOP853 run was given up at t = {time:.6g} s after {evaluations} evaluations"
+                )
     if status != _DONE:
         cause = "its state is no longer finite" if status == _NOT_FINITE else "no step is small enough for it"
         raise DivergenceError(f"the DOP853 run diverged at t = {time:.6g} s: {cause}")

@@ -35,9 +35,9 @@ _PATIENCE = 60
 class Context(Protocol):
     """An OpenGL context of one of MuJoCo's backends."""
 
-    def make_current(self) -> None: ...  # noqa: D102
+    def make_current(self) -> None: ...
 
-    def free(self) -> None: ...  # noqa: D102
+    def free(self) -> None: ...
 
 
 def context(width: int, height: int) -> Context:

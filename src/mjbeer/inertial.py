@@ -1,12 +1,53 @@
 """Mass and inertia of a body in the plane of the motion."""
 
+import math
+from dataclasses import dataclass
+
 import mujoco
+
+from mjbeer.scene import Scene
+
+_TURNED = [math.sqrt(0.5), 0, math.sqrt(0.5), 0]
+"""A quarter turn about the axis. MuJoCo takes a centre of mass within 1e-6 m of the body's frame to be in its
+origin, and drops the weight's torque, if the two frames are parallel; the inertia is the same in either."""
+
+_LITTLE = 1e-6
+"""Share of m b^2 under which a load's own inertia counts as none."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """A load with some of its can's mass."""
+
+    moved: float
+    """Mass of the can that it has been given [kg]."""
+    mass: float
+    """Mass of both [kg]."""
+    offset: float
+    """Distance of their centre of mass from the axis [m]."""
+    inertia: float
+    """Their moment of inertia about it [kg m^2]."""
+
+
+def point_share(scene: Scene) -> Share:
+    """The load of a scene, with inertia about its centre of mass even if it is a point.
+
+    MuJoCo moves no body without inertia. Some of the can's mass, taken as a point on the axis, moves with the
+    load exactly as with the can, and gives a point load an inertia.
+    """
+    load = scene.load
+    is_point = load.inertia < _LITTLE * load.mass * load.offset**2
+    moved = min(scene.can.mass / 2, load.mass) if is_point else 0.0
+    mass = load.mass + moved
+    inertia = load.inertia + load.mass * load.offset**2 * moved / mass
+    return Share(moved, mass, load.mass * load.offset / mass, inertia)
 
 
 def set_inertial(body: mujoco.MjsBody, mass: float, offset: float, inertia: float) -> None:
     """Give a body a `mass` [kg] at `offset` [m] below its axis and an axial `inertia` about it [kg m^2]."""
     body.explicitinertial = True
     body.mass, body.ipos, body.inertia = mass, [0, 0, -offset], [inertia] * 3
+    body.iquat = _TURNED
 
 
 def weightless(body: mujoco.MjsBody) -> None:

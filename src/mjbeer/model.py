@@ -80,7 +80,8 @@ def specify(
     else:
         appearance.strip(spec)
     _tilt(spec, scene, visuals)
-    spec.body("can").pos = [0, 0, scene.can.radius]
+    # Without an incline to lie on, the axis is the origin: an offset far smaller than the radius keeps its digits.
+    spec.body("can").pos = [0, 0, scene.can.radius if visuals or rolling == "contact" else 0.0]
     option = spec.option
     option.timestep = timestep
     # Around DOP853 the model's own integrator never runs.

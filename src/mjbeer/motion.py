@@ -20,6 +20,8 @@ from mjbeer.clock import Clock
 from mjbeer.exceptions import NoLibrationError
 from mjbeer.oscillator import Oscillator, sinc, sinc_gap
 
+_ROUNDING = 4 * float(np.finfo(float).eps)  # a start this near the barrier is on it, for all that doubles can tell
+
 
 @dataclass(frozen=True)
 class Libration:
@@ -43,7 +45,7 @@ class Libration:
         return self._rate(width * np.sin(math.pi / 4 + psi / 2) ** 2, width * np.sin(math.pi / 4 - psi / 2) ** 2)
 
     def phase(self, phi: float, phi_dot: float) -> float:
-        """psi at `phi` [rad] and `phi_dot` [rad/s]; beside a turning point it is phi_dot that tells."""
+        """The phase psi at `phi` [rad] and `phi_dot` [rad/s]; beside a turning point it is phi_dot that tells."""
         rate = float(self._rate(np.float64(phi - self.low), np.float64(self.high - phi)))
         return math.atan2(phi - self.centre, phi_dot * rate)
 
@@ -90,7 +92,7 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
 
 
 def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
-    """phi [rad] and phi_dot [rad/s] at the non-negative times `time` [s].
+    """The angle phi [rad] and phi_dot [rad/s] at the non-negative times `time` [s].
 
     Raises:
       NoLibrationError: if the start lies exactly on the separatrix, where no time is finite.
@@ -104,7 +106,7 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
         top = oscillator.barrier()
         turns = 2 * math.pi * math.ceil((phi0 - top) / (2 * math.pi))
         start = phi0 - turns
-        if kinetic == 0 and not top - 2 * math.pi < start < top:
+        if kinetic == 0 and abs(math.remainder(phi0 - top, 2 * math.pi)) <= _ROUNDING * max(1, abs(phi0)):
             return _rest(time, phi0)
         spare = oscillator.surplus(np.float64(top), start, kinetic)
         if spare < 0:
@@ -150,19 +152,25 @@ def _roll_down(
 ) -> tuple[np.ndarray, np.ndarray]:
     turn = phi0 if kinetic == 0 else _uphill_turn(oscillator, phi0, kinetic)
 
-    def rate(psi: np.ndarray) -> np.ndarray:
-        rolled = psi**2
+    def pace(phi: np.ndarray, rolled: np.ndarray) -> np.ndarray:  # dt/dpsi, `rolled` being psi^2
         fall = _chord(oscillator, turn, 1, rolled)
-        if oscillator.slope < oscillator.depth:  # beside a barrier the surplus there tells, not the chord
-            past = np.remainder(turn + rolled - oscillator.barrier() + math.pi, 2 * math.pi) - math.pi
-            distant = np.maximum(rolled, 1e-300)
-            surplus = oscillator.surplus(turn + rolled, phi0, kinetic)
-            fall = np.where(np.abs(past) < rolled, surplus / distant, fall)
-        return np.sqrt(2 * oscillator.inertia(turn + rolled) / fall)
+        if oscillator.slope < oscillator.depth:  # nearer to a barrier than to the turn, its surplus is the better one
+            past = np.remainder(phi - oscillator.barrier() + math.pi, 2 * math.pi) - math.pi
+            surplus = oscillator.surplus(phi, phi0, kinetic)
+            fall = np.where(np.abs(past) < rolled, surplus / np.maximum(rolled, 1e-300), fall)
+        return np.sqrt(2 * oscillator.inertia(phi) / fall)
 
-    psi0 = phi_dot0 / 2 * float(rate(np.sqrt(phi0 - turn)))  # phi0 - turn itself may have no digits
-    psi = Clock(rate, psi0).phase(time)
-    return turn + psi**2, 2 * psi / rate(psi)
+    # From phi_dot0: phi0 - turn may have no digits. And psi - psi0 is the clock's phase: psi0 may be large.
+    psi0 = phi_dot0 / 2 * float(pace(np.float64(phi0), np.float64(phi0 - turn)))
+
+    def angle(phase: np.ndarray) -> np.ndarray:
+        return phi0 + phase * (2 * psi0 + phase)
+
+    def rate(phase: np.ndarray) -> np.ndarray:
+        return pace(angle(phase), (psi0 + phase) ** 2)
+
+    phase = Clock(rate, 0.0, stretch=1 / (1 + 2 * abs(psi0))).phase(time)  # a radian or less
+    return angle(phase), 2 * (psi0 + phase) / rate(phase)
 
 
 def _uphill_turn(oscillator: Oscillator, phi0: float, kinetic: float) -> float:

@@ -7,7 +7,7 @@ import math
 
 import mujoco
 
-from mjbeer.inertial import set_inertial, weightless
+from mjbeer.inertial import point_share, set_inertial, weightless
 from mjbeer.scene import Scene
 
 _ARM = 1.0
@@ -28,18 +28,18 @@ def reduce(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
 
 
 def _sliding(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
-    """The load with the can's rolling inertia K = m_can + I_can/a^2 as a point mass on the axis.
+    """The load on a slide (u) and a hinge (phi), with the kinetic energy of eqs. (39) and (44).
 
-    It slides (u) and turns (phi), with the kinetic energy of eqs. (39) and (44). The part I_can/a^2 of K
-    has no weight, so a constant force takes its weight back.
+    The can's rolling inertia m_can + I_can/a^2 is the slide's armature, which has no weight: a constant force
+    stands for that of the can.
     """
-    body = spec.body("can")
+    body, share = spec.body("can"), point_share(scene)
     spec.delete(spec.joint("swing"))
     body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
-    weightless = scene.can.inertia / scene.can.radius**2
-    mass = scene.load.mass + scene.can.mass + weightless
-    set_inertial(body, unit * mass, scene.load.mass * scene.load.offset / mass, unit * scene.oscillator.base)
-    _constant_force(spec, "slide", -unit * weightless * scene.gravity * math.sin(scene.incline))
+    set_inertial(body, unit * share.mass, share.offset, unit * share.inertia)
+    rest = scene.can.mass - share.moved
+    spec.joint("slide").armature = unit * (rest + scene.can.inertia / scene.can.radius**2)
+    _constant_force(spec, "slide", unit * rest * scene.gravity * math.sin(scene.incline))
 
 
 def _frozen(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
@@ -53,8 +53,8 @@ def _frozen(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     spec.delete(spec.joint("slide"))
     body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
     moment = scene.load.mass * scene.load.offset
-    # Any mass with the moment m b does; the one for which half of the inertia is m' b'^2 keeps both positive.
-    offset = form.base / (2 * moment) if moment > 0 else 0.0
+    # Any mass with the moment m b does. On this arm m' b'^2 is at most half of the inertia, which leaves some.
+    offset = min(form.base / (2 * moment), scene.can.radius) if moment > 0 else 0.0
     mass = moment / offset if moment > 0 else scene.mass
     set_inertial(body, unit * mass, offset, unit * (form.base - mass * offset**2))
     _constant_force(spec, "phi", unit * form.slope)

@@ -51,8 +51,9 @@ class Scene:
         object.__setattr__(self, "oscillator", reduce(self.can, self.load, self.incline, self.gravity))
         if self.oscillator.base <= 0:
             raise ParameterError(
-                "nothing resists rotation at phi = 0: a point load needs a can with mass "
-                f"(attachment {self.attachment!r}, load inertia 0 kg m^2, can mass 0 kg)"
+                "nothing resists rotation at phi = 0: a point load needs an offset and a can with mass "
+                f"(attachment {self.attachment!r}, load inertia {self.load.inertia!r} kg m^2, load offset "
+                f"{self.load.offset!r} m, can mass {self.can.mass!r} kg)"
             )
 
     @property

@@ -1,0 +1,37 @@
+# make report: validate, and draw the four scenes into report/.   make test: all checks.
+# Both set themselves up in .venv; the second time that takes a second.
+.DEFAULT_GOAL := help
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+.PHONY: help report test lint gl clean
+
+help:
+	@sed -n '1,2p' $(MAKEFILE_LIST)
+
+report: $(STAMP) gl
+	$(BIN)/mjbeer report --output report
+
+test: $(STAMP) gl lint
+	$(BIN)/python -m pytest -n auto
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/ty check src tests
+
+# Drawing needs EGL or OSMesa from the system: says which line to run if neither is there.
+gl: $(STAMP)
+	@$(BIN)/python -m mjbeer.gl
+
+$(STAMP): pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mjbeer needs Python 3.11 or later, this is " + sys.version)'
+	$(PYTHON) -m venv --clear $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade pip
+	$(BIN)/python -m pip install --quiet --editable . --group dev
+	@touch $@
+
+clean:
+	rm -rf $(VENV) report dist

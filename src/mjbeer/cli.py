@@ -1,0 +1,169 @@
+"""The command line: mjbeer simulate | render | export | validate | report."""
+
+import math
+import pathlib
+import sys
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import tyro
+from rich.console import Console
+
+from mjbeer.arguments import AnyScene, Rolling, Run
+from mjbeer.exceptions import MjbeerError
+
+_FAILED, _WRONG, _INTERRUPTED = 1, 2, 130
+_out, _err = Console(), Console(stderr=True)
+
+
+@dataclass(frozen=True)
+class Simulate(Run):
+    """Simulate a scene; show what the run says about itself, and write the motion as CSV."""
+
+    output: pathlib.Path | None = None
+    """CSV file to write; "-" for standard output."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import output, table
+
+        trajectory = self.simulate()
+        if self.output is not None and str(self.output) != "-":
+            output.write(self.output, table.csv(trajectory))
+            _err.print(f"wrote {self.output}", highlight=False, soft_wrap=True)
+        console = _out
+        if str(self.output) == "-":
+            sys.stdout.write(table.csv(trajectory))
+            console = _err
+        console.print(table.summary(trajectory))
+        _warn(trajectory.warnings)
+        return 0
+
+
+@dataclass(frozen=True)
+class Render(Run):
+    """Simulate a scene and draw it as a video (MP4)."""
+
+    output: pathlib.Path = pathlib.Path("mjbeer.mp4")
+    """Video to write."""
+    speed: float = 1.0
+    """Playback speed: 1 is real time, 0.25 four times slower."""
+    camera: str = "side"
+    """Camera: side, quarter or overview."""
+    width: int = 1280
+    """Width [pixels]."""
+    height: int = 720
+    """Height [pixels]."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer.video import render
+
+        trajectory = self.simulate()
+        _warn(trajectory.warnings)
+        render(trajectory, self.output, self.width, self.height, speed=self.speed, camera=self.camera)
+        _err.print(f"wrote {self.output}", highlight=False, soft_wrap=True)
+        return 0
+
+
+@dataclass(frozen=True)
+class Export:
+    """Write a scene as one MJCF file that any MuJoCo loads, with its start as a keyframe."""
+
+    scene: AnyScene
+    output: pathlib.Path
+    """MJCF file to write."""
+    phi0: float = 60.0
+    """Start angle of the load to the incline, the paper's phi [degrees]."""
+    phi_dot0: float = 0.0
+    """Start rate of phi [degrees/s]."""
+    rolling: Rolling = "reduced"
+    """What makes the can roll; the reduced model of a frozen load turns on the spot."""
+    integrator: Literal["Euler", "implicit", "implicitfast", "discrete", "RK4"] = "RK4"
+    """Integrator."""
+    timestep: float = 1e-3
+    """Timestep [s]."""
+    friction: float = 1.0
+    """Friction coefficient of a contact."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer.export import export
+
+        start = math.radians(self.phi0), math.radians(self.phi_dot0)
+        settings = self.rolling, self.integrator, self.timestep, self.friction
+        export(self.scene.scene(), self.output, *start, *settings)
+        _err.print(f"wrote {self.output}", highlight=False, soft_wrap=True)
+        return 0
+
+
+@dataclass(frozen=True)
+class Validate:
+    """Check the models against exact theory, row by row; exit status 1 if a row fails."""
+
+    json: bool = False
+    """Print the table as JSON."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import report, table
+
+        checks = report.check(_err)
+        if self.json:
+            sys.stdout.write(table.validation_json(checks))
+        else:
+            _out.print(table.validation(checks))
+        return 0 if all(check.passed for check in checks) else _FAILED
+
+
+@dataclass(frozen=True)
+class Report:
+    """Validate, then draw the four scenes, into a folder with a summary; exit status 1 if a row fails."""
+
+    output: pathlib.Path = pathlib.Path("report")
+    """Folder to write to."""
+    quick: bool = False
+    """Smaller videos with fewer frames."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import report, table
+
+        checks = report.write(self.output, self.quick, _err)
+        _out.print(table.validation(checks))
+        _out.print(f"the report is in {self.output / 'summary.md'}", highlight=False, soft_wrap=True)
+        return 0 if all(check.passed for check in checks) else _FAILED
+
+
+_Command = (
+    Annotated[Simulate, tyro.conf.subcommand("simulate")]
+    | Annotated[Render, tyro.conf.subcommand("render")]
+    | Annotated[Export, tyro.conf.subcommand("export")]
+    | Annotated[Validate, tyro.conf.subcommand("validate")]
+    | Annotated[Report, tyro.conf.subcommand("report")]
+)
+_STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf.CascadeSubcommandArgs)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; the exit status is 0, 1 (a check failed), 2 (an error) or 130 (interrupted)."""
+    command = tyro.cli(
+        _Command,
+        prog="mjbeer",
+        description="The rolling half-full beer can as a MuJoCo model that can be trusted.",
+        args=arguments,
+        config=(*_STYLE, tyro.conf.FlagCreatePairsOff),
+    )
+    try:
+        return command.run()
+    except MjbeerError as error:
+        _err.print(f"mjbeer: {error}", style="red", highlight=False, markup=False, soft_wrap=True)
+        return _WRONG
+    except KeyboardInterrupt:
+        _err.print("mjbeer: interrupted; what was written is whole", style="red", highlight=False)
+        return _INTERRUPTED
+
+
+def _warn(warnings: tuple[str, ...]) -> None:
+    for each in warnings:
+        _err.print(f"not to be trusted: {each}", style="yellow", highlight=False, markup=False, soft_wrap=True)

@@ -1,0 +1,63 @@
+"""The pictures of a trajectory, one after the other."""
+
+from collections.abc import Generator
+
+import mujoco
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from mjbeer import checks, display, guides
+from mjbeer.canvas import Canvas
+from mjbeer.exceptions import ParameterError
+from mjbeer.trajectory import Trajectory
+from mjbeer.view import View
+
+CAMERAS = ("side", "quarter", "overview")
+"""From the can's open end; from above and downhill; and from afar, where the whole motion is in the picture."""
+_LARGEST = 4096
+"""Largest width and height [pixels]: what H.264 takes."""
+
+
+def draw(
+    trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str = "side", speed: float = 1.0
+) -> Generator[np.ndarray]:
+    """The pictures at some times [s], drawn when asked for, each of shape (height, width, 3), uint8.
+
+    `camera` is one of CAMERAS; a playback `speed` other than 1 is written into the picture.
+
+    Raises:
+      ParameterError: on a parameter that is not allowed.
+      RenderingError: if there is no OpenGL that works, when the first is drawn.
+    """
+    for name, pixels in (("width", width), ("height", height)):
+        if checks.positive(name, pixels) % 1 != 0 or pixels > _LARGEST:
+            raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {pixels!r}")
+    checks.choice("camera", camera, CAMERAS)
+    return _draw(trajectory, times, int(width), int(height), camera, speed)
+
+
+def _draw(
+    trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str, speed: float
+) -> Generator[np.ndarray]:
+    scene = trajectory.scene
+    model = display.display_model(scene, (trajectory.u.min(), trajectory.u.max()), width / height)
+    data = mujoco.MjData(model)
+    with Canvas(model, width, height) as canvas:
+        for time, (u, phi, roll, lift) in zip(times, coordinates(trajectory, times), strict=True):
+            display.pose(model, data, scene, u, phi, roll, lift)
+            view, axis = View.of(model, data, camera, width, height), data.body("can").xpos
+            pixels = canvas.draw(data, camera, lambda picture: guides.draw(picture, scene, view, axis))  # noqa: B023
+            yield guides.write(pixels, scene, view, axis, time, phi, speed)
+
+
+def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
+    """u, phi, roll and lift at some times, shape (times, 4).
+
+    The samples' rates make the cubic between two of them: its error falls as the fourth power of their
+    distance, so that even 20 samples a second move smoothly.
+    """
+    samples = np.stack([trajectory.u, trajectory.phi, trajectory.roll, trajectory.lift], axis=1)
+    if len(samples) == 1:
+        return np.repeat(samples, len(times), axis=0)
+    rates = np.stack([trajectory.u_dot, trajectory.phi_dot, trajectory.roll_dot, trajectory.lift_dot], axis=1)
+    return CubicHermiteSpline(trajectory.time, samples, rates)(times)

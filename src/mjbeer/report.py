@@ -1,0 +1,102 @@
+"""The report: the validation table and a video of each scene, in a folder with a summary."""
+
+import math
+import pathlib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rich.console import Console
+from rich.progress import Progress
+
+from mjbeer import output, table, validation
+from mjbeer.can import Can
+from mjbeer.row import Check
+from mjbeer.scene import frozen, hoop, pendulum, sliding
+from mjbeer.simulation import simulate
+from mjbeer.trajectory import Trajectory
+
+
+@dataclass(frozen=True)
+class _Film:
+    """A scene of the gallery."""
+
+    name: str
+    caption: str
+    speed: float
+    trajectory: Callable[[], Trajectory]
+
+
+_FILMS = (
+    _Film(
+        "sliding",
+        "Half a can of beer, let go at 60 degrees. The beer slides in its can without friction and swings; the can "
+        "rolls away under it, hesitating with every swing. Half of real time.",
+        0.5,
+        lambda: simulate(sliding(can=Can.sheet_metal()), 2.0, math.radians(60), tolerance=1e-9),
+    ),
+    _Film(
+        "frozen",
+        "The beer is frozen to the can, let go with the beer on top: it rolls down ever faster, in jerks. It ends "
+        "just before the can would leave the incline. A quarter of real time.",
+        0.25,
+        lambda: simulate(frozen(), 0.82, math.pi, tolerance=1e-9),
+    ),
+    _Film(
+        "pendulum",
+        "A hoop wheel with a pendulum on its axle, let go at 60 degrees. Half of real time.",
+        0.5,
+        lambda: simulate(pendulum(), 2.0, math.radians(60), tolerance=1e-9),
+    ),
+    _Film(
+        "hoop",
+        "A light hoop with a heavy bar on its rim, let go near the top on level ground. It hops when the bar is "
+        "about level: nothing holds it but contact. A tenth of real time.",
+        0.1,
+        lambda: simulate(hoop(), 0.43, 3.0, rolling="contact", timestep=1e-4, friction=1e3),
+    ),
+)
+
+
+def check(console: Console) -> list[Check]:
+    """Run every row of the validation table, with a progress bar on `console`."""
+    rows = validation.rows()
+    done = []
+    with Progress(console=console, transient=True) as progress:
+        task = progress.add_task("validating", total=len(rows))
+        for row in rows:
+            progress.update(task, description=f"{row.quantity} ({row.by})")
+            done.append(row.run())
+            progress.advance(task)
+    return done
+
+
+def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
+    """Write validation.json, a video and a picture of each scene, and summary.md into a folder.
+
+    Every file appears whole or not at all; the summary comes last.
+
+    Raises:
+      OutputError: if the folder cannot be written to.
+      RenderingError: if nothing can be drawn on this machine.
+    """
+    from mjbeer.video import render, save_frame
+
+    checks = check(console)
+    output.write(folder / "validation.json", table.validation_json(checks))
+    size = {"width": 640, "height": 360, "fps": 30} if quick else {"width": 1280, "height": 720, "fps": 60}
+    for film in _FILMS:
+        trajectory = film.trajectory()
+        render(trajectory, folder / f"{film.name}.mp4", speed=film.speed, **size)
+        save_frame(trajectory, 0.3 * float(trajectory.time[-1]), folder / f"{film.name}.png")
+        console.print(f"wrote {folder / film.name}.mp4", highlight=False, soft_wrap=True)
+    output.write(folder / "summary.md", _summary(checks))
+    return checks
+
+
+def _summary(checks: list[Check]) -> str:
+    passed = sum(each.passed for each in checks)
+    lines = ["# mjbeer: report", "", f"{passed} of {len(checks)} checks passed.", ""]
+    for film in _FILMS:
+        lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
+    lines += ["## Validation against exact theory", "", table.validation_markdown(checks)]
+    return "\n".join(lines)

@@ -1,0 +1,87 @@
+"""A trajectory as CSV, and tables for the terminal, Markdown and JSON."""
+
+import dataclasses
+import io
+import json
+import math
+
+import numpy as np
+from rich.table import Table
+
+from mjbeer.row import Check
+from mjbeer.trajectory import Trajectory
+
+
+def csv(trajectory: Trajectory) -> str:
+    """A line a sample, units in the header, every number with all its digits."""
+    columns = {
+        "time [s]": trajectory.time,
+        "u [m]": trajectory.u,
+        "phi [rad]": trajectory.phi,
+        "u_dot [m/s]": trajectory.u_dot,
+        "phi_dot [rad/s]": trajectory.phi_dot,
+        "roll [rad]": trajectory.roll,
+        "lift [m]": trajectory.lift,
+        "slip [m]": trajectory.slip,
+        "energy [J]": trajectory.energy,
+        "normal force needed [N]": trajectory.forces.normal,
+        "friction force needed [N]": trajectory.forces.friction,
+    }
+    text = io.StringIO()
+    np.savetxt(text, np.column_stack(list(columns.values())), fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+    return text.getvalue()
+
+
+def summary(trajectory: Trajectory) -> Table:
+    """What a run says about itself."""
+    table = Table(show_header=False, box=None)
+    radius = trajectory.scene.can.radius
+    parted, needed = trajectory.rolls_until(), trajectory.forces.needed
+    facts = {
+        "rolling, integrator": f"{trajectory.rolling}, {trajectory.integrator}",
+        "samples": f"{len(trajectory.time)} to t = {trajectory.time[-1]:.6g} s",
+        "phi at the end": f"{math.degrees(trajectory.phi[-1]):.6f} degrees",
+        "u at the end": f"{trajectory.u[-1]:.9g} m",
+        "energy drift": f"{trajectory.energy_drift:.2e} of the swing's own",
+        "slip, largest and final": f"{np.abs(trajectory.slip).max() / radius:.2e}, {trajectory.slip[-1] / radius:.2e} radii",
+        "lift, lowest and highest": f"{trajectory.lift.min() / radius:.2e}, {trajectory.lift.max() / radius:.2e} radii",
+        "normal force needed": f"{trajectory.forces.normal.min():.4g} to {trajectory.forces.normal.max():.4g} N",
+        "friction coefficient needed": f"{needed.max():.4g}",
+        "can roll without slipping": "to the end" if math.isinf(parted) else f"until t = {parted:.6g} s (then N < 0)",
+    }
+    if trajectory.error_estimate is not None:
+        facts["estimated error of phi and u/a"] = f"{trajectory.error_estimate:.2e} rad"
+    for name, value in facts.items():
+        table.add_row(name, value)
+    return table
+
+
+def validation(checks: list[Check]) -> Table:
+    """The validation table for the terminal."""
+    table = Table(title="Validation against exact theory")
+    for name in ("check", "by", "error", "at most", "verdict"):
+        table.add_column(name, justify="right" if name in ("error", "at most") else "left")
+    for check in checks:
+        verdict = "[green]pass[/]" if check.passed else "[bold red]FAIL[/]"
+        table.add_row(check.quantity, check.by, f"{check.error:.1e}", f"{check.bound:.1e} {check.unit}", verdict)
+    return table
+
+
+def validation_markdown(checks: list[Check]) -> str:
+    """The validation table as Markdown."""
+    lines = ["| check | by | error | at most | what dominates the error |", "|---|---|---|---|---|"]
+    for check in checks:
+        bound = f"{check.bound:.1e} {check.unit}".strip()
+        failed = "" if check.passed else " **FAIL**"
+        lines.append(f"| {check.quantity} | {check.by} | {check.error:.1e}{failed} | {bound} | {check.reason} |")
+    return "\n".join(lines) + "\n"
+
+
+def validation_json(checks: list[Check]) -> str:
+    """The validation table as JSON, with the versions that it was measured with."""
+    from importlib.metadata import version
+
+    versions = {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
+    rows = [{**dataclasses.asdict(check), "passed": check.passed} for check in checks]
+    passed = all(check.passed for check in checks)
+    return json.dumps({"versions": versions, "passed": passed, "checks": rows}, indent=2) + "\n"

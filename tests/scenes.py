@@ -1,0 +1,35 @@
+"""Scenes that tests share, and random ones."""
+
+import math
+
+from hypothesis import strategies as st
+
+from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
+
+METAL = Can.sheet_metal()
+SCENES = {
+    "sliding": sliding(),
+    "sliding, metal can": sliding(can=METAL),
+    "frozen": frozen(),
+    "frozen, metal can": frozen(can=METAL),
+    "pendulum": pendulum(),
+    "hoop": hoop(),
+}
+MASSIVE = {name: scene for name, scene in SCENES.items() if name != "sliding"}
+"""Those that MuJoCo can roll by a constraint."""
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> Scene:
+    """Any can, any load with some inertia of its own, inclines to 60 degrees either way."""
+
+    def between(low: float, high: float) -> float:
+        return draw(st.floats(low, high))
+
+    radius = 10 ** between(-2, 0)
+    mass = draw(st.sampled_from([0.0, 1.0])) * 10 ** between(-3, 1)
+    can = Can(radius, 3 * radius, mass, mass * radius**2 * between(0, 1))
+    load_mass = 10 ** between(-2, 1)
+    load = Load(load_mass, radius * between(0.05, 0.95), load_mass * radius**2 * between(0.05, 0.5))
+    attachment = draw(st.sampled_from(["sliding", "frozen"]))
+    return Scene(can, load, between(-math.pi / 3, math.pi / 3), attachment)

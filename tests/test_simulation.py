@@ -1,0 +1,141 @@
+"""simulate: samples, errors, repeatability, divergence, and the diagnostics a run carries."""
+
+import math
+import re
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from mjbeer import Can, Trajectory, exact, frozen, hoop, simulate, sliding
+from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, UnsupportedError
+from mjbeer.model import INTEGRATORS
+from tests.scenes import SCENES
+
+ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_starts_where_theory_starts(name: str) -> None:
+    run = simulate(SCENES[name], 0.1, 0.8, 3.0)
+    truth = exact(SCENES[name], np.array([0.0]), 0.8, 3.0)
+    for each in ("u", "phi", "u_dot", "phi_dot", "roll", "roll_dot"):
+        assert getattr(run, each)[0] == pytest.approx(getattr(truth, each)[0], rel=4e-16)
+
+
+def test_every_array_has_a_row_a_sample() -> None:
+    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
+    assert {getattr(run, each).shape for each in ARRAYS} == {(501,)}
+    assert run.time[-1] == 0.5
+
+
+def test_a_run_ends_on_the_first_step_at_or_after_its_duration() -> None:
+    assert simulate(frozen(), 0.0104, 1.0).time[-1] == pytest.approx(0.011)
+
+
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
+    times = np.array([0.0, 0.007, 0.1, 0.25])
+    whole = simulate(frozen(), 0.25, 1.0, integrator=integrator)
+    some = simulate(frozen(), 0.25, 1.0, integrator=integrator, times=times)
+    assert np.array_equal(some.phi, whole.phi[[0, 7, 100, 250]])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
+        ({"duration": math.inf}, "duration must be a finite number"),
+        ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
+        ({"phi0": "1"}, "phi0 must be a finite number"),
+        ({"phi_dot0": math.inf}, "phi_dot0 must be a finite number"),
+        ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
+        ({"integrator": "rk4"}, "integrator must be one of 'Euler'.*'DOP853'; got 'rk4'"),
+        ({"times": [0.0, 0.5]}, "between 0 and the duration 0.1 s"),
+        ({"times": [0.01, 0.01]}, "increasing"),
+        ({"times": []}, "increasing"),
+        ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at .*0.0105.* s; integrator="DOP853"'),
+    ],
+)
+def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        simulate(frozen(), **({"duration": 0.1, "phi0": 1.0} | arguments))  # ty: ignore[invalid-argument-type]
+
+
+def test_a_massless_can_needs_reduced() -> None:
+    with pytest.raises(UnsupportedError, match="only in rolling=\"reduced\""):
+        simulate(sliding(), 1, 1.0, rolling="contact")
+
+
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+def test_divergence_is_an_error_with_time_and_cause(integrator: str, capfd: pytest.CaptureFixture[str]) -> None:
+    """Steps of half a second on a swing of 0.1 s; MuJoCo's own log stays silent."""
+    with pytest.raises(DivergenceError, match=r"diverged at t = [\d.e+]+ s: .+"):
+        simulate(hoop(), 500, 1.0, integrator=integrator, timestep=0.5)
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+def test_a_run_repeats_to_the_bit_alone_and_beside_another(rolling: str, integrator: str) -> None:
+    def run(_: int) -> np.ndarray:
+        found = simulate(SCENES["frozen, metal can"], 0.3, 1.0, rolling=rolling, integrator=integrator)
+        return np.stack([getattr(found, each) for each in ARRAYS])
+
+    first = run(0)
+    with ThreadPoolExecutor(2) as pool:
+        assert all(np.array_equal(first, each) for each in [run(0), *pool.map(run, range(2))])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_good_run_is_trusted(name: str) -> None:
+    run = simulate(SCENES[name], 1, 0.5)
+    assert run.trusted, run.warnings
+    assert run.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("run", "reason"),
+    [
+        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "energy drifts by"),
+        (lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02), "the can slips by"),
+        (lambda: simulate(hoop(), 0.5, 3.0, rolling="contact", timestep=1e-4, friction=1e3), "parts from the incline"),
+        (lambda: simulate(frozen(), 2, math.pi), r"from t = 0\.83.* s the incline would have to pull"),
+    ],
+)
+def test_a_run_that_is_not_to_be_relied_on_says_so(run: Callable[[], Trajectory], reason: str) -> None:
+    trajectory = run()
+    assert not trajectory.trusted
+    assert any(re.search(reason, each) for each in trajectory.warnings), trajectory.warnings
+
+
+def test_slip_of_a_sliding_contact_is_coulomb_s() -> None:
+    """Footnote 7: below mu = tan(alpha) the frozen can slides away from its equilibrium, above it stays."""
+    scene = frozen()
+    mu = math.tan(scene.incline)
+    above = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=1.02 * mu)
+    below = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=0.98 * mu)
+    assert np.abs(above.slip).max() < 1e-6 * scene.can.radius
+    assert np.abs(below.slip).max() > 1e-2 * scene.can.radius
+
+
+def test_rolls_until_is_where_theory_says() -> None:
+    run = simulate(frozen(), 1, math.pi, tolerance=1e-9)
+    truth = exact(frozen(), np.linspace(0, 1, 100_001), math.pi)
+    # Both interpolate linearly between samples, here 1 ms apart: (1 ms)^2 times N's second derivative.
+    assert run.rolls_until() == pytest.approx(truth.rolls_until(), abs=1e-4)
+    assert run.rolls_until(friction=0.3) < run.rolls_until()
+
+
+def test_frequency_needs_three_turning_points() -> None:
+    with pytest.raises(MjbeerError, match="the motion turns 1 times"):
+        simulate(frozen(), 0.5, math.pi).frequency()
+
+
+def test_measured_frequency_is_that_of_the_exact_period() -> None:
+    scene = frozen(can=Can.sheet_metal())
+    amplitude = 0.4
+    run = simulate(scene, 4, scene.equilibrium() + amplitude, tolerance=1e-12)
+    # Turning points are interpolated to fourth order in the 1 ms between samples: (omega h)^4 = 2e-8 of h.
+    assert run.frequency() * scene.period(amplitude) == pytest.approx(2 * math.pi, rel=1e-12)

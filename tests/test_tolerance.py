@@ -1,0 +1,57 @@
+"""tolerance: the true error is below it, the estimate bounds the true error, and what cannot be met is an error."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer.exceptions import ToleranceError
+from mjbeer.measurement import phi_error
+from tests.scenes import scenes
+
+TOLERANCE = 1e-10
+# Rounding of the start alone, amplified by more than this, is 1e-11: a motion beside a separatrix, of which
+# nobody knows ten digits.
+WORST_CONDITION = 1e5
+NEARBY = 1e-8
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(scenes(), st.floats(-3.2, 3.2), st.sampled_from([0.0, 1.0]), st.floats(-5, 5))
+def test_true_error_is_below_the_tolerance(scene: Scene, phi0: float, spins: float, spin: float) -> None:
+    unit = math.sqrt(scene.can.radius / scene.gravity)
+    duration, phi_dot0 = 30 * unit, spins * spin / unit
+    times = np.linspace(0, duration, 301)
+    truth = exact(scene, times, phi0, phi_dot0)
+    nearby = exact(scene, times, phi0 + NEARBY, phi_dot0 + NEARBY / unit)
+    angle = np.maximum(1, np.maximum.accumulate(np.abs(truth.phi - truth.phi[0])))
+    assume(np.max(np.abs(nearby.phi - truth.phi) / angle) / NEARBY < WORST_CONDITION)
+    run = simulate(scene, duration, phi0, phi_dot0, tolerance=TOLERANCE, times=times)
+    assert phi_error(run) <= TOLERANCE
+    u_error = np.abs(run.u - truth.u) / scene.can.radius
+    assert np.max(u_error / np.maximum(1, np.abs(truth.u) / scene.can.radius)) <= TOLERANCE
+    assert run.error_estimate is not None
+    assert run.error_estimate <= TOLERANCE
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum()])
+def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> None:
+    run = simulate(scene, 2, 1.0, tolerance=tolerance)
+    assert run.error_estimate is not None
+    assert phi_error(run) <= run.error_estimate <= tolerance
+    assert run.integrator == "DOP853"
+    assert run.timestep is None
+
+
+def test_contact_is_not_smooth_and_says_how_far_it_got() -> None:
+    with pytest.raises(ToleranceError, match=r"tolerance 1e-12 rad is not reached: .*(differ by|given up at t =) [\d.]"):
+        simulate(frozen(), 1.2, math.pi, rolling="contact", tolerance=1e-12)
+
+
+def test_more_digits_than_a_double_has_are_refused() -> None:
+    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
+        simulate(sliding(), 1, 1.0, tolerance=1e-17)
