@@ -131,7 +131,7 @@ def test_visuals_change_no_motion(name: str, rolling: str) -> None:
 @pytest.mark.parametrize(
     ("scene", "reason"),
     [
-        (sliding(), "massless can with a sliding load exists only in rolling=\"reduced\""),
+        (sliding(), 'massless can with a sliding load exists only in rolling="reduced"'),
         (Scene(Can(0.1, 0.1, 1.0, 0.0), Load.point(1.0, 0.05)), "can without inertia"),
         (Scene(Can.massless(), Load.point(1.0, 0.01), 0.1, "frozen"), "no inertia about its centre of mass"),
     ],

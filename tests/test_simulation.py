@@ -64,7 +64,7 @@ def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: s
 
 
 def test_a_massless_can_needs_reduced() -> None:
-    with pytest.raises(UnsupportedError, match="only in rolling=\"reduced\""):
+    with pytest.raises(UnsupportedError, match='only in rolling="reduced"'):
         simulate(sliding(), 1, 1.0, rolling="contact")
 
 

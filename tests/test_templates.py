@@ -39,7 +39,9 @@ def load(name: str) -> mujoco.MjModel:
 
 
 def phi(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
-    joints = [data.joint(name) for name in ("roll", "swing") if name in {model.joint(i).name for i in range(model.njnt)}]
+    joints = [
+        data.joint(name) for name in ("roll", "swing") if name in {model.joint(i).name for i in range(model.njnt)}
+    ]
     return sum(float(each.qpos[0]) for each in joints), sum(float(each.qvel[0]) for each in joints)
 
 

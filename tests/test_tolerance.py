@@ -48,7 +48,9 @@ def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> N
 
 
 def test_contact_is_not_smooth_and_says_how_far_it_got() -> None:
-    with pytest.raises(ToleranceError, match=r"tolerance 1e-12 rad is not reached: .*(differ by|given up at t =) [\d.]"):
+    with pytest.raises(
+        ToleranceError, match=r"tolerance 1e-12 rad is not reached: .*(differ by|given up at t =) [\d.]"
+    ):
         simulate(frozen(), 1.2, math.pi, rolling="contact", tolerance=1e-12)
 
 

@@ -15,6 +15,8 @@ _HALF_TURNS = (-20, 96)
 """The templates' board begins and ends these half turns of the can from u = 0. Two of its stripes are one."""
 _SPARE = 20
 """Half turns of board beyond a motion's ends: more than a camera at the can sees."""
+_MARGIN = 1.1
+"""How much more than the motion the overview shows."""
 _LEAST_FILL = 1e-6
 """Fill that is drawn of an emptier can: a mesh must not be flat, and one sees nothing of it anyway."""
 _LEAST_VOLUME = 1e-12
@@ -39,6 +41,8 @@ def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
     for geom in spec.geoms:
         if geom.classname.name == "visual" and geom.type != mujoco.mjtGeom.mjGEOM_MESH:
             _stretch(geom, size, length)
+    if (end := spec.geom("can_end")) is not None:
+        end.size = [radius, length / 2 - end.pos[1], 0]
     for camera in spec.cameras:
         camera.pos = _point(camera.pos, size, length)
     grid = spec.material("grid")
@@ -63,7 +67,7 @@ def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: f
     planks.texrepeat = [last - first, planks.texrepeat[1]]
     overview, along = spec.camera("overview"), np.array([math.cos(scene.incline), 0, -math.sin(scene.incline)])
     seen = np.abs((high - low) * along) + 10 * scene.can.radius
-    distance = max(seen[0] / aspect, seen[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))
+    distance = _MARGIN * max(seen[0] / aspect, seen[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))
     back = np.cross(overview.alt.xyaxes[:3], overview.alt.xyaxes[3:])
     overview.pos = (low + high) / 2 * along + distance * back / np.linalg.norm(back)
     spec.visual.map.zfar = max(spec.visual.map.zfar, 4 * distance / spec.stat.extent)
@@ -85,7 +89,9 @@ def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
 def _point(point: np.ndarray, size: float, length: float) -> np.ndarray:
     """Where a point of the template goes: all grows with the radius, and keeps its distance from the can's ends."""
     x, y, z = point
-    return np.array([x * size, y and math.copysign(length / 2 + (abs(y) - LENGTH / 2) * size, y), z * size])
+    inside = LENGTH / 2 - abs(y)
+    inside = min(inside * size, inside * length / LENGTH) if inside > 0 else inside * size  # in the same half
+    return np.array([x * size, math.copysign(length / 2 - inside, y) if y else 0.0, z * size])
 
 
 def _load(spec: mujoco.MjSpec, scene: Scene) -> None:

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import tyro
 
+from mjbeer import checks
 from mjbeer.can import LENGTH, RADIUS, Can
+from mjbeer.exceptions import ParameterError
 from mjbeer.load import BEER
 from mjbeer.scene import GRAVITY, Scene, frozen, hoop, pendulum, sliding
 
@@ -15,6 +17,15 @@ if TYPE_CHECKING:
 
 Rolling = Literal["reduced", "equality", "contact"]
 Integrator = Literal["Euler", "implicit", "implicitfast", "discrete", "RK4", "DOP853"]
+
+
+def radians(name: str, value: float, unit: str = "degrees") -> float:
+    """An angle or a rate in radians.
+
+    Raises:
+      ParameterError: if it is not finite; the message is in the unit that it came in.
+    """
+    return math.radians(checks.number(name, value, unit))
 
 
 @dataclass(frozen=True)
@@ -33,6 +44,8 @@ class Common:
     @property
     def alpha(self) -> float:
         """The incline [rad]."""
+        if not abs(self.incline) < 90:
+            raise ParameterError(f"incline must be between -90 and 90 [degrees], got {self.incline!r}")
         return math.radians(self.incline)
 
 
@@ -141,8 +154,8 @@ class Run:
         return simulate(
             self.scene.scene(),
             self.duration,
-            math.radians(self.phi0),
-            math.radians(self.phi_dot0),
+            radians("phi0", self.phi0),
+            radians("phi_dot0", self.phi_dot0, "degrees/s"),
             self.rolling,
             self.integrator,
             self.timestep,

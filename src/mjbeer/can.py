@@ -40,7 +40,9 @@ class Can:
         checks.non_negative("can mass", self.mass, "kg")
         checks.non_negative("can inertia", self.inertia, "kg m^2")
         if self.mass == 0 and self.inertia > 0:
-            raise ParameterError(f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2")
+            raise ParameterError(
+                f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"
+            )
 
     @classmethod
     def massless(cls, radius: float = RADIUS, length: float = LENGTH) -> "Can":
@@ -60,7 +62,9 @@ class Can:
         checks.positive("sheet thickness", thickness, "m")
         checks.positive("sheet density", density, "kg/m^3")
         sheet = math.pi * radius * thickness * density
-        return cls(radius, length, mass=2 * sheet * (length + radius), inertia=sheet * radius**2 * (2 * length + radius))
+        return cls(
+            radius, length, mass=2 * sheet * (length + radius), inertia=sheet * radius**2 * (2 * length + radius)
+        )
 
     @classmethod
     def hoop(cls, radius: float = RADIUS, length: float = LENGTH, mass: float = 0.05) -> "Can":

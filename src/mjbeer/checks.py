@@ -14,7 +14,7 @@ def number(name: str, value: float, unit: str = "") -> float:
     """
     try:
         result = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {value!r}") from None
     if isinstance(value, (str, bytes, bool)) or not math.isfinite(result):
         raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {value!r}")

@@ -1,15 +1,13 @@
 """The command line: mjbeer simulate | render | export | validate | report."""
 
-import math
 import pathlib
-import sys
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import tyro
 from rich.console import Console
 
-from mjbeer.arguments import AnyScene, Rolling, Run
+from mjbeer.arguments import AnyScene, Rolling, Run, radians
 from mjbeer.exceptions import MjbeerError
 
 _FAILED, _WRONG, _INTERRUPTED = 1, 2, 130
@@ -30,10 +28,10 @@ class Simulate(Run):
         trajectory = self.simulate()
         if self.output is not None and str(self.output) != "-":
             output.write(self.output, table.csv(trajectory))
-            _err.print(f"wrote {self.output}", highlight=False, soft_wrap=True)
+            _say(f"wrote {self.output}")
         console = _out
         if str(self.output) == "-":
-            sys.stdout.write(table.csv(trajectory))
+            output.show(table.csv(trajectory))
             console = _err
         console.print(table.summary(trajectory))
         _warn(trajectory.warnings)
@@ -62,7 +60,7 @@ class Render(Run):
         trajectory = self.simulate()
         _warn(trajectory.warnings)
         render(trajectory, self.output, self.width, self.height, speed=self.speed, camera=self.camera)
-        _err.print(f"wrote {self.output}", highlight=False, soft_wrap=True)
+        _say(f"wrote {self.output}")
         return 0
 
 
@@ -90,10 +88,10 @@ class Export:
         """Do it; the exit status."""
         from mjbeer.export import export
 
-        start = math.radians(self.phi0), math.radians(self.phi_dot0)
+        start = radians("phi0", self.phi0), radians("phi_dot0", self.phi_dot0, "degrees/s")
         settings = self.rolling, self.integrator, self.timestep, self.friction
         export(self.scene.scene(), self.output, *start, *settings)
-        _err.print(f"wrote {self.output}", highlight=False, soft_wrap=True)
+        _say(f"wrote {self.output}")
         return 0
 
 
@@ -106,11 +104,11 @@ class Validate:
 
     def run(self) -> int:
         """Do it; the exit status."""
-        from mjbeer import report, table
+        from mjbeer import output, report, table
 
         checks = report.check(_err)
         if self.json:
-            sys.stdout.write(table.validation_json(checks))
+            output.show(table.validation_json(checks))
         else:
             _out.print(table.validation(checks))
         return 0 if all(check.passed for check in checks) else _FAILED
@@ -131,11 +129,12 @@ class Report:
 
         checks = report.write(self.output, self.quick, _err)
         _out.print(table.validation(checks))
-        _out.print(f"the report is in {self.output / 'summary.md'}", highlight=False, soft_wrap=True)
+        _say(f"the report is in {self.output / 'summary.md'}")
         return 0 if all(check.passed for check in checks) else _FAILED
 
 
-_Command = (
+Command = Simulate | Render | Export | Validate | Report
+_COMMAND = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
     | Annotated[Render, tyro.conf.subcommand("render")]
     | Annotated[Export, tyro.conf.subcommand("export")]
@@ -147,23 +146,33 @@ _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; the exit status is 0, 1 (a check failed), 2 (an error) or 130 (interrupted)."""
-    command = tyro.cli(
-        _Command,
+    command = parse(arguments)
+    try:
+        return command.run()
+    except MjbeerError as error:
+        _say(f"mjbeer: {error}", "red")
+        return _WRONG
+    except KeyboardInterrupt:
+        _say("mjbeer: interrupted; what was written is whole", "red")
+        return _INTERRUPTED
+
+
+def parse(arguments: list[str] | None = None) -> Command:
+    """What a command line asks for; one that is not understood ends the program, with exit status 2."""
+    return tyro.cli(
+        _COMMAND,
         prog="mjbeer",
         description="The rolling half-full beer can as a MuJoCo model that can be trusted.",
         args=arguments,
         config=(*_STYLE, tyro.conf.FlagCreatePairsOff),
     )
-    try:
-        return command.run()
-    except MjbeerError as error:
-        _err.print(f"mjbeer: {error}", style="red", highlight=False, markup=False, soft_wrap=True)
-        return _WRONG
-    except KeyboardInterrupt:
-        _err.print("mjbeer: interrupted; what was written is whole", style="red", highlight=False)
-        return _INTERRUPTED
 
 
 def _warn(warnings: tuple[str, ...]) -> None:
     for each in warnings:
-        _err.print(f"not to be trusted: {each}", style="yellow", highlight=False, markup=False, soft_wrap=True)
+        _say(f"not to be trusted: {each}", "yellow")
+
+
+def _say(text: str, style: str = "") -> None:
+    """A line on standard error; names of files may have brackets in them, which are no markup."""
+    _err.print(text, style=style, highlight=False, markup=False, soft_wrap=True)

@@ -73,10 +73,10 @@ def integrate(
 
 
 @intrinsic
-def _call(typing_context, function, model, data):  # noqa: ANN001, ANN202, ARG001
+def _call(typing_context, function, model, data):
     """Call the C function at an address with two pointers; compiled code can be cached, as no address is in it."""
 
-    def generate(context, builder, signature, arguments):  # noqa: ANN001, ANN202, ARG001
+    def generate(context, builder, signature, arguments):
         pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
         function_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
         builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
@@ -86,7 +86,7 @@ def _call(typing_context, function, model, data):  # noqa: ANN001, ANN202, ARG00
 
 
 @njit(cache=True)
-def _slope(pointers, views, state, out):  # noqa: ANN001, ANN202
+def _slope(pointers, views, state, out):
     qpos, qvel, qacc = views
     n = qpos.size
     for i in range(n):
@@ -102,7 +102,7 @@ def _slope(pointers, views, state, out):  # noqa: ANN001, ANN202
 def _advance(
     pointers, views, state, slopes, times, samples, time, step, sample, steps,
     fixed, tolerance, scale, a, b, e3, e5, a_extra, d,
-):  # fmt: skip  # noqa: ANN001, ANN202
+):  # fmt: skip
     size = state.size
     new, work = np.empty(size), np.empty(size)
     weights = np.empty((7, size))
@@ -176,7 +176,7 @@ def _advance(
 
 
 @njit(cache=True)
-def _first_step(pointers, views, state, slopes, tolerance, scale, work):  # noqa: ANN001, ANN202
+def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     """Starting step size, Hairer's algorithm in section II.4."""
     size = state.size
     d0 = d1 = 0.0
@@ -199,7 +199,7 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):  # noqa
 
 
 @njit(cache=True)
-def _error(state, new, slopes, step, tolerance, scale, e3, e5):  # noqa: ANN001, ANN202
+def _error(state, new, slopes, step, tolerance, scale, e3, e5):
     fifth = third = 0.0
     for i in range(state.size):
         weight = tolerance * (scale[i] + max(abs(state[i]), abs(new[i])))
@@ -215,7 +215,7 @@ def _error(state, new, slopes, step, tolerance, scale, e3, e5):  # noqa: ANN001,
 
 
 @njit(cache=True)
-def _prepare(pointers, views, state, new, slopes, step, a_extra, d, work, weights):  # noqa: ANN001, ANN202
+def _prepare(pointers, views, state, new, slopes, step, a_extra, d, work, weights):
     """Polynomial of the continuous output over the step just made."""
     for row in range(3):
         for i in range(state.size):
@@ -237,7 +237,7 @@ def _prepare(pointers, views, state, new, slopes, step, a_extra, d, work, weight
 
 
 @njit(cache=True)
-def _interpolate(state, weights, part, out):  # noqa: ANN001, ANN202
+def _interpolate(state, weights, part, out):
     for i in range(state.size):
         value = 0.0
         for k in range(6, -1, -1):

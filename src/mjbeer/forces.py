@@ -29,7 +29,7 @@ class Forces:
         return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
 
 
-def accelerations(scene: Scene, phi: np.ndarray, phi_dot: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def accelerations(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
     """u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping, at given phi and phi_dot."""
     turning = scene.oscillator.acceleration(phi, phi_dot)
     if scene.attachment == "frozen":
@@ -41,7 +41,7 @@ def accelerations(scene: Scene, phi: np.ndarray, phi_dot: np.ndarray) -> tuple[n
     return along / rolling, turning
 
 
-def rolling_forces(scene: Scene, phi: np.ndarray, phi_dot: np.ndarray) -> Forces:
+def rolling_forces(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> Forces:
     """N and F [N] that rolling without slipping needs at `phi` [rad] and `phi_dot` [rad/s]."""
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot)
     moment, weight = scene.load.mass * scene.load.offset, scene.mass * scene.gravity

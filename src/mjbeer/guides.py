@@ -1,4 +1,4 @@
-"""What explains a picture: which way is down, how steep the incline is, the time and the angle phi."""
+"""What explains a picture: which way is down, how steep the incline is, and what moves."""
 
 import functools
 import math
@@ -10,22 +10,15 @@ import mujoco
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from mjbeer import templates
 from mjbeer.can import RADIUS
 from mjbeer.scene import Scene
 from mjbeer.view import View
 
 _INK = (40, 50, 65)
 _PAPER = (255, 255, 255, 200)
-_CAPTIONS = {
-    "sliding": "beer sliding in a can",
-    "frozen": "beer frozen to a can",
-    "pendulum": "pendulum in a wheel",
-    "hoop": "weight on a hoop's rim",
-}
 _FRONT = 0.0155
 """How far before the can's near end the level line is [m]: just before the board."""
-_UNDERSIDE = 0.0117
+_UNDERSIDE = 0.01152
 """Depth of the board's underside [m]."""
 _DEPTH = 0.15
 """How far before the camera the arrow is [m]: before all else."""
@@ -47,7 +40,7 @@ class Slope:
     @classmethod
     def of(cls, scene: Scene, view: View, axis: np.ndarray) -> Self:
         """The line for a scene as drawn, with the can's axis at a point."""
-        unit = max(RADIUS, 0.12 * view.depth(axis) * view.tangent[1])
+        unit = max(RADIUS, 0.2 * view.depth(axis) * view.tangent[1])
         sine, cosine, uphill = math.sin(scene.incline), math.cos(scene.incline), -math.copysign(1.0, scene.incline)
         along = -uphill * min(1.7, 1.2 / max(abs(sine), 0.1)) * unit
         below = RADIUS + _UNDERSIDE
@@ -71,10 +64,8 @@ def draw(picture: mujoco.MjvScene, scene: Scene, view: View, axis: np.ndarray) -
             _connect(picture, mujoco.mjtGeom.mjGEOM_CAPSULE, 0.015 * slope.unit, start, end)
 
 
-def write(
-    pixels: np.ndarray, scene: Scene, view: View, axis: np.ndarray, time: float, phi: float, speed: float
-) -> np.ndarray:
-    """The picture with its texts: `time` [s], `phi` [rad], and what belongs to the guides."""
+def write(pixels: np.ndarray, scene: Scene, view: View, axis: np.ndarray, texts: tuple[str, str, str]) -> np.ndarray:
+    """The picture with the names of the guides, and three texts: a title, and two that change under it."""
     image = Image.fromarray(pixels)
     ink = ImageDraw.Draw(image, "RGBA")
     unit = image.height / 36
@@ -87,15 +78,13 @@ def write(
     text((column + unit, row), "g", 1.7)
     if scene.incline != 0:
         slope = Slope.of(scene, view, axis)
-        column, row = view.pixel(slope.at(2, slope.angle / 2))
-        words, anchor = _degrees(f"{math.degrees(scene.incline):.3g}"), "rm" if slope.uphill < 0 else "lm"
-        text((column + 0.6 * unit * slope.uphill, row), words, 1.5, anchor)
-    caption = _CAPTIONS[templates.name(scene)] + ("" if speed == 1 else f", {speed:g} x speed")
-    width = max(19 * unit, ink.textlength(caption, _font(1.4 * unit)))
+        words = degrees(scene.incline, ".3g")
+        text(view.pixel(slope.at(2.45, slope.angle / 2)), words, 1.5, "mm")
+    width = max(19 * unit, ink.textlength(texts[0], _font(1.4 * unit)))
     ink.rounded_rectangle((unit, unit, width + 2.6 * unit, 6 * unit), 0.5 * unit, fill=_PAPER)
-    text((1.8 * unit, 2.3 * unit), caption, 1.4)
-    text((1.8 * unit, 4.5 * unit), f"t = {time:.2f} s", 1.7)
-    text((9.8 * unit, 4.5 * unit), _degrees(f"phi = {math.degrees(phi):.1f}"), 1.7)
+    text((1.8 * unit, 2.3 * unit), texts[0], 1.4)
+    text((1.8 * unit, 4.5 * unit), texts[1], 1.7)
+    text((9.8 * unit, 4.5 * unit), texts[2], 1.7)
     return np.array(image)
 
 
@@ -115,8 +104,9 @@ def _connect(picture: mujoco.MjvScene, kind: mujoco.mjtGeom, width: float, start
     picture.ngeom += 1
 
 
-def _degrees(number: str) -> str:
-    return f"{number}\N{DEGREE SIGN}"
+def degrees(angle: float, form: str) -> str:
+    """An `angle` [rad] in degrees, in a format."""
+    return f"{math.degrees(angle):{form}}\N{DEGREE SIGN}"
 
 
 @functools.cache

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from mjbeer.distance import farthest
 from mjbeer.exact import exact
 from mjbeer.model import DOP853
 from mjbeer.scene import Scene
@@ -18,8 +19,7 @@ def phi_error(trajectory: Trajectory, until: float = math.inf) -> float:
     """
     times = trajectory.time[trajectory.time <= until]
     truth = exact(trajectory.scene, times, trajectory.phi[0], trajectory.phi_dot[0]).phi
-    error = np.abs(trajectory.phi[: len(times)] - truth)
-    return float(np.max(error / np.maximum(1, np.abs(truth - truth[0]))))
+    return farthest(trajectory.phi[: len(times)], truth)
 
 
 def swing_period(trajectory: Trajectory) -> float:

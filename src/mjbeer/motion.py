@@ -20,6 +20,7 @@ from mjbeer.clock import Clock
 from mjbeer.exceptions import NoLibrationError
 from mjbeer.oscillator import Oscillator, sinc, sinc_gap
 
+_HARMONIC = 1e-8  # share of the well up to which the period is that of small swings, to an eps
 _ROUNDING = 4 * float(np.finfo(float).eps)  # a start this near the barrier is on it, for all that doubles can tell
 
 
@@ -46,14 +47,14 @@ class Libration:
 
     def phase(self, phi: float, phi_dot: float) -> float:
         """The phase psi at `phi` [rad] and `phi_dot` [rad/s]; beside a turning point it is phi_dot that tells."""
-        rate = float(self._rate(np.float64(phi - self.low), np.float64(self.high - phi)))
+        rate = float(self._rate(phi - self.low, self.high - phi))
         return math.atan2(phi - self.centre, phi_dot * rate)
 
     def period(self) -> float:
         """Time of one full swing [s]."""
         return Clock(self.rate, 0.0, 2 * math.pi).period
 
-    def _rate(self, above_low: np.ndarray, below_high: np.ndarray) -> np.ndarray:
+    def _rate(self, above_low: np.ndarray | float, below_high: np.ndarray | float) -> np.ndarray:
         # dt/dpsi = sqrt(J / 2D) with E - V = p q D, p and q the distances from the ends. The chord of V from an
         # end gives D well on that side; the weights q^2 (q + 3p) and p^2 (p + 3q) lead over from one to the other.
         p, q = above_low, below_high
@@ -68,7 +69,7 @@ def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libra
     `phi` lies in the well around the equilibrium, and the slope is not negative.
     """
     rest, top = oscillator.equilibrium(), oscillator.barrier()
-    if oscillator.surplus(np.float64(rest), phi, kinetic) <= 0:
+    if oscillator.surplus(rest, phi, kinetic) <= 0:
         return None
     low = high = phi
     if kinetic > 0 or phi < rest:
@@ -78,16 +79,18 @@ def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libra
         low, high = rest - half_width, rest + half_width
     elif kinetic > 0 or phi > rest:
         low = oscillator.turning_point(phi, kinetic, top - 2 * math.pi, rest)
-    return Libration(oscillator, low, high)
+    return Libration(oscillator, low, high) if low < high else None
 
 
 def period(oscillator: Oscillator, amplitude: float) -> float:
     """Period [s] of the swing released from rest `amplitude` [rad] from the equilibrium."""
-    start = oscillator.equilibrium() + amplitude
+    rest = oscillator.equilibrium()
+    start = rest + amplitude
     oscillator.require_libration(start)
+    low, high = oscillator.separatrix()
     if oscillator.slope < 0:
         oscillator, start = oscillator.mirrored(), -start
-    swing = libration(oscillator, start)
+    swing = libration(oscillator, start) if abs(amplitude) > _HARMONIC * min(high - rest, rest - low) else None
     return 2 * math.pi / oscillator.frequency() if swing is None else swing.period()
 
 
@@ -100,7 +103,7 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
     if oscillator.slope < 0:
         phi, phi_dot = solve(oscillator.mirrored(), time, -phi0, -phi_dot0)
         return -phi, -phi_dot
-    kinetic = float(oscillator.inertia(np.float64(phi0))) * phi_dot0**2 / 2
+    kinetic = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2
     if oscillator.slope < oscillator.depth:
         # Count whole turns off, so that the start is in the well around the equilibrium.
         top = oscillator.barrier()
@@ -108,7 +111,7 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
         start = phi0 - turns
         if kinetic == 0 and abs(math.remainder(phi0 - top, 2 * math.pi)) <= _ROUNDING * max(1, abs(phi0)):
             return _rest(time, phi0)
-        spare = oscillator.surplus(np.float64(top), start, kinetic)
+        spare = oscillator.surplus(top, start, kinetic)
         if spare < 0:
             swing = libration(oscillator, start, kinetic)
             phi, phi_dot = _rest(time, start) if swing is None else _librate(swing, time, start, phi_dot0)
@@ -118,10 +121,15 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
                 f"phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s lies exactly on the separatrix: the motion "
                 "takes for ever to reach the unstable equilibrium"
             )
-    if kinetic == 0 and (oscillator.slope == 0 or oscillator.acceleration(np.float64(phi0), np.float64(0)) == 0):
+    if kinetic == 0 and (oscillator.slope == 0 or oscillator.acceleration(phi0, 0) == 0):
         return _rest(time, phi0)
     # Within about a radian of its turning point a run needs the phase that is smooth there.
     if oscillator.slope == 0 or (phi_dot0 > 0 and kinetic > 2 * oscillator.depth + oscillator.slope):
+        return _run(oscillator, time, phi0, kinetic, math.copysign(1.0, phi_dot0))
+    # Thrown uphill so fast that it will not have turned by then, it is a run as well; the turn may be 1e12 rad away.
+    # The clock looks ahead to up to three times the angle it needs.
+    reach = math.sqrt(2 * (kinetic + 2 * oscillator.depth) / oscillator.base) * float(np.max(time, initial=0.0))
+    if kinetic > 2 * oscillator.depth + oscillator.slope * (3 * reach + 4):
         return _run(oscillator, time, phi0, kinetic, math.copysign(1.0, phi_dot0))
     return _roll_down(oscillator, time, phi0, phi_dot0, kinetic)
 
@@ -152,7 +160,7 @@ def _roll_down(
 ) -> tuple[np.ndarray, np.ndarray]:
     turn = phi0 if kinetic == 0 else _uphill_turn(oscillator, phi0, kinetic)
 
-    def pace(phi: np.ndarray, rolled: np.ndarray) -> np.ndarray:  # dt/dpsi, `rolled` being psi^2
+    def pace(phi: np.ndarray | float, rolled: np.ndarray | float) -> np.ndarray:  # dt/dpsi, `rolled` being psi^2
         fall = _chord(oscillator, turn, 1, rolled)
         if oscillator.slope < oscillator.depth:  # nearer to a barrier than to the turn, its surplus is the better one
             past = np.remainder(phi - oscillator.barrier() + math.pi, 2 * math.pi) - math.pi
@@ -161,7 +169,7 @@ def _roll_down(
         return np.sqrt(2 * oscillator.inertia(phi) / fall)
 
     # From phi_dot0: phi0 - turn may have no digits. And psi - psi0 is the clock's phase: psi0 may be large.
-    psi0 = phi_dot0 / 2 * float(pace(np.float64(phi0), np.float64(phi0 - turn)))
+    psi0 = phi_dot0 / 2 * float(pace(phi0, phi0 - turn))
 
     def angle(phase: np.ndarray) -> np.ndarray:
         return phi0 + phase * (2 * psi0 + phase)
@@ -180,13 +188,13 @@ def _uphill_turn(oscillator: Oscillator, phi0: float, kinetic: float) -> float:
         return oscillator.turning_point(phi0, kinetic, outer, phi0)
     top, rest = oscillator.barrier(), oscillator.equilibrium()
     top -= 2 * math.pi * math.ceil((top - phi0) / (2 * math.pi))
-    spare = float(oscillator.surplus(np.float64(top), phi0, kinetic))
+    spare = float(oscillator.surplus(top, phi0, kinetic))
     top -= 2 * math.pi * max(0, math.ceil(spare / (2 * math.pi * oscillator.slope)))
     well = rest + 2 * math.pi * math.ceil((top - rest) / (2 * math.pi))
     return oscillator.turning_point(phi0, kinetic, top, min(phi0, well))
 
 
-def _chord(oscillator: Oscillator, end: float, sign: int, length: np.ndarray) -> np.ndarray:
+def _chord(oscillator: Oscillator, end: float, sign: int, length: np.ndarray | float) -> np.ndarray:
     """(V(end) - V(end + sign length)) / length [N m], smooth through length 0."""
     pull = sign * (oscillator.force(end) * sinc(length) + oscillator.slope * sinc_gap(length))
     return pull - oscillator.depth * np.cos(end - oscillator.bottom) * length / 2 * sinc(length / 2) ** 2

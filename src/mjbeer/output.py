@@ -2,34 +2,35 @@
 
 import os
 import pathlib
-import tempfile
-from collections.abc import Iterator
+import secrets
+import sys
+from collections.abc import Generator
 from contextlib import contextmanager
 
 from mjbeer.exceptions import OutputError
 
 
 @contextmanager
-def whole(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
+def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     """A temporary name beside `path` to write to; it becomes `path` when all went well, and goes otherwise.
 
     Raises:
-      OutputError: if the folder cannot be made or written to, or the disk is full.
+      OutputError: if `path` is a folder or a device, its folder cannot be made or written to, or the disk is full.
     """
-    target = pathlib.Path(path)
+    target = pathlib.Path(os.path.realpath(path))  # a link stays, and what it points to is replaced
     try:
+        if target.exists() and not target.is_file():
+            raise OutputError(f"cannot write {path}: it is {'a folder' if target.is_dir() else 'not a regular file'}")
+        temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
         target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
-        os.close(handle)
+        temporary.touch(exist_ok=False)
     except OSError as error:
-        raise OutputError(f"cannot write {target}: {error.strerror or error}") from error
-    temporary = pathlib.Path(name)
+        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
     try:
         yield temporary
-        temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
     except OSError as error:
-        raise OutputError(f"cannot write {target}: {error.strerror or error}") from error
+        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -44,8 +45,16 @@ def write(path: str | os.PathLike[str], text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def _umask() -> int:
-    """The process's mask, which can only be read by setting it."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def show(text: str) -> None:
+    """Write to standard output, all of it before this returns.
+
+    Raises:
+      OutputError: if it cannot be written, as into a pipe that nobody reads any more.
+    """
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except OSError as error:
+        # What is left in the buffer would fail once more, with a traceback, when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error

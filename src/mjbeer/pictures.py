@@ -1,12 +1,13 @@
 """The pictures of a trajectory, one after the other."""
 
+import math
 from collections.abc import Generator
 
 import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from mjbeer import checks, display, guides
+from mjbeer import checks, display, guides, templates
 from mjbeer.canvas import Canvas
 from mjbeer.exceptions import ParameterError
 from mjbeer.trajectory import Trajectory
@@ -14,6 +15,12 @@ from mjbeer.view import View
 
 CAMERAS = ("side", "quarter", "overview")
 """From the can's open end; from above and downhill; and from afar, where the whole motion is in the picture."""
+_TITLES = {
+    "sliding": "beer sliding in a can",
+    "frozen": "beer frozen to a can",
+    "pendulum": "pendulum in a wheel",
+    "hoop": "weight on a hoop's rim",
+}
 _LARGEST = 4096
 """Largest width and height [pixels]: what H.264 takes."""
 
@@ -42,12 +49,16 @@ def _draw(
     scene = trajectory.scene
     model = display.display_model(scene, (trajectory.u.min(), trajectory.u.max()), width / height)
     data = mujoco.MjData(model)
+    title = _TITLES[templates.name(scene)] + ("" if speed == 1 else f", {speed:g} x speed")
+    duration = trajectory.time[-1] - trajectory.time[0]
+    digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
     with Canvas(model, width, height) as canvas:
         for time, (u, phi, roll, lift) in zip(times, coordinates(trajectory, times), strict=True):
             display.pose(model, data, scene, u, phi, roll, lift)
             view, axis = View.of(model, data, camera, width, height), data.body("can").xpos
             pixels = canvas.draw(data, camera, lambda picture: guides.draw(picture, scene, view, axis))  # noqa: B023
-            yield guides.write(pixels, scene, view, axis, time, phi, speed)
+            texts = title, f"t = {time:.{digits}f} s", f"phi = {guides.degrees(phi, '.1f')}"
+            yield guides.write(pixels, scene, view, axis, texts)
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:

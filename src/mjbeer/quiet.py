@@ -1,7 +1,7 @@
 """Keep MuJoCo's log off the terminal and the disk while a run reports its own failure."""
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 
 import mujoco
@@ -11,7 +11,7 @@ _inside: list[tuple[bool, bool]] = []
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
+def quiet() -> Generator[None]:
     """Neither print MuJoCo's warnings nor write MUJOCO_LOG.TXT; errors are raised as ever.
 
     The setting is the process's, so runs in several threads share it until the last one ends.

@@ -61,7 +61,7 @@ def check(console: Console) -> list[Check]:
     """Run every row of the validation table, with a progress bar on `console`."""
     rows = validation.rows()
     done = []
-    with Progress(console=console, transient=True) as progress:
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("validating", total=len(rows))
         for row in rows:
             progress.update(task, description=f"{row.quantity} ({row.by})")
@@ -73,7 +73,7 @@ def check(console: Console) -> list[Check]:
 def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
     """Write validation.json, a video and a picture of each scene, and summary.md into a folder.
 
-    Every file appears whole or not at all; the summary comes last.
+    Every file appears whole or not at all; the summary comes last, and that of an earlier report goes first.
 
     Raises:
       OutputError: if the folder cannot be written to.
@@ -83,12 +83,13 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
 
     checks = check(console)
     output.write(folder / "validation.json", table.validation_json(checks))
+    (folder / "summary.md").unlink(missing_ok=True)
     size = {"width": 640, "height": 360, "fps": 30} if quick else {"width": 1280, "height": 720, "fps": 60}
     for film in _FILMS:
         trajectory = film.trajectory()
         render(trajectory, folder / f"{film.name}.mp4", speed=film.speed, **size)
         save_frame(trajectory, 0.3 * float(trajectory.time[-1]), folder / f"{film.name}.png")
-        console.print(f"wrote {folder / film.name}.mp4", highlight=False, soft_wrap=True)
+        console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
     output.write(folder / "summary.md", _summary(checks))
     return checks
 

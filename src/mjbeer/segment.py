@@ -40,10 +40,10 @@ def segment(fill: float) -> Segment:
     beta = 2 * math.atan2(math.sqrt(fill), math.sqrt(1 - fill))
     sine = 2 * math.sqrt(fill * (1 - fill))
     angle = beta / 2 * (1 + _NODES)
-    strip = beta * _WEIGHTS * np.sin(angle) ** 2
+    strip = _WEIGHTS * (np.sin(angle) / beta) ** 2  # over beta^3, which may underflow
     below = 2 * np.sin(angle / 2) ** 2  # 1 - cos(angle): depth under the top of the circle
-    area = float(np.sum(strip))
-    offset = 2 * sine**3 / (3 * area)
-    height = float(np.sum(strip * below)) / area - below  # strip's y minus the centroid's
-    inertia = float(np.sum(strip * (np.sin(angle) ** 2 / 3 + height**2))) / area
-    return Segment(beta, area, offset, inertia)
+    total = float(np.sum(strip))
+    offset = 2 * (sine / beta) ** 3 / (3 * total)
+    height = float(np.sum(strip * below)) / total - below  # strip's y minus the centroid's
+    inertia = float(np.sum(strip * (np.sin(angle) ** 2 / 3 + height**2))) / total
+    return Segment(beta, beta**3 * total, offset, inertia)

@@ -28,7 +28,9 @@ def csv(trajectory: Trajectory) -> str:
         "friction force needed [N]": trajectory.forces.friction,
     }
     text = io.StringIO()
-    np.savetxt(text, np.column_stack(list(columns.values())), fmt="%.17g", delimiter=",", header=",".join(columns), comments="")
+    np.savetxt(
+        text, np.column_stack(list(columns.values())), fmt="%.17g", delimiter=",", header=",".join(columns), comments=""
+    )
     return text.getvalue()
 
 
@@ -37,13 +39,14 @@ def summary(trajectory: Trajectory) -> Table:
     table = Table(show_header=False, box=None)
     radius = trajectory.scene.can.radius
     parted, needed = trajectory.rolls_until(), trajectory.forces.needed
+    slip = trajectory.slip / radius
     facts = {
         "rolling, integrator": f"{trajectory.rolling}, {trajectory.integrator}",
         "samples": f"{len(trajectory.time)} to t = {trajectory.time[-1]:.6g} s",
-        "phi at the end": f"{math.degrees(trajectory.phi[-1]):.6f} degrees",
+        "phi at the end": f"{math.degrees(trajectory.phi[-1]):.9g} degrees",
         "u at the end": f"{trajectory.u[-1]:.9g} m",
         "energy drift": f"{trajectory.energy_drift:.2e} of the swing's own",
-        "slip, largest and final": f"{np.abs(trajectory.slip).max() / radius:.2e}, {trajectory.slip[-1] / radius:.2e} radii",
+        "slip, largest and final": f"{np.abs(slip).max():.2e}, {slip[-1]:.2e} radii",
         "lift, lowest and highest": f"{trajectory.lift.min() / radius:.2e}, {trajectory.lift.max() / radius:.2e} radii",
         "normal force needed": f"{trajectory.forces.normal.min():.4g} to {trajectory.forces.normal.max():.4g} N",
         "friction coefficient needed": f"{needed.max():.4g}",
@@ -82,6 +85,11 @@ def validation_json(checks: list[Check]) -> str:
     from importlib.metadata import version
 
     versions = {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
-    rows = [{**dataclasses.asdict(check), "passed": check.passed} for check in checks]
+    rows = [{**dataclasses.asdict(check), "error": _number(check.error), "passed": check.passed} for check in checks]
     passed = all(check.passed for check in checks)
-    return json.dumps({"versions": versions, "passed": passed, "checks": rows}, indent=2) + "\n"
+    return json.dumps({"versions": versions, "passed": passed, "checks": rows}, indent=2, allow_nan=False) + "\n"
+
+
+def _number(value: float) -> float | None:
+    """JSON has no number for what is infinite or none."""
+    return value if math.isfinite(value) else None

@@ -65,7 +65,8 @@ def _oscillations() -> Iterator[Row]:
     for name, scene in (("massless can, eq. (1)", beer), ("metal can, footnote 4", metal(sliding))):
         yield Row(
             f"steady acceleration, {name}", "sliding at equilibrium, reduced, RK4, 1 ms", 1e-10, "relative",
-            "rounding: RK4 is exact for a constant force", lambda scene=scene: _steady(scene) / scene.acceleration() - 1,
+            "rounding: RK4 is exact for a constant force",
+            lambda scene=scene: _steady(scene) / scene.acceleration() - 1,
         )  # fmt: skip
 
 

@@ -28,7 +28,7 @@ def render(
 
     `fps` are frames per second of the video; `speed` is 1 for real time, 0.25 for four times slower; `camera`
     is "side" (the can's open end), "quarter" (from above) or "overview" (the whole way). A bar on standard
-    error shows the `progress`.
+    error, where that is a terminal, shows the `progress`.
 
     Raises:
       ParameterError: on a parameter that is not allowed.
@@ -41,7 +41,8 @@ def render(
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
     times = frame_times(trajectory, fps, speed)
     drawn = pictures.draw(trajectory, times, width, height, camera, speed)
-    bar = Progress(console=Console(stderr=True), transient=True, disable=not progress)
+    console = Console(stderr=True)
+    bar = Progress(console=console, transient=True, disable=not (progress and console.is_terminal))
     with output.whole(target) as temporary, contextlib.closing(drawn), bar:
         shown = bar.track(drawn, len(times), description=f"drawing {target.name}")
         encoder.encode(shown, temporary, int(width), int(height), fps)

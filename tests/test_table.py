@@ -1,0 +1,117 @@
+"""Tables: a trajectory as CSV, and the validation table for the terminal, Markdown and JSON."""
+
+import io
+import json
+import math
+from importlib.metadata import version
+
+import numpy as np
+import pytest
+from rich.console import Console
+from rich.table import Table
+
+from mjbeer import Scene, exact, frozen, hoop, simulate, table
+from mjbeer.row import Check
+from tests.scenes import SCENES
+
+PASSED = Check("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
+FAILED = Check("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
+UNKNOWN = Check("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
+
+
+def shown(content: Table) -> str:
+    console = Console(file=io.StringIO(), width=200)
+    console.print(content)
+    return console.file.getvalue()
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_csv_gives_every_number_back_to_the_last_bit(scene: Scene) -> None:
+    run = simulate(scene, 0.05, 1.0, 2.0)
+    header, *_ = table.csv(run).splitlines()
+    rows = np.loadtxt(io.StringIO(table.csv(run)), delimiter=",", skiprows=1)
+    columns = {
+        "time [s]": run.time,
+        "u [m]": run.u,
+        "phi [rad]": run.phi,
+        "u_dot [m/s]": run.u_dot,
+        "phi_dot [rad/s]": run.phi_dot,
+        "roll [rad]": run.roll,
+        "lift [m]": run.lift,
+        "slip [m]": run.slip,
+        "energy [J]": run.energy,
+        "normal force needed [N]": run.forces.normal,
+        "friction force needed [N]": run.forces.friction,
+    }
+    assert header.split(",") == list(columns)
+    assert rows.shape == (51, len(columns))
+    for column, values in zip(rows.T, columns.values(), strict=True):
+        assert np.array_equal(column, values)
+
+
+def test_the_summary_says_what_a_run_says_about_itself() -> None:
+    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
+    text = " ".join(shown(table.summary(run)).split())
+    assert "rolling, integrator contact, RK4" in text
+    assert "samples 501 to t = 0.5 s" in text
+    assert f"phi at the end {math.degrees(run.phi[-1]):.9g} degrees" in text
+    assert f"u at the end {run.u[-1]:.9g} m" in text
+    assert f"energy drift {run.energy_drift:.2e}" in text
+    assert f"{run.lift.min() / 0.033:.2e}, {run.lift.max() / 0.033:.2e} radii" in text
+    assert f"friction coefficient needed {run.forces.needed.max():.4g}" in text
+    assert "can roll without slipping to the end" in text
+    assert "estimated error" not in text
+
+
+def test_the_summary_has_the_estimated_error_of_a_tolerance() -> None:
+    run = simulate(frozen(), 0.5, 1.0, tolerance=1e-9)
+    assert f"estimated error of phi and u/a {run.error_estimate:.2e} rad" in " ".join(shown(table.summary(run)).split())
+
+
+def test_the_summary_says_when_the_incline_would_have_to_pull() -> None:
+    fall = exact(hoop(), np.linspace(0, 0.5, 1001), 3.0)
+    assert f"until t = {fall.rolls_until():.6g} s (then N < 0)" in shown(table.summary(fall))
+
+
+def test_the_terminal_table_has_a_verdict_for_every_row() -> None:
+    lines = shown(table.validation([PASSED, FAILED, UNKNOWN])).splitlines()
+    (passed,) = (line for line in lines if PASSED.quantity in line)
+    (failed,) = (line for line in lines if FAILED.quantity in line)
+    (unknown,) = (line for line in lines if UNKNOWN.quantity in line)
+    assert all(each in passed for each in ("frozen, reduced", "1.5e-09", "1.0e-07 rad", "pass"))
+    assert all(each in failed for each in ("hoop, contact", "2.0e+00", "0.0e+00", "FAIL"))
+    assert all(each in unknown for each in ("nan", "5.0e-01 degrees", "FAIL"))
+
+
+def test_markdown() -> None:
+    assert table.validation_markdown([PASSED, FAILED]) == (
+        "| check | by | error | at most | what dominates the error |\n"
+        "|---|---|---|---|---|\n"
+        "| phi over 2 s | frozen, reduced | 1.5e-09 | 1.0e-07 rad | RK4 |\n"
+        "| hops | hoop, contact | 2.0e+00 **FAIL** | 0.0e+00 | it hops or not |\n"
+    )
+
+
+def test_json_has_versions_verdict_and_rows() -> None:
+    content = json.loads(table.validation_json([PASSED, FAILED]))
+    assert content["versions"] == {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
+    assert content["passed"] is False
+    assert content["checks"] == [
+        {
+            "quantity": "phi over 2 s", "by": "frozen, reduced", "error": 1.5e-9, "bound": 1e-7, "unit": "rad",
+            "reason": "RK4", "passed": True,
+        },
+        {
+            "quantity": "hops", "by": "hoop, contact", "error": 2.0, "bound": 0.0, "unit": "",
+            "reason": "it hops or not", "passed": False,
+        },
+    ]  # fmt: skip
+    assert json.loads(table.validation_json([PASSED]))["passed"] is True
+
+
+def test_json_of_an_error_that_is_no_number_is_still_json() -> None:
+    # Python would write NaN, which no other reader of JSON takes.
+    text = table.validation_json([UNKNOWN])
+    (row,) = json.loads(text, parse_constant=pytest.fail)["checks"]
+    assert row["error"] is None
+    assert row["passed"] is False

@@ -1,0 +1,333 @@
+"""Videos are whole or not there, as long as they should be, and show what theory says."""
+
+import gc
+import math
+import os
+import pathlib
+import re
+import subprocess
+import weakref
+from collections.abc import Callable, Iterator, Sequence
+
+import imageio_ffmpeg
+import mujoco
+import numpy as np
+import pytest
+from PIL import Image
+
+from mjbeer import Can, Scene, Trajectory, display, exact, frozen, hoop, pictures, sliding, video
+from mjbeer.can import RADIUS
+from mjbeer.display import display_model
+from mjbeer.exceptions import OutputError, ParameterError, RenderingError
+from mjbeer.segment import segment
+from mjbeer.view import View
+
+SIZE = {"width": 320, "height": 180}
+
+
+def motion(duration: float = 0.5, scene: Scene | None = None, phi0: float = 1.0) -> Trajectory:
+    return exact(frozen() if scene is None else scene, np.linspace(0, duration, 51), phi0)
+
+
+def decode(path: pathlib.Path, width: int = 320, height: int = 180) -> tuple[str, np.ndarray]:
+    """What ffmpeg says about a video, and its frames."""
+    command = [imageio_ffmpeg.get_ffmpeg_exe(), "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    done = subprocess.run(command, capture_output=True, check=True)
+    return done.stderr.decode(), np.frombuffer(done.stdout, np.uint8).reshape(-1, height, width, 3)
+
+
+def blank(alive: list[int], frames: int = 40, error: BaseException | None = None) -> Iterator[np.ndarray]:
+    """Frames that nothing has drawn; `alive` gets how many of them exist when each is asked for."""
+    made: list[weakref.ref] = []
+    for _ in range(frames):
+        alive.append(sum(each() is not None for each in made))
+        frame = np.full((SIZE["height"], SIZE["width"], 3), 200, np.uint8)
+        made.append(weakref.ref(frame))
+        yield frame
+        del frame
+    if error is not None:
+        raise error
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Let videos have blank frames, which take no time."""
+    alive: list[int] = []
+    monkeypatch.setattr(pictures, "draw", lambda trajectory, times, *_: blank(alive, len(times)))
+    return alive
+
+
+@pytest.fixture
+def ffmpeg(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch):
+    """Put a script in the place of ffmpeg."""
+
+    def put(text: str) -> None:
+        program = tmp_path_factory.mktemp("bin") / "ffmpeg"
+        program.write_text(text)
+        program.chmod(0o755)
+        monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(program))
+
+    return put
+
+
+def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path) -> None:
+    moved = motion()
+    video.render(moved, tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
+    assert os.listdir(tmp_path) == ["can.mp4"]
+    about, frames = decode(tmp_path / "can.mp4")
+    assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.* 320x180.* 20 fps", about, re.DOTALL)
+    assert frames.shape == (10, 180, 320, 3)
+    # The last frame is that of its time, but for what H.264 leaves out.
+    off = [np.abs(frames[-1] - video.frame(moved, frame / 20, **SIZE).astype(float)).mean() for frame in (9, 8, 0)]
+    print(off)
+    assert 2 * off[0] < min(off[1:])
+
+
+@pytest.mark.parametrize(
+    ("speed", "fps", "expected"), [(1, 20, 10), (0.5, 20, 20), (2, 20, 5), (1, 40, 20), (100, 20, 1)]
+)
+def test_speed_stretches_time(
+    speed: float, fps: float, expected: int, undrawn: list[int], tmp_path: pathlib.Path
+) -> None:
+    moved = motion()
+    times = video.frame_times(moved, fps, speed)
+    assert len(times) == expected
+    assert times[0] == 0
+    assert np.allclose(np.diff(times), speed / fps)
+    assert times[-1] < moved.time[-1]
+    video.render(moved, tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
+    assert len(decode(tmp_path / "can.mp4")[1]) == expected
+
+
+def test_a_trajectory_that_starts_late_is_shown_from_there() -> None:
+    moved = exact(frozen(), np.linspace(1, 2, 11), 1.0)
+    assert video.frame_times(moved, 10, 1.0) == pytest.approx(np.linspace(1, 1.9, 10))
+
+
+def test_frames_are_never_all_held(undrawn: list[int], tmp_path: pathlib.Path) -> None:
+    video.render(motion(2.0), tmp_path / "can.mp4", fps=30, progress=False, **SIZE)
+    assert len(undrawn) == 60
+    assert max(undrawn) <= 2
+
+
+def test_drawn_frames_are_never_all_held() -> None:
+    made: list[weakref.ref] = []
+    for picture in pictures.draw(motion(), np.linspace(0, 0.4, 5), 64, 36):
+        made.append(weakref.ref(picture))
+        assert sum(each() is not None for each in made) <= 2
+
+
+def test_a_bar_shows_the_progress(
+    undrawn: list[int], tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")  # rich then takes standard error for a terminal
+    video.render(motion(), tmp_path / "can.mp4", fps=20, **SIZE)
+    shown = capsys.readouterr()
+    assert "drawing can.mp4" in shown.err
+    assert "100%" in shown.err
+    assert shown.out == ""
+
+
+def test_no_bar_where_none_is_wanted_or_seen(
+    undrawn: list[int], tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    video.render(motion(), tmp_path / "can.mp4", fps=20, **SIZE)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    video.render(motion(), tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"path": "can.avi"}, "must end in .mp4, got 'can.avi'"),
+        ({"width": 321}, "width must be even, as H.264 wants it, got 321"),
+        ({"height": 0}, "height must be greater than 0, got 0"),
+        ({"height": 99.5}, "height must be even"),
+        ({"width": 1e5}, "width must be a whole number of pixels up to 4096, got 100000.0"),
+        ({"width": "wide"}, "width must be a finite number, got 'wide'"),
+        ({"fps": 0}, r"fps must be greater than 0 \[1/s\], got 0"),
+        ({"speed": 0}, "speed must be greater than 0, got 0"),
+        ({"speed": -1}, "speed must be greater than 0, got -1"),
+        ({"speed": math.nan}, "speed must be a finite number, got nan"),
+        ({"camera": "top"}, "camera must be one of 'side', 'quarter', 'overview'; got 'top'"),
+    ],
+)
+def test_bad_input_says_what_is_allowed(
+    arguments: dict, message: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ParameterError, match=message):
+        video.render(motion(), **{"path": "can.mp4", "progress": False, **SIZE, **arguments})
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_folder_is_not_overwritten(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "can.mp4").mkdir()
+    with pytest.raises(OutputError, match="is a folder"):
+        video.render(motion(), tmp_path / "can.mp4", progress=False)
+
+
+def test_where_no_file_can_be_is_an_error(undrawn: list[int], tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="cannot write"):
+        video.render(motion(), tmp_path / "file" / "can.mp4", progress=False, **SIZE)
+
+
+# mediapy leaves the pipe of a failed ffmpeg to the garbage collector, which pytest hears of.
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.parametrize(
+    ("script", "reason"),
+    [
+        ("#!/bin/sh\necho out of tune >&2\nexit 3\n", "out of tune"),
+        ("#!/bin/sh\ncat > /dev/null\necho out of tune >&2\nexit 3\n", "out of tune"),
+        ("#!/bin/sh\ncat > /dev/null\n", "it ended well, but wrote nothing"),
+        ("no program", "Exec format error"),
+    ],
+)
+def test_a_broken_ffmpeg_leaves_nothing_and_says_why(
+    script: str, reason: str, undrawn: list[int], ffmpeg, tmp_path: pathlib.Path
+) -> None:
+    ffmpeg(script)
+    with pytest.raises(RenderingError, match=reason) as caught:
+        video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
+    assert "pip install --force-reinstall imageio-ffmpeg" in str(caught.value)
+    assert os.listdir(tmp_path) == []
+    del caught
+    gc.collect()
+
+
+def test_no_ffmpeg_says_so(undrawn: list[int], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "nowhere"))
+    with pytest.raises(RenderingError, match="nowhere' is not found"):
+        video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), RuntimeError("no more"), MemoryError()])
+def test_an_interrupted_video_leaves_what_was_there(
+    error: BaseException, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pictures, "draw", lambda *_: blank([], 5, error))
+    (tmp_path / "can.mp4").write_text("an older video")
+    with pytest.raises(type(error)):
+        video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
+    assert os.listdir(tmp_path) == ["can.mp4"]
+    assert (tmp_path / "can.mp4").read_text() == "an older video"
+
+
+def test_a_saved_frame_is_the_frame(tmp_path: pathlib.Path) -> None:
+    moved = motion()
+    video.save_frame(moved, 0.2, tmp_path / "can.png", **SIZE)
+    with Image.open(tmp_path / "can.png") as image:
+        assert np.array_equal(np.array(image), video.frame(moved, 0.2, **SIZE))
+    assert os.listdir(tmp_path) == ["can.png"]
+
+
+def test_a_frame_outside_of_the_trajectory_is_an_error(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(ParameterError, match=r"time must be within the trajectory, 0 to 0\.5 s, got 0\.6"):
+        video.frame(motion(), 0.6)
+    with pytest.raises(ParameterError, match=r"must end in \.png"):
+        video.save_frame(motion(), 0.1, tmp_path / "can.jpg")
+
+
+def test_motion_between_samples_is_of_fourth_order() -> None:
+    """Half the distance between samples, a sixteenth of the error: the cubic's order."""
+    times = np.linspace(0, 1, 1001)
+    true = exact(frozen(), times, 2.0)
+    errors = []
+    for samples in (101, 201):
+        coarse = exact(frozen(), np.linspace(0, 1, samples), 2.0)
+        errors.append(np.abs(pictures.coordinates(coarse, times)[:, 1] - true.phi).max())
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
+
+
+def test_one_sample_is_a_still() -> None:
+    still = exact(frozen(), np.array([0.0]), 1.0)
+    assert pictures.coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
+    assert len(video.frame_times(still, 60, 1.0)) == 1
+
+
+class Seen:
+    """A picture of a scene at rest somewhere, and where things are in it."""
+
+    def __init__(self, pixels: np.ndarray, scene: Scene, pose: tuple[float, float, float]) -> None:
+        self.pixels = pixels.astype(int)
+        model = display_model(scene)
+        data = mujoco.MjData(model)
+        display.pose(model, data, scene, *pose, 0.0)
+        self.view = View.of(model, data, "side", pixels.shape[1], pixels.shape[0])
+        self.end = data.body("can").xpos - [0, scene.can.length / scene.can.radius * RADIUS / 2, 0]
+
+    def at(self, x: float, z: float, tilt: float) -> np.ndarray:
+        """Colour on the can's open end, at x and z in radii on axes that are turned by `tilt` [rad]."""
+        turned = x * math.cos(tilt) + z * math.sin(tilt), z * math.cos(tilt) - x * math.sin(tilt)
+        column, row = self.view.pixel(self.end + RADIUS * np.array([turned[0], 0, turned[1]]))
+        return self.pixels[int(row), int(column)]
+
+
+def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Seen]:
+    """Pictures of a scene with the load at some angles phi and the can at some angles of roll [rad]."""
+    times, rest = np.arange(len(phis), dtype=float), np.zeros(len(phis))
+    u = scene.can.radius * np.array(rolls)
+    still = Trajectory(
+        scene, "exact", "exact", None, times, u, np.array(phis), rest, rest, np.array(rolls), rest, rest, rest
+    )
+    drawn = pictures.draw(still, times, 640, 360)
+    return [Seen(*each) for each in zip(drawn, [scene] * len(phis), zip(u, phis, rolls, strict=True), strict=True)]
+
+
+@pytest.mark.parametrize("fill", [0.25, 0.5, 0.8])
+def test_the_end_shows_a_circular_segment_of_beer(fill: float) -> None:
+    """Points on the can's open end: the beer's colour under the chord of eq. (32), another one over it.
+
+    The end of the beer is flat, so all of it has one colour; its surface, which one sees over the chord, is
+    lit otherwise.
+    """
+    scene = sliding(0.3, fill=fill)
+    phis = np.array([0.0, 1.0, 3.0, -2.0])
+    chord = 2 * fill - 1
+    turn = 0.1 if fill <= 0.5 else 3.0  # the mark where it hides least of what is looked at
+    mark = 0.8 * np.array([math.sin(turn), math.cos(turn)])
+    for phi, seen in zip(phis, look(scene, phis, phis + turn), strict=True):
+        tilt = phi + scene.incline
+        beer = seen.at(0, -segment(fill).offset, tilt)
+        assert beer[0] > 1.2 * beer[1] > 1.8 * beer[2]  # amber
+        there = {True: 0, False: 0}
+        for x, z in np.random.default_rng(1).uniform(-0.95, 0.95, (500, 2)):
+            near_mark = np.hypot(x - mark[0], z - mark[1]) < 0.4
+            if np.hypot(x, z) < 0.95 and abs(z - chord) > 0.05 and not near_mark:
+                same = np.abs(seen.at(x, z, tilt) - beer).max() <= 6
+                assert same == (z < chord), (phi, x, z)
+                there[same] += 1
+        assert min(there.values()) > 20
+
+
+@pytest.mark.parametrize("make", [sliding, frozen, hoop])
+def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
+    scene = make(0.3)
+    rolls = np.linspace(0, 2 * np.pi, 9)[:-1]
+    for roll, seen in zip(rolls, look(scene, rolls if make is frozen else np.ones(8), rolls), strict=True):
+        marks = [seen.at(0, side * 0.85, roll + scene.incline) for side in (1, -1)]
+        reds = [each[0] > 3 * each[1] and each[0] > 3 * each[2] for each in marks]
+        assert reds == [True, False], roll
+
+
+@pytest.mark.parametrize("camera", pictures.CAMERAS)
+@pytest.mark.parametrize("incline", [-60.0, 0.0, 80.0])
+def test_the_wall_fills_the_picture(camera: str, incline: float) -> None:
+    """Behind it nothing is drawn, which would be black."""
+    moved = motion(scene=frozen(math.radians(incline)))
+    picture = video.frame(moved, 0.5, 300, 100, camera)
+    assert not (picture.max(axis=2) < 8).any()
+
+
+@pytest.mark.parametrize("radius", [1e-6, 100.0])
+def test_size_does_not_show(radius: float) -> None:
+    """A can of 1 um looks as one of 100 m does, but for the time: the roots of its lengths."""
+    shown = []
+    for size in (RADIUS, radius):
+        scene = frozen(can=Can.massless(size, 4 * size))
+        moved = exact(scene, np.linspace(0, 10 * math.sqrt(size / 9.81), 41), 2.0)
+        shown.append(video.frame(moved, moved.time[30], 320, 180, "quarter")[40:].astype(int))
+    assert np.abs(shown[0] - shown[1]).mean() < 0.05
