@@ -1,6 +1,7 @@
 """Stand-ins for what takes long: a validation table of made-up rows, and videos that are not drawn."""
 
 import inspect
+import pathlib
 from collections.abc import Callable
 from typing import Any
 
@@ -21,18 +22,19 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
     """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far."""
     calls: list[dict[str, Any]] = []
 
-    def stub(real: Callable[..., None]) -> Callable[..., None]:
+    def stub(name: str, real: Callable[..., None]) -> Callable[..., None]:
         signature = inspect.signature(real)
 
         def instead(*args: object, **kwargs: object) -> None:
             call = signature.bind(*args, **kwargs).arguments
+            call["path"] = pathlib.Path(call["path"])
             if call["path"].name == fail_at:
                 raise RenderingError(f"cannot draw {fail_at}")
-            output.write(call["path"], real.__name__)
-            calls.append({"function": real.__name__, **call})
+            output.write(call["path"], name)
+            calls.append({"function": name, **call})
 
         return instead
 
     for name in ("render", "save_frame"):
-        monkeypatch.setattr(video, name, stub(getattr(video, name)))
+        monkeypatch.setattr(video, name, stub(name, getattr(video, name)))
     return calls

@@ -2,6 +2,7 @@
 
 import inspect
 import math
+import pathlib
 import re
 from typing import get_args
 
@@ -73,8 +74,8 @@ def test_a_scene_is_that_of_python(said: Sliding | Frozen | Pendulum | Hoop, mea
 def test_the_defaults_are_those_of_python() -> None:
     for said, meant in (
         (Run(Sliding()), simulate),
-        (Export(Sliding(), "model.xml"), build),
-        (Export(Sliding(), "model.xml"), export),
+        (Export(Sliding(), pathlib.Path("model.xml")), build),
+        (Export(Sliding(), pathlib.Path("model.xml")), export),
         (Render(Sliding()), render),
     ):
         for name, parameter in inspect.signature(meant).parameters.items():
@@ -88,7 +89,7 @@ def test_the_names_are_those_of_python() -> None:
 
 
 def test_every_option_arrives() -> None:
-    words = (
+    words: str = (
         "simulate frozen --incline 3 --radius 0.04 --length 0.2 --gravity 1.6 --fill 0.3 --density 900 --can metal "
         "--phi0 -30 --phi-dot0 12 --duration 0.5 --rolling contact --integrator discrete --timestep 2e-3 "
         "--tolerance 1e-8 --friction 0.4 --output motion.csv"

@@ -20,12 +20,12 @@ RK4 = 1e-5
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "COLUMNS")}
 
 
-def entry(*arguments: str, **settings: object) -> subprocess.CompletedProcess[str]:
+def entry(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.CompletedProcess[str]:
     """Run the installed console script."""
     script = shutil.which("mjbeer", path=sysconfig.get_path("scripts"))
     assert script is not None
-    settings = {"stdout": subprocess.PIPE, "env": ENVIRONMENT, **settings}
-    return subprocess.run([script, *arguments], stderr=subprocess.PIPE, text=True, check=False, **settings)
+    command = [script, *arguments]
+    return subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, env=ENVIRONMENT, text=True, check=False)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -174,11 +174,12 @@ def test_the_console_script_passes_on_the_exit_status() -> None:
     ]
 
 
-def test_a_reader_that_goes_away_is_no_traceback() -> None:
+@pytest.mark.parametrize("duration", ["0.01", "2"])  # less and more than Python and the pipe keep in between
+def test_a_reader_that_goes_away_is_no_traceback(duration: str) -> None:
     reader, writer = os.pipe()
     os.close(reader)
     try:
-        done = entry("simulate", "frozen", "--output", "-", stdout=writer)
+        done = entry("simulate", "frozen", "--duration", duration, "--output", "-", stdout=writer)
     finally:
         os.close(writer)
     assert done.returncode == 2

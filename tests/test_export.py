@@ -4,6 +4,7 @@ import math
 import os
 import pathlib
 import re
+from collections.abc import Callable
 
 import mujoco
 import numpy as np
@@ -105,7 +106,7 @@ def test_an_export_is_the_model_and_moves_exactly(
 @pytest.mark.parametrize("radius", [1e-3, 1.0])
 @pytest.mark.parametrize("make", [sliding, frozen])
 def test_cans_of_every_size(
-    make: type[Scene], radius: float, rolling: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    make: Callable[..., Scene], radius: float, rolling: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     scene = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300))
     # Time goes as the root of the size, and so do the timestep and the duration that are as hard to simulate.

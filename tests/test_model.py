@@ -153,7 +153,7 @@ def test_what_mujoco_has_not_is_refused(rolling: str, scene: Scene, reason: str)
 )
 def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
-        build(frozen(), **arguments)  # ty: ignore[invalid-argument-type]
+        build(frozen(), **arguments)
 
 
 def test_light_scenes_are_scaled_by_a_power_of_two() -> None:

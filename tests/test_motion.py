@@ -40,18 +40,19 @@ class Motion:
         return abs(self.advance(phase)) * mp.sqrt(self.inertia(phi) / (2 * self.kinetic(phi)))
 
     def time(self, phase: mpf, begin: mpf) -> mpf:
-        """By Gauss-Legendre, on pieces of a radian of the phase and of phi at most."""
+        """By Gauss-Legendre, on pieces of half a radian of the phase and of phi at most."""
         span = max(abs(phase - begin), abs(self.angle(phase) - self.angle(begin)), 1)
-        return mp.quad(self.rate, mp.linspace(begin, phase, int(span) + 1), method="gauss-legendre")
+        return mp.quad(self.rate, mp.linspace(begin, phase, int(2 * span) + 1), method="gauss-legendre")
 
     def state(self, time: mpf, guess: mpf) -> tuple[mpf, mpf]:
         """phi and phi_dot at a time. Newton's method on an increasing function: no matter where it starts."""
         phase, passed = guess, self.time(guess, self.begin)
         for _ in range(10):
             step = (time - passed) / self.rate(phase)
-            if abs(step) < mp.mpf(10) ** -20:
+            passed += self.time(phase + step, phase)
+            phase += step
+            if abs(step) < mp.mpf(10) ** -18:  # and the error now its square
                 return self.angle(phase), self.advance(phase) / self.rate(phase)
-            phase, passed = phase + step, passed + self.time(phase + step, phase)
         raise ArithmeticError("the witness does not converge")
 
 

@@ -60,7 +60,7 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
 )
 def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
-        simulate(frozen(), **({"duration": 0.1, "phi0": 1.0} | arguments))  # ty: ignore[invalid-argument-type]
+        simulate(frozen(), **({"duration": 0.1, "phi0": 1.0} | arguments))
 
 
 def test_a_massless_can_needs_reduced() -> None:

@@ -20,9 +20,9 @@ UNKNOWN = Check("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetrat
 
 
 def shown(content: Table) -> str:
-    console = Console(file=io.StringIO(), width=200)
-    console.print(content)
-    return console.file.getvalue()
+    text = io.StringIO()
+    Console(file=text, width=200).print(content)
+    return text.getvalue()
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)

@@ -6,6 +6,7 @@ import os
 import pathlib
 import re
 import subprocess
+import time
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 
@@ -15,8 +16,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mjbeer import Can, Scene, Trajectory, display, exact, frozen, hoop, pictures, sliding, video
+from mjbeer import Can, Scene, Trajectory, display, encoder, exact, frozen, hoop, pictures, sliding, video
 from mjbeer.can import RADIUS
+from mjbeer.canvas import Canvas
 from mjbeer.display import display_model
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from mjbeer.segment import segment
@@ -75,11 +77,10 @@ def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path
     video.render(moved, tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
     assert os.listdir(tmp_path) == ["can.mp4"]
     about, frames = decode(tmp_path / "can.mp4")
-    assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.* 320x180.* 20 fps", about, re.DOTALL)
+    assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL)
     assert frames.shape == (10, 180, 320, 3)
     # The last frame is that of its time, but for what H.264 leaves out.
     off = [np.abs(frames[-1] - video.frame(moved, frame / 20, **SIZE).astype(float)).mean() for frame in (9, 8, 0)]
-    print(off)
     assert 2 * off[0] < min(off[1:])
 
 
@@ -115,6 +116,19 @@ def test_drawn_frames_are_never_all_held() -> None:
     for picture in pictures.draw(motion(), np.linspace(0, 0.4, 5), 64, 36):
         made.append(weakref.ref(picture))
         assert sum(each() is not None for each in made) <= 2
+
+
+def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed = []
+    real = Canvas.close
+    monkeypatch.setattr(Canvas, "close", lambda canvas: (closed.append(canvas), real(canvas)))
+    drawing = pictures.draw(motion(), np.linspace(0, 0.4, 5), 64, 36)
+    next(drawing)
+    assert closed == []
+    drawing.close()
+    assert len(closed) == 1
+    video.frame(motion(), 0.1, 64, 36)
+    assert len(closed) == 2
 
 
 def test_a_bar_shows_the_progress(
@@ -175,7 +189,10 @@ def test_where_no_file_can_be_is_an_error(undrawn: list[int], tmp_path: pathlib.
 
 
 # mediapy leaves the pipe of a failed ffmpeg to the garbage collector, which pytest hears of.
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+unclosed = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+
+
+@unclosed
 @pytest.mark.parametrize(
     ("script", "reason"),
     [
@@ -194,6 +211,20 @@ def test_a_broken_ffmpeg_leaves_nothing_and_says_why(
     assert "pip install --force-reinstall imageio-ffmpeg" in str(caught.value)
     assert os.listdir(tmp_path) == []
     del caught
+    gc.collect()
+
+
+@unclosed
+def test_what_ffmpeg_says_is_told_even_if_it_is_gone_at_the_end(ffmpeg, tmp_path: pathlib.Path) -> None:
+    """So little is written that it waits in a buffer, and the pipe is found broken only when all is closed."""
+    ffmpeg("#!/bin/sh\necho out of tune >&2\nexit 3\n")
+
+    def frames() -> Iterator[np.ndarray]:
+        yield np.zeros((16, 16, 3), np.uint8)
+        time.sleep(0.5)
+
+    with pytest.raises(RenderingError, match="out of tune"):
+        encoder.encode(frames(), tmp_path / "can.mp4", 16, 16, 10)
     gc.collect()
 
 

@@ -42,7 +42,7 @@ def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
         if geom.classname.name == "visual" and geom.type != mujoco.mjtGeom.mjGEOM_MESH:
             _stretch(geom, size, length)
     if (end := spec.geom("can_end")) is not None:
-        end.size = [radius, length / 2 - end.pos[1], 0]
+        end.size = [end.size[0], length / 2 - end.pos[1], 0]
     for camera in spec.cameras:
         camera.pos = _point(camera.pos, size, length)
     grid = spec.material("grid")

@@ -1,6 +1,7 @@
 """The command line: mjbeer simulate | render | export | validate | report."""
 
 import pathlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -144,7 +145,7 @@ _COMMAND = (
 _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf.CascadeSubcommandArgs)
 
 
-def main(arguments: list[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit status is 0, 1 (a check failed), 2 (an error) or 130 (interrupted)."""
     command = parse(arguments)
     try:
@@ -157,7 +158,7 @@ def main(arguments: list[str] | None = None) -> int:
         return _INTERRUPTED
 
 
-def parse(arguments: list[str] | None = None) -> Command:
+def parse(arguments: Sequence[str] | None = None) -> Command:
     """What a command line asks for; one that is not understood ends the program, with exit status 2."""
     return tyro.cli(
         _COMMAND,

@@ -18,6 +18,8 @@ SLIP = 1e-3
 LIFT = 1e-3
 """Largest gap or penetration between can and incline that is trusted, in radii."""
 
+_ROUNDING = 1e-11  # share of an energy of which a thousandth, the drift that is trusted, is still many roundings
+
 
 def energy(trajectory: Trajectory) -> np.ndarray:
     """Kinetic and potential energy [J] of can and load, for any state, rolling or not."""
@@ -45,11 +47,12 @@ def energy_drift(trajectory: Trajectory) -> float:
     """Largest change of energy, relative to the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
     The energy of a whole can that runs away down the incline would hide what happens to the swing. A motion
-    that hardly swings is compared with a hundredth of the load's weight on its arm, a swing of 0.14 rad.
+    that hardly swings is compared with a hundredth of the load's weight on its arm, a swing of 0.14 rad,
+    and a balanced load with what the can's energy is rounded by.
     """
     form = trajectory.scene.oscillator
     swing = float(np.max(form.inertia(trajectory.phi) * trajectory.phi_dot**2)) / 2
-    scale = max(swing, form.depth / 100)
+    scale = max(swing, form.depth / 100, _ROUNDING * float(kinetic_energy(trajectory).max()))
     change = float(np.abs(trajectory.energy - trajectory.energy[0]).max())
     return change / scale if scale > 0 else 0.0
 

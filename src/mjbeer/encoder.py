@@ -13,8 +13,10 @@ if TYPE_CHECKING:
 
 _QUALITY = 20
 """Constant rate factor of H.264: 18 shows no loss, 23 is ffmpeg's default."""
-_FFMPEG = "-preset veryfast -movflags +faststart"
+_FASTER = "-preset veryfast -movflags +faststart"
 """Encoding then takes less time than drawing, and the video plays before all of it has been loaded."""
+_COLOURS = "-vf scale=out_color_matrix=bt709:out_range=tv"
+"""Otherwise they are those of SD television, which players do not expect of a larger picture."""
 
 
 def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
@@ -29,7 +31,8 @@ def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height:
 
     try:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
-        writer = mediapy.VideoWriter(path, (height, width), fps=fps, codec="h264", crf=_QUALITY, ffmpeg_args=_FFMPEG)
+        arguments = f"{_FASTER} {_COLOURS}"
+        writer = mediapy.VideoWriter(path, (height, width), fps=fps, codec="h264", crf=_QUALITY, ffmpeg_args=arguments)
         writer.__enter__()
     except (OSError, RuntimeError) as error:
         raise _no_video(error) from error

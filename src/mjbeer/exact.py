@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mjbeer import checks, motion
 from mjbeer.exceptions import ParameterError
@@ -10,7 +11,7 @@ from mjbeer.scene import Scene
 from mjbeer.trajectory import Trajectory
 
 
-def exact(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
+def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
     """Exact motion at the given times.
 
     `time` [s] is any array of times at or after the start at 0; `phi0` [rad] and `phi_dot0` [rad/s] are

@@ -13,13 +13,19 @@ from mjbeer.trajectory import Trajectory
 
 
 def phi_error(trajectory: Trajectory, until: float = math.inf) -> float:
-    """Largest distance of phi from the exact motion, up to a time [s]: [rad], relative beyond 1 rad.
+    """Largest distance of phi from the exact motion with the same start, up to a time [s]: [rad]."""
+    times, truth = _truth(trajectory, until)
+    return float(np.abs(trajectory.phi[: len(times)] - truth).max())
 
-    The exact motion starts as the trajectory does.
-    """
+
+def relative_phi_error(trajectory: Trajectory) -> float:
+    """The same relative to the angle that phi has turned, where that exceeds 1 rad: what a tolerance bounds."""
+    return farthest(trajectory.phi, _truth(trajectory, math.inf)[1])
+
+
+def _truth(trajectory: Trajectory, until: float) -> tuple[np.ndarray, np.ndarray]:
     times = trajectory.time[trajectory.time <= until]
-    truth = exact(trajectory.scene, times, trajectory.phi[0], trajectory.phi_dot[0]).phi
-    return farthest(trajectory.phi[: len(times)], truth)
+    return times, exact(trajectory.scene, times, trajectory.phi[0], trajectory.phi_dot[0]).phi
 
 
 def swing_period(trajectory: Trajectory) -> float:

@@ -55,12 +55,13 @@ class Libration:
         return Clock(self.rate, 0.0, 2 * math.pi).period
 
     def _rate(self, above_low: np.ndarray | float, below_high: np.ndarray | float) -> np.ndarray:
-        # dt/dpsi = sqrt(J / 2D) with E - V = p q D, p and q the distances from the ends. The chord of V from an
-        # end gives D well on that side; the weights q^2 (q + 3p) and p^2 (p + 3q) lead over from one to the other.
-        p, q = above_low, below_high
-        from_low = _chord(self.oscillator, self.low, 1, p) * q * (q + 3 * p)
-        from_high = _chord(self.oscillator, self.high, -1, q) * p * (p + 3 * q)
-        return np.sqrt(self.oscillator.inertia(self.low + p) * (p + q) ** 3 / (2 * (from_low + from_high)))
+        # dt/dpsi = sqrt(J / 2D) with E - V = D above_low below_high. The chord of V from an end gives D well on that
+        # side; the weights q^2 (q + 3p) and p^2 (p + 3q) of the shares p + q = 1 lead over from one to the other.
+        width = above_low + below_high
+        p, q = above_low / width, below_high / width
+        from_low = _chord(self.oscillator, self.low, 1, above_low) * q * (q + 3 * p)
+        from_high = _chord(self.oscillator, self.high, -1, below_high) * p * (p + 3 * q)
+        return np.sqrt(self.oscillator.inertia(self.low + above_low) * width / (2 * (from_low + from_high)))
 
 
 def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libration | None:
@@ -79,7 +80,8 @@ def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libra
         low, high = rest - half_width, rest + half_width
     elif kinetic > 0 or phi > rest:
         low = oscillator.turning_point(phi, kinetic, top - 2 * math.pi, rest)
-    return Libration(oscillator, low, high) if low < high else None
+    # A swing of a few ulps is rest, for all that doubles can tell.
+    return Libration(oscillator, low, high) if min(high - rest, rest - low) > 4 * math.ulp(rest) else None
 
 
 def period(oscillator: Oscillator, amplitude: float) -> float:
@@ -123,13 +125,11 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
             )
     if kinetic == 0 and (oscillator.slope == 0 or oscillator.acceleration(phi0, 0) == 0):
         return _rest(time, phi0)
-    # Within about a radian of its turning point a run needs the phase that is smooth there.
-    if oscillator.slope == 0 or (phi_dot0 > 0 and kinetic > 2 * oscillator.depth + oscillator.slope):
-        return _run(oscillator, time, phi0, kinetic, math.copysign(1.0, phi_dot0))
-    # Thrown uphill so fast that it will not have turned by then, it is a run as well; the turn may be 1e12 rad away.
-    # The clock looks ahead to up to three times the angle it needs.
+    # A run downhill that started a radian or more from its turn, and one uphill that will not have turned by then
+    # (the turn may be 1e12 rad away; the clock looks ahead to up to three times the angle it needs), needs no turn.
     reach = math.sqrt(2 * (kinetic + 2 * oscillator.depth) / oscillator.base) * float(np.max(time, initial=0.0))
-    if kinetic > 2 * oscillator.depth + oscillator.slope * (3 * reach + 4):
+    clear = 1 if phi_dot0 > 0 else 3 * reach + 4
+    if oscillator.slope == 0 or kinetic > 2 * oscillator.depth + oscillator.slope * clear:
         return _run(oscillator, time, phi0, kinetic, math.copysign(1.0, phi_dot0))
     return _roll_down(oscillator, time, phi0, phi_dot0, kinetic)
 

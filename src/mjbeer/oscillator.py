@@ -163,7 +163,7 @@ class Oscillator:
         def left(phi: float) -> float:
             return float(self.surplus(phi, start, kinetic))
 
-        return float(brentq(left, outer, inner, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=500))
+        return float(brentq(left, outer, inner, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))
 
     def require_libration(self, phi: float) -> None:
         """Check that a release from rest at `phi` [rad] swings about the equilibrium.

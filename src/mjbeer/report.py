@@ -23,6 +23,8 @@ class _Film:
     name: str
     caption: str
     speed: float
+    still: float
+    """When the picture is taken [s]."""
     trajectory: Callable[[], Trajectory]
 
 
@@ -32,6 +34,7 @@ _FILMS = (
         "Half a can of beer, let go at 60 degrees. The beer slides in its can without friction and swings; the can "
         "rolls away under it, hesitating with every swing. Half of real time.",
         0.5,
+        0.6,
         lambda: simulate(sliding(can=Can.sheet_metal()), 2.0, math.radians(60), tolerance=1e-9),
     ),
     _Film(
@@ -39,12 +42,14 @@ _FILMS = (
         "The beer is frozen to the can, let go with the beer on top: it rolls down ever faster, in jerks. It ends "
         "just before the can would leave the incline. A quarter of real time.",
         0.25,
+        0.25,
         lambda: simulate(frozen(), 0.82, math.pi, tolerance=1e-9),
     ),
     _Film(
         "pendulum",
         "A hoop wheel with a pendulum on its axle, let go at 60 degrees. Half of real time.",
         0.5,
+        0.6,
         lambda: simulate(pendulum(), 2.0, math.radians(60), tolerance=1e-9),
     ),
     _Film(
@@ -52,6 +57,7 @@ _FILMS = (
         "A light hoop with a heavy bar on its rim, let go near the top on level ground. It hops when the bar is "
         "about level: nothing holds it but contact. A tenth of real time.",
         0.1,
+        0.36,
         lambda: simulate(hoop(), 0.43, 3.0, rolling="contact", timestep=1e-4, friction=1e3),
     ),
 )
@@ -84,11 +90,11 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
     checks = check(console)
     output.write(folder / "validation.json", table.validation_json(checks))
     (folder / "summary.md").unlink(missing_ok=True)
-    size = {"width": 640, "height": 360, "fps": 30} if quick else {"width": 1280, "height": 720, "fps": 60}
+    size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
         trajectory = film.trajectory()
-        render(trajectory, folder / f"{film.name}.mp4", speed=film.speed, **size)
-        save_frame(trajectory, 0.3 * float(trajectory.time[-1]), folder / f"{film.name}.png")
+        render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
+        save_frame(trajectory, film.still, folder / f"{film.name}.png")
         console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
     output.write(folder / "summary.md", _summary(checks))
     return checks

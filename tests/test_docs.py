@@ -1,0 +1,127 @@
+"""The documents keep their word: their Python runs, their commands exist, their table is the program's."""
+
+import pathlib
+import re
+import shlex
+from dataclasses import dataclass
+
+import pytest
+
+from mjbeer import validation
+from mjbeer.cli import main
+from tests import stubs
+
+CHECKOUT = pathlib.Path(__file__).parents[1]
+README = CHECKOUT / "README.md"
+DOCUMENTS = sorted([*CHECKOUT.glob("*.md"), *CHECKOUT.glob("docs/*.md")])
+SHELLS = ("console", "bash", "sh", "shell")
+FENCE = re.compile(r"^```(?P<language>\w*)[^\n]*\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
+LINK = re.compile(r"\]\((?P<target>[^)#\s]+)[^)]*\)")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A block of code in a document."""
+
+    path: pathlib.Path
+    line: int
+    language: str
+    text: str
+
+    @property
+    def commands(self) -> list[str]:
+        """Its command lines: those after a prompt, or all of them where there is none."""
+        lines = self.text.replace("\\\n", " ").splitlines()
+        prompted = [line.removeprefix("$ ") for line in lines if line.startswith("$ ")]
+        return prompted or [line for line in lines if line.strip() and not line.startswith("#")]
+
+
+def blocks(path: pathlib.Path) -> list[Block]:
+    text = path.read_text()
+    return [
+        Block(path, text[: each.start()].count("\n") + 2, each["language"], each["text"])
+        for each in FENCE.finditer(text)
+    ]
+
+
+BLOCKS = [block for path in DOCUMENTS for block in blocks(path)]
+COMMANDS = [command for block in BLOCKS if block.language in SHELLS for command in block.commands]
+
+
+def test_every_block_says_its_language() -> None:
+    assert not [f"{block.path.name}:{block.line}" for block in BLOCKS if not block.language]
+
+
+def test_the_readme_shows_both_ways_to_use_it() -> None:
+    languages = {block.language for block in blocks(README)}
+    assert "python" in languages
+    assert languages & set(SHELLS)
+
+
+@pytest.fixture
+def names(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, object]:
+    """What the README's Python leaves behind, run block after block as a reader would; videos are not drawn."""
+    monkeypatch.chdir(tmp_path)
+    stubs.draw(monkeypatch)
+    found: dict[str, object] = {}
+    for block in BLOCKS:
+        if block.language == "python":
+            exec(compile("\n" * (block.line - 1) + block.text, str(block.path), "exec"), found)
+    return found
+
+
+def test_python_runs_and_has_what_the_text_names(names: dict[str, object]) -> None:
+    spans = [each.split(".") for each in re.findall(r"`(\w+\.\w+)[^`]*`", README.read_text())]
+    named = [(owner, attribute) for owner, attribute in spans if owner in names]
+    assert named
+    assert not [(owner, attribute) for owner, attribute in named if not hasattr(names[owner], attribute)]
+
+
+def test_no_command_is_left_out_below() -> None:
+    assert {shlex.split(command)[0] for command in COMMANDS} == {"mjbeer", "make"}
+
+
+@pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "mjbeer"])
+def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With no rows to validate, and videos that are not drawn."""
+    monkeypatch.chdir(tmp_path)
+    stubs.validate(monkeypatch)
+    stubs.draw(monkeypatch)
+    words = re.split(r"[|>]", command)[0]
+    try:
+        status = main(shlex.split(words, comments=True)[1:])
+    except SystemExit as ended:  # --help
+        status = ended.code
+    assert status == 0
+
+
+@pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "make"])
+def test_targets_of_make_exist(command: str) -> None:
+    makefile = (CHECKOUT / "Makefile").read_text()
+    targets = [word for word in shlex.split(command, comments=True)[1:] if "=" not in word]
+    assert all(re.search(rf"^{re.escape(target)}:", makefile, re.MULTILINE) for target in targets)
+
+
+def test_links_and_paths_lead_somewhere() -> None:
+    for path in DOCUMENTS:
+        text = path.read_text()
+        targets = [each["target"] for each in LINK.finditer(text) if "://" not in each["target"]]
+        paths = re.findall(r"`((?:mjcf|src|tests|renders)/[^`\s]*)`", text)
+        assert not [each for each in [*targets, *paths] if not (path.parent / each).exists()], path
+
+
+def test_the_table_of_the_readme_is_that_of_the_program() -> None:
+    text = README.read_text()
+    _, start, after = text.partition(
+        "| check | by | error | at most | what dominates the error |\n|---|---|---|---|---|\n"
+    )
+    table = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()]
+    rows = validation.rows()
+    bounds = [f"{row.bound:.1e} {row.unit}".strip() for row in rows]
+    assert start
+    assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in table] == [
+        (row.quantity, row.by, bound, row.reason) for row, bound in zip(rows, bounds, strict=True)
+    ]
+    # An error of today's differs in its digits, not in its being within the bound.
+    assert all(float(error) <= row.bound for (_, _, error, *_), row in zip(table, rows, strict=True))
+    assert f"these {len(rows)} rows" in text

@@ -1,0 +1,103 @@
+"""The built wheel, installed away from the checkout: all there, and it simulates."""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import zipfile
+from email import message_from_string
+
+import numpy as np
+import pytest
+
+from mjbeer import frozen, hoop, pendulum, simulate, sliding, table
+
+CHECKOUT = pathlib.Path(__file__).parents[1]
+SOURCES = ("pyproject.toml", "README.md", "LICENSE", "src", "mjcf")
+SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
+SIMULATE = """
+import json, pathlib, sys
+import mjbeer
+from mjbeer import templates
+package = pathlib.Path(mjbeer.__file__).parent
+assert package == pathlib.Path(sys.argv[1]) / "mjbeer", package
+assert templates.folder() == package / "mjcf", templates.folder()
+found = {}
+for name in ("sliding", "frozen", "pendulum", "hoop"):
+    scene = getattr(mjbeer, name)()
+    assert mjbeer.build(scene, visuals=True).nmesh > 0
+    found[name] = mjbeer.simulate(scene, 0.1, 1.0).phi.tolist()
+loaded = [pathlib.Path(each.__file__) for name, each in sys.modules.items() if name.startswith("mjbeer")]
+assert all(each.is_relative_to(package) for each in loaded), loaded
+print(json.dumps(found))
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """A wheel of a copy of the checkout, built without a network."""
+    copy = tmp_path_factory.mktemp("checkout")
+    for name in SOURCES:
+        if (CHECKOUT / name).is_dir():
+            shutil.copytree(CHECKOUT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(CHECKOUT / name, copy / name)
+    command = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", "out"]
+    subprocess.run(command, cwd=copy, check=True, capture_output=True)
+    (built,) = (copy / "out").glob("*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def installed(wheel: pathlib.Path, tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """A folder with the wheel installed, and nothing else."""
+    folder = tmp_path_factory.mktemp("installed")
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps", "--no-index"]
+    subprocess.run([*pip, "--no-compile", "--target", str(folder), str(wheel)], check=True, capture_output=True)
+    return folder
+
+
+def run(installed: pathlib.Path, elsewhere: pathlib.Path, *command: str) -> str:
+    """Output of a command that finds the installed wheel before the checkout."""
+    environment = os.environ | {"PYTHONPATH": str(installed), "PYTHONSAFEPATH": "1"}
+    done = subprocess.run(command, cwd=elsewhere, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> None:
+    names = set(zipfile.ZipFile(wheel).namelist())
+    templates = {each.relative_to(CHECKOUT) for each in (CHECKOUT / "mjcf").rglob("*") if each.is_file()}
+    modules = {each.relative_to(CHECKOUT / "src") for each in (CHECKOUT / "src" / "mjbeer").glob("*.py")}
+    assert {each.suffix for each in templates} == {".xml", ".obj"}
+    assert len(modules) > 10
+    expected = {f"mjbeer/{each.as_posix()}" for each in templates} | {each.as_posix() for each in modules}
+    packaged = {name for name in names if name.startswith("mjbeer/")}
+    assert packaged == expected | {"mjbeer/py.typed"}
+
+
+def test_the_wheel_has_license_readme_and_entry_point(wheel: pathlib.Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        (folder,) = {name.split("/")[0] for name in archive.namelist()} - {"mjbeer"}
+        metadata = message_from_string(archive.read(f"{folder}/METADATA").decode())
+        assert archive.read(f"{folder}/licenses/LICENSE") == (CHECKOUT / "LICENSE").read_bytes()
+        assert "mjbeer = mjbeer.cli:main" in archive.read(f"{folder}/entry_points.txt").decode()
+    assert metadata["Name"] == "mjbeer"
+    assert metadata["License-Expression"] == "Apache-2.0"
+    assert metadata.get_payload() == (CHECKOUT / "README.md").read_text()
+
+
+def test_the_installed_wheel_builds_and_simulates(installed: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    found = json.loads(run(installed, tmp_path, sys.executable, "-c", SIMULATE, str(installed)))
+    for name, scene in SCENES.items():
+        assert np.array_equal(found[name], simulate(scene, 0.1, 1.0).phi), name
+
+
+def test_the_installed_command_runs(installed: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    words = ("simulate", "frozen", "--phi0", "0", "--duration", "0.1", "--output", "-")
+    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == table.csv(
+        simulate(frozen(), 0.1, 0.0)
+    )
+    assert not os.listdir(tmp_path)
