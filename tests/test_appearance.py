@@ -189,3 +189,11 @@ def test_strip_leaves_nothing_drawn() -> None:
     model = spec.compile()
     assert [model.geom(i).name for i in range(model.ngeom)] == ["surface", "can"]
     assert model.nmesh == model.ntex == model.nmat == model.ncam == model.nlight == model.nkey == 0
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_the_can_lies_on_the_board(name: str) -> None:
+    """Its drawn wall is outside of the radius, so the board is lower than the surface by as much."""
+    model = written(name)
+    assert model.geom("board").pos[2] == pytest.approx(-appearance.WALL * RADIUS, rel=1e-9)
+    assert vertices(model, poses(model))[:, 1].max() == pytest.approx(LENGTH / 2, rel=SINGLE)

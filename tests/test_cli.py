@@ -112,8 +112,9 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
     ],
 )
 def test_what_is_not_understood_ends_with_exit_status_2(
-    words: str, named: str, capsys: pytest.CaptureFixture[str]
+    words: str, named: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("COLUMNS", "120")
     with pytest.raises(SystemExit) as ended:
         main(words.split())
     out, err = capsys.readouterr()

@@ -12,7 +12,8 @@ from mjbeer.clock import Clock
 mp = MPContext()
 mp.dps = 30
 
-# Times and phases are sums of a few dozen panels, each good to its rounding; measured: 2e-15 of the largest.
+# Times and phases are sums of a few dozen panels, each good to its rounding, and beside a peak to that of the
+# angle. Measured: 8e-15 of the period with a gap of 1e-6, else 1e-15.
 ROUNDING = 1e-14
 
 

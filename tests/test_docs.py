@@ -106,7 +106,7 @@ def test_links_and_paths_lead_somewhere() -> None:
     for path in DOCUMENTS:
         text = path.read_text()
         targets = [each["target"] for each in LINK.finditer(text) if "://" not in each["target"]]
-        paths = re.findall(r"`((?:mjcf|src|tests|renders)/[^`\s]*)`", text)
+        paths = re.findall(r"(?<![\w/])(?:mjcf|src|tests|renders)/[\w/]*(?:\.\w+)?", text)
         assert not [each for each in [*targets, *paths] if not (path.parent / each).exists()], path
 
 

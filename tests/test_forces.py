@@ -12,7 +12,7 @@ from tests.scenes import METAL, SCENES
 from tests.test_motion import Motion, Witness, mp, mpf
 
 # Sums of a few terms, compared with the largest of them.
-ROUNDING = 1e-14
+ROUNDING = 5e-15
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())

@@ -45,7 +45,7 @@ def test_reduced_accelerates_as_theory_says(scene: Scene, phi: float, swing: flo
     [
         pendulum(),
         hoop(),
-        *(each(fill=fill) for each in (sliding, frozen) for fill in (1e-2, 1 - 1e-6, 1.0)),
+        *(each(fill=fill) for each in (sliding, frozen) for fill in (1e-2, 1 - 1e-6, 1 - 1e-12, 1.0)),
         *(each(fill=1e-6, can=METAL) for each in (sliding, frozen)),
         frozen(fill=1e-6),
         *(pendulum(wheel_mass=mass) for mass in (1e-7, 1e5)),
@@ -139,6 +139,12 @@ def test_visuals_change_no_motion(name: str, rolling: str) -> None:
 def test_what_mujoco_has_not_is_refused(rolling: str, scene: Scene, reason: str) -> None:
     with pytest.raises(UnsupportedError, match=reason):
         build(scene, rolling)
+
+
+def test_what_mujoco_does_not_compile_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mjbeer.model.mass_unit", lambda _: 1e-20)
+    with pytest.raises(UnsupportedError, match="MuJoCo cannot represent this scene: .*mass and inertia"):
+        build(frozen())
 
 
 @pytest.mark.parametrize(

@@ -16,10 +16,10 @@ from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import NoEquilibriumError
 from tests.scenes import METAL, SCENES, scenes
 
-# J is a sum of positive terms and V' a difference of two, each of a few roundings; measured: 5 eps.
+# J is a sum of positive terms and V' a difference of two, each of a few roundings; measured: 1e-15.
 ROUNDING = 3e-15
 # Angles are good to a few eps, and an equilibrium near the steepest incline to the root of that.
-ANGLE = 1e-14
+ANGLE = 5e-15
 
 mp = MPContext()
 mp.dps = 30

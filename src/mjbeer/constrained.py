@@ -80,14 +80,13 @@ def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, t
 def _inertials(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     can, load = scene.can, scene.load
     if scene.attachment == "frozen":  # one rigid body: all of it on the can
-        offset = load.mass * load.offset / scene.mass
         inertia = load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2
         if inertia == 0:
             raise UnsupportedError(
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo wants; "
                 'use rolling="reduced", or give the can mass'
             )
-        set_inertial(spec.body("can"), unit * scene.mass, offset, unit * inertia)
+        set_inertial(spec.body("can"), unit * scene.mass, scene.centre_of_mass, unit * inertia)
         weightless(spec.body("load"))
         return
     if can.mass == 0:

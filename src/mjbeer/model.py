@@ -5,6 +5,7 @@ import math
 import mujoco
 
 from mjbeer import appearance, checks, constrained, reduced, templates
+from mjbeer.exceptions import UnsupportedError
 from mjbeer.scene import Scene
 from mjbeer.units import mass_unit
 
@@ -58,7 +59,11 @@ def build(
       UnsupportedError: if MuJoCo has no such model, as for a massless can around a sliding load.
       TemplateError: if a template is missing or has been tampered with.
     """
-    return specify(scene, rolling, visuals, integrator, timestep, friction).compile()
+    spec = specify(scene, rolling, visuals, integrator, timestep, friction)
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
 
 
 def specify(

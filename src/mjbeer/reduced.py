@@ -53,9 +53,11 @@ def _frozen(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     spec.delete(spec.joint("slide"))
     body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
     moment = scene.load.mass * scene.load.offset
-    # Any mass with the moment m b does. On this arm m' b'^2 is at most half of the inertia, which leaves some.
-    offset = min(form.base / (2 * moment), scene.can.radius) if moment > 0 else 0.0
-    mass = moment / offset if moment > 0 else scene.mass
+    # Any mass with the moment m b does. That of the scene, at its centre of mass (38), is the natural one; where
+    # it would have more than half of the inertia, a greater mass on a shorter arm has just half.
+    mass, offset = scene.mass, scene.centre_of_mass
+    if mass * offset**2 > form.base / 2:
+        mass, offset = 2 * moment**2 / form.base, form.base / (2 * moment)
     set_inertial(body, unit * mass, offset, unit * (form.base - mass * offset**2))
     _constant_force(spec, "phi", unit * form.slope)
     if form.chord > 0:

@@ -61,6 +61,11 @@ class Scene:
         """Mass of can and load together [kg]."""
         return self.can.mass + self.load.mass
 
+    @property
+    def centre_of_mass(self) -> float:
+        """Distance of the centre of mass of both from the axis, d = m b/(m + m_can) [m]: eq. (38)."""
+        return self.load.mass * self.load.offset / self.mass
+
     def equilibrium(self) -> float:
         """Angle phi of stable equilibrium [rad]: eq. (53) for a frozen load, with the can's mass included.
 

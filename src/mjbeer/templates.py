@@ -42,11 +42,29 @@ def read(template: str) -> mujoco.MjSpec:
     except ValueError as error:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
     spec.compiler.degree = False  # the angles in the templates are those of the incline, which is always set anew
-    for kind, names in _USED.items():
-        for each in names:
-            if getattr(spec, kind)(each) is None:
-                raise TemplateError(f"{path} has no {kind} named {each!r}, which mjbeer edits; restore the template")
+    for kind, names in (*_EVERYWHERE.items(), *_ALONE[template].items()):
+        look = spec.find_default if kind == "default" else getattr(spec, kind)
+        for each in names.split():
+            if look(each) is None:
+                raise TemplateError(f"{path} has no {kind} named {each!r}, which mjbeer uses; restore the template")
     return spec
 
 
-_USED = {"body": ("incline", "can", "load"), "joint": ("slide", "roll"), "frame": ("level",), "camera": ("side",)}
+# What model and appearance address by name: kind by kind, in every template and in each alone.
+_EVERYWHERE = {
+    "body": "incline can load",
+    "joint": "slide roll",
+    "frame": "level",
+    "camera": "side quarter overview",
+    "geom": "load board board_side",
+    "mesh": "can",
+    "material": "planks grid wood metal end beer mark",
+    "texture": "planks grid",
+    "default": "visual collision",
+}
+_ALONE = {
+    "sliding": {"joint": "swing", "mesh": "load", "equality": "rolling"},
+    "frozen": {"mesh": "load", "equality": "rolling"},
+    "pendulum": {"joint": "swing", "equality": "rolling"},
+    "hoop": {"joint": "lift", "geom": "surface can", "pair": "rolling"},
+}
