@@ -112,3 +112,14 @@ def test_cameras_go_along_and_stay_level(camera: str) -> None:
     assert np.allclose(after.axes, before.axes, atol=1e-12)
     assert after.axes[0][2] == pytest.approx(0, abs=1e-12)
     assert after.pixel(data.body("can").xpos) == pytest.approx((80, 45), rel=0.1)
+
+
+def test_cameras_do_not_rise_with_a_hop() -> None:
+    model = display_model(hoop())
+    data = mujoco.MjData(model)
+    seen = []
+    for lift in (0.0, 0.03):
+        pose(model, data, hoop(), 0.1, 1.0, 1.0, lift)
+        seen.append((data.camera("side").xpos.copy(), data.body("can").xpos.copy()))
+    assert np.array_equal(seen[0][0], seen[1][0])
+    assert seen[1][1] - seen[0][1] == pytest.approx([0, 0, 0.03], abs=1e-15)

@@ -143,7 +143,7 @@ def test_what_mujoco_has_not_is_refused(rolling: str, scene: Scene, reason: str)
 
 def test_what_mujoco_does_not_compile_is_no_traceback(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mjbeer.model.mass_unit", lambda _: 1e-20)
-    with pytest.raises(UnsupportedError, match="MuJoCo cannot represent this scene: .*mass and inertia"):
+    with pytest.raises(UnsupportedError, match=r"MuJoCo cannot represent this scene: .*mass and inertia"):
         build(frozen())
 
 

@@ -47,6 +47,8 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
     [
         ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
         ({"duration": math.inf}, "duration must be a finite number"),
+        ({"duration": 1e6, "timestep": 1e-12}, "too many timesteps of 1e-12 s: at most 1e.08, or say with times="),
+        ({"duration": 1e300, "timestep": 1e-300}, "too many timesteps"),
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
         ({"phi0": "1"}, "phi0 must be a finite number"),
         ({"phi_dot0": math.inf}, "phi_dot0 must be a finite number"),

@@ -92,7 +92,7 @@ def _inertials(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     if can.mass == 0:
         raise UnsupportedError(
             'a massless can with a sliding load exists only in rolling="reduced": MuJoCo has no massless moving body; '
-            "give the can mass, as can=Can.sheet_metal()"
+            "give the can mass, as can=Can.sheet_metal() or, on the command line, --can metal"
         )
     if can.inertia == 0:
         raise UnsupportedError(

@@ -39,14 +39,17 @@ def pose(
 ) -> None:
     """Pose the display model: the axis at `u` [m] and `lift` [m], the load at `phi` and the can at `roll` [rad].
 
-    A frozen load turns with the can.
+    A frozen load turns with the can. Cameras go with the can along the incline, but do not rise with it: a hop
+    is to be seen.
     """
-    values = {"slide": u * scale(scene), "lift": lift * scale(scene), "roll": roll, "swing": phi - roll}
+    values = {"slide": u * scale(scene), "lift": 0.0, "roll": roll, "swing": phi - roll}
     for index in range(model.njnt):
         name = model.joint(index).name
         data.joint(name).qpos[0] = values[name]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)
+    data.joint("lift").qpos[0] = lift * scale(scene)
+    mujoco.mj_kinematics(model, data)
 
 
 def _drawn(scene: Scene) -> Scene:

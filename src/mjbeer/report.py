@@ -54,11 +54,11 @@ _FILMS = (
     ),
     _Film(
         "hoop",
-        "A light hoop with a heavy bar on its rim, let go near the top on level ground. It hops when the bar is "
-        "about level: nothing holds it but contact. A tenth of real time.",
+        "A light hoop with a heavy bar on its rim, pushed with the bar on top, on level ground. It rolls on a little, "
+        "and hops a radius high: nothing holds it down but its weight. A tenth of real time.",
         0.1,
-        0.36,
-        lambda: simulate(hoop(), 0.43, 3.0, rolling="contact", timestep=1e-4, friction=1e3),
+        0.24,
+        lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
     ),
 )
 

@@ -13,6 +13,9 @@ from mjbeer.trajectory import Trajectory
 _ON_A_STEP = 1e-6
 """How far from a multiple of the timestep a requested time may be, in timesteps: what rounding can do to it."""
 
+_MOST_SAMPLES = 1e8
+"""Most samples that are kept unasked: ten gigabytes."""
+
 
 def simulate(
     scene: Scene,
@@ -76,6 +79,11 @@ def simulate(
 def _moments(duration: float, timestep: float, times: np.ndarray | None) -> np.ndarray:
     """The times of the samples [s]."""
     if times is None:
+        if duration / timestep > _MOST_SAMPLES:
+            raise ParameterError(
+                f"a duration of {duration!r} s has too many timesteps of {timestep!r} s: at most {_MOST_SAMPLES:g}, "
+                "or say with times= which samples to keep"
+            )
         return timestep * np.arange(math.ceil(duration / timestep - _ON_A_STEP) + 1)
     moments = np.asarray(times, dtype=float)
     if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all() or (np.diff(moments) <= 0).any():
