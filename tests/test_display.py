@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, exact, frozen, simulate, sliding
+from mjbeer import Can, Scene, exact, frozen, hoop, simulate, sliding
 from mjbeer.can import RADIUS
 from mjbeer.display import display_model, pose, scale
 from mjbeer.view import View
