@@ -45,10 +45,10 @@ def pose(
     values = {"slide": u * scale(scene), "lift": 0.0, "roll": roll, "swing": phi - roll}
     for index in range(model.njnt):
         name = model.joint(index).name
-        data.joint(name).qpos[0] = values[name]
+        data.joint(name).qpos[:] = values[name]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)
-    data.joint("lift").qpos[0] = lift * scale(scene)
+    data.joint("lift").qpos[:] = lift * scale(scene)
     mujoco.mj_kinematics(model, data)
 
 

@@ -54,8 +54,8 @@ _FILMS = (
     ),
     _Film(
         "hoop",
-        "A light hoop with a heavy bar on its rim, pushed with the bar on top, on level ground. It rolls on a little, "
-        "and hops a radius high: nothing holds it down but its weight. A tenth of real time.",
+        "A light hoop with a heavy bar on its rim, pushed with the bar on top, on level ground. It rolls over once, "
+        "and hops a radius high when the bar comes up: nothing holds it down but its weight. A tenth of real time.",
         0.1,
         0.24,
         lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
