@@ -105,6 +105,12 @@ def test_tampering_is_noticed(scene: Scene, tamper: Callable, trusted: float, wa
         assert tamper(motion, sign * 0.8 * trusted).trusted
 
 
+def test_slip_explains_a_drift() -> None:
+    motion = gaining(exact(frozen(), TIME, 0.8), 2 * ENERGY_DRIFT)
+    assert "slipping takes energy too" not in motion.warnings[0]
+    assert motion.warnings[0] + "; slipping takes energy too" == slipped(motion, 2 * SLIP).warnings[0]
+
+
 def test_slip_is_counted_from_the_start() -> None:
     motion = exact(frozen(), TIME, 0.8)
     motion = replace(motion, u=motion.u + 0.01, roll=motion.roll - 3.0 + 0.1 * TIME)
@@ -130,12 +136,12 @@ def test_frozen_can_from_the_top_leaves_the_incline() -> None:
     assert replace(motion, rolling="contact").warnings == ()  # a contact can part, and its lift tells
 
 
-def test_friction_that_holds() -> None:
+@pytest.mark.parametrize("scene", [frozen(), frozen(-0.1)])
+def test_friction_that_holds(scene: Scene) -> None:
     """At the frozen equilibrium tan(alpha) is needed from the start (footnote 7), elsewhere from when it runs out."""
-    scene = frozen()
     rest = exact(scene, TIME, scene.equilibrium())
-    assert rest.rolls_until(1.001 * math.tan(scene.incline)) == math.inf
-    assert rest.rolls_until(0.999 * math.tan(scene.incline)) == 0
+    assert rest.rolls_until(1.001 * abs(math.tan(scene.incline))) == math.inf
+    assert rest.rolls_until(0.999 * abs(math.tan(scene.incline))) == 0
     motion = exact(scene, TIME, 0.0)
     most = float(motion.forces.needed.max())
     until = motion.rolls_until(0.9 * most)

@@ -186,7 +186,7 @@ def test_rest(scene: Scene) -> None:
 
 @pytest.mark.parametrize("scene", [sliding(0.0), frozen(), frozen(-0.2, can=METAL), pendulum()])
 @pytest.mark.parametrize("turn", [0.0, 1e-120, 1e-17, -1e-15, 1e-10])
-@pytest.mark.parametrize("phi_dot0", [0.0, 1e-160, 1e-30, -1e-14, 1e-9])
+@pytest.mark.parametrize("phi_dot0", [0.0, 1e-160, 1e-129, -1e-14, 1e-9])
 def test_tiny_swing_is_harmonic(scene: Scene, turn: float, phi_dot0: float) -> None:
     rest, omega, time = scene.equilibrium(), scene.frequency(), np.linspace(0, 1, 9)
     turn = rest + turn - rest
@@ -198,7 +198,7 @@ def test_tiny_swing_is_harmonic(scene: Scene, turn: float, phi_dot0: float) -> N
 
 
 @pytest.mark.parametrize("scene", [sliding(0.0), frozen(0.0), pendulum(0.0), hoop(), sliding()])
-@pytest.mark.parametrize("turns", [-3, -1, 1, 3, 7])
+@pytest.mark.parametrize("turns", [-1001, -3, 1, 7, 101])
 def test_on_the_top(scene: Scene, turns: int) -> None:
     """For all that a double can tell, an odd multiple of pi is the unstable equilibrium."""
     motion = exact(scene, np.linspace(0, 9, 4), turns * math.pi)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.forces import accelerations
-from mjbeer.model import INTEGRATORS
+from mjbeer.model import INTEGRATORS, ROLLINGS
 from mjbeer.state import read, start
 from tests.scenes import MASSIVE, METAL, SCENES, scenes
 
@@ -125,6 +125,14 @@ def test_visuals_change_no_motion(name: str, rolling: str) -> None:
     assert drawn == pytest.approx(bare, rel=1e-6 if rolling == "contact" else ROUNDING)
     model = build(scene, rolling, visuals=True)
     assert {2, 3} >= set(model.geom_group.tolist()) >= {2}
+
+
+def test_marks_of_the_can_turn_with_the_can_or_are_not_there() -> None:
+    models = {rolling: build(pendulum(), rolling, visuals=True) for rolling in ROLLINGS}
+    names = {rolling: {each.geom(i).name for i in range(each.ngeom)} for rolling, each in models.items()}
+    assert {rolling: "can_mark" in found for rolling, found in names.items()} == {
+        "reduced": False, "equality": True, "contact": True,
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("rolling", ["equality", "contact"])

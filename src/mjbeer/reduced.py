@@ -35,6 +35,9 @@ def _sliding(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     """
     body, share = spec.body("can"), point_share(scene)
     spec.delete(spec.joint("swing"))
+    for mark in (spec.geom("can_mark"), spec.geom("can_spot")):
+        if mark is not None:  # no joint turns with the can, whose marks would be seen to turn with the load
+            spec.delete(mark)
     body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
     set_inertial(body, unit * share.mass, share.offset, unit * share.inertia)
     rest = scene.can.mass - share.moved
