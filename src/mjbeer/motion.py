@@ -80,8 +80,8 @@ def libration(oscillator: Oscillator, phi: float, kinetic: float = 0.0) -> Libra
         low, high = rest - half_width, rest + half_width
     elif kinetic > 0 or phi > rest:
         low = oscillator.turning_point(phi, kinetic, top - 2 * math.pi, rest)
-    # A swing of a few ulps is rest, for all that doubles can tell.
-    return Libration(oscillator, low, high) if min(high - rest, rest - low) > 4 * math.ulp(rest) else None
+    # A swing of less than an ulp is rest, for all that doubles can tell.
+    return Libration(oscillator, low, high) if min(high - rest, rest - low) > 0 else None
 
 
 def period(oscillator: Oscillator, amplitude: float) -> float:

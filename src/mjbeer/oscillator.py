@@ -107,7 +107,7 @@ class Oscillator:
         return math.sqrt((self.depth - self.slope) * (self.depth + self.slope))
 
     def force(self, phi: float) -> float:
-        """-V' at `phi` [N m], with all its digits beside the equilibrium and the barrier as well (slope >= 0)."""
+        """-V' at `phi` [N m], a product of the distances to the equilibrium and the barrier (slope >= 0)."""
         if self.slope >= self.depth:
             return self.slope - self.depth * math.sin(phi - self.bottom)
         return 2 * self.depth * math.sin((phi - self.barrier()) / 2) * math.sin((phi - self.equilibrium()) / 2)
