@@ -103,7 +103,7 @@ def vertices(model: mujoco.MjModel, data: mujoco.MjData) -> np.ndarray:
 
 @pytest.mark.parametrize("length", [1e-4, 0.01, 0.12, 1.0])
 def test_ends_stay_ends(length: float) -> None:
-    model = build(sliding(can=Can.sheet_metal(length=length)), visuals=True)
+    model = build(sliding(can=Can.sheet_metal(length=length)), "equality", visuals=True)
     data = poses(model)
 
     def y(name: str) -> tuple[float, float]:

@@ -57,3 +57,15 @@ def test_contact_is_not_smooth_and_says_how_far_it_got() -> None:
 def test_more_digits_than_a_double_has_are_refused() -> None:
     with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
         simulate(sliding(), 1, 1.0, tolerance=1e-17)
+
+
+@pytest.mark.parametrize("phi0", [0.0, 1.69e-167, 1e-30])
+def test_a_motion_that_hardly_swings_is_no_trouble(phi0: float) -> None:
+    run = simulate(sliding(incline=0.0), 2, phi0, tolerance=TOLERANCE)
+    assert abs(run.phi).max() <= TOLERANCE
+
+
+def test_single_precision_parameters_are_taken_as_doubles() -> None:
+    scene = sliding(incline=np.float32(0.25), fill=np.float32(0.5))
+    assert scene == sliding(incline=0.25, fill=0.5)
+    assert simulate(scene, 0.1, np.float32(1.0)).phi.dtype == np.float64

@@ -39,6 +39,7 @@ class Can:
         checks.positive("can length", self.length, "m")
         checks.non_negative("can mass", self.mass, "kg")
         checks.non_negative("can inertia", self.inertia, "kg m^2")
+        checks.store_floats(self, "radius", "length", "mass", "inertia")
         if self.mass == 0 and self.inertia > 0:
             raise ParameterError(
                 f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 
 from mjbeer.exceptions import ParameterError
 
+_LARGEST = 1e100
+
 
 def number(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a finite float.
@@ -43,6 +45,25 @@ def non_negative(name: str, value: float, unit: str = "") -> float:
     if result < 0:
         raise ParameterError(f"{name} must be 0 or greater{_in(unit)}, got {value!r}")
     return result
+
+
+def store_floats(instance: object, *names: str) -> None:
+    """Make the named attributes of a frozen dataclass doubles: single precision would spread from there."""
+    for name in names:
+        object.__setattr__(instance, name, float(getattr(instance, name)))
+
+
+def start(phi0: float, phi_dot0: float) -> tuple[float, float]:
+    """Return a start as an angle [rad] and a rate [rad/s] that can be computed with.
+
+    Raises:
+      ParameterError: if one is not finite, or is so large that its square is not.
+    """
+    values = number("phi0", phi0, "rad"), number("phi_dot0", phi_dot0, "rad/s")
+    for name, value in zip(("phi0", "phi_dot0"), values, strict=True):
+        if abs(value) > _LARGEST:
+            raise ParameterError(f"{name} must be at most {_LARGEST:g} in size, got {value!r}")
+    return values
 
 
 def choice(name: str, value: str, allowed: Iterable[str]) -> str:

@@ -172,6 +172,8 @@ def _advance(
             slopes[0, i] = slopes[_STAGES, i]
         if not fixed:
             step *= min(_GROW, _SAFETY * max(error, 1e-12) ** (-1 / 8))
+            if time < times[-1]:  # a motion at rest would take steps without bound
+                step = min(step, times[-1] - time)
     return status, time, step, sample, steps, evaluations
 
 
@@ -209,9 +211,8 @@ def _error(state, new, slopes, step, tolerance, scale, e3, e5):
             three += e3[j] * slopes[j, i]
         fifth += (five / weight) ** 2
         third += (three / weight) ** 2
-    if fifth == 0.0 and third == 0.0:
-        return 0.0
-    return abs(step) * fifth / math.sqrt((fifth + 0.01 * third) * state.size)
+    size = math.sqrt((fifth + 0.01 * third) * state.size)
+    return abs(step) * fifth / size if size > 0 else 0.0
 
 
 @njit(cache=True)

@@ -22,12 +22,11 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
       ParameterError: on times or starts that are not finite, or times before 0.
       NoLibrationError: if the start lies exactly on the separatrix.
     """
-    checks.number("phi0", phi0, "rad")
-    checks.number("phi_dot0", phi_dot0, "rad/s")
+    phi0, phi_dot0 = checks.start(phi0, phi_dot0)
     time = np.atleast_1d(np.asarray(time, dtype=float))
     if time.ndim != 1 or not np.isfinite(time).all() or (time < 0).any():
         raise ParameterError("time must be a one-dimensional array of finite times at or after 0 [s]")
-    phi, phi_dot = motion.solve(scene.oscillator, time, float(phi0), float(phi_dot0))
+    phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
     u, u_dot = _axis(scene, time, phi, phi_dot, scene.start(phi0, phi_dot0))
     radius, still = scene.can.radius, np.zeros_like(time)
     return Trajectory(

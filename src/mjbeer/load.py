@@ -34,8 +34,10 @@ class Load:
         checks.positive("load mass", self.mass, "kg")
         checks.non_negative("load offset", self.offset, "m")
         checks.non_negative("load inertia", self.inertia, "kg m^2")
+        checks.store_floats(self, "mass", "offset", "inertia")
         if self.fill is not None:
             _fill(self.fill)
+            checks.store_floats(self, "fill")
 
     @classmethod
     def segment(

@@ -42,6 +42,7 @@ class Scene:
             raise ParameterError(f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {self.incline!r}")
         checks.choice("attachment", self.attachment, ATTACHMENTS)
         checks.non_negative("gravity", self.gravity, "m/s^2")
+        checks.store_floats(self, "incline", "gravity")
         if self.load.offset > self.can.radius:
             raise ParameterError(
                 f"the load must be inside the can: its offset must be at most the radius {self.can.radius!r} m, "

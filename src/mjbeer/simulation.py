@@ -50,13 +50,12 @@ def simulate(
       ToleranceError: if the tolerance is not reached.
     """
     checks.positive("duration", duration, "s")
-    checks.number("phi0", phi0, "rad")
-    checks.number("phi_dot0", phi_dot0, "rad/s")
+    phi0, phi_dot0 = checks.start(phi0, phi_dot0)
     if tolerance is not None:
         checks.positive("tolerance", tolerance, "rad")
         integrator = DOP853
     model = build(scene, rolling, integrator=integrator, timestep=timestep, friction=friction)
-    start = state.start(model, scene, float(phi0), float(phi_dot0))
+    start = state.start(model, scene, phi0, phi_dot0)
     moments = _moments(duration, timestep, times)
     estimate = None
     if integrator != DOP853:
