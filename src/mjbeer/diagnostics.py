@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 ENERGY_DRIFT = 1e-3
 """Largest relative energy drift that is trusted. With every scene, integrator and way of rolling, timesteps
-of 0.2 to 8 ms and amplitudes to 2.5 rad, phi is at most 0.015 rad off after 2 s where the drift is less."""
+of 0.2 to 8 ms and amplitudes to 2.5 rad, phi is at most 0.016 rad off in 2 s where the drift is less."""
 SLIP = 1e-3
 """Largest slip that is trusted, in radii: a milliradian of roll angle."""
 LIFT = 1e-3

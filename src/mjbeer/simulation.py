@@ -12,7 +12,6 @@ from mjbeer.trajectory import Trajectory
 
 _ON_A_STEP = 1e-6
 """How far from a multiple of the timestep a requested time may be, in timesteps: what rounding can do to it."""
-
 _MOST_SAMPLES = 1e8
 """Most samples that are kept unasked: ten gigabytes."""
 
