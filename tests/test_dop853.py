@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjbeer import dop853, exact, frozen, sliding
+from mjbeer import dop853_steps, exact, frozen, sliding
+from mjbeer.dop853 import Integrator, integrate
 from mjbeer.exceptions import DivergenceError
 from mjbeer.forces import accelerations
 from mjbeer.model import build
 from mjbeer.state import read, start
+from tests.scenes import SCENES
 
 
 def test_fixed_step_is_scipy_s_step() -> None:
@@ -25,7 +27,7 @@ def test_fixed_step_is_scipy_s_step() -> None:
     reference = DOP853(slope, 0.0, np.array([1.0, 0.5]), 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
     model = build(scene)
-    ours = dop853.integrate(model, start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), timestep=step)
+    ours = integrate(model, start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), timestep=step)
     # Twelve slopes of size 50 and 5 times a step of 0.02, each with the rounding of its forward dynamics.
     assert ours[2] == pytest.approx(reference.y, rel=1e-13)
     assert ours[1] == pytest.approx(reference.dense_output()(step / 3), rel=1e-13)
@@ -36,7 +38,7 @@ def test_adaptive_steps_agree_with_scipy_s() -> None:
     model = build(scene)
     times = np.linspace(0, 2, 101)
     begin = start(model, scene, 1.0, 0.0)
-    ours = read(model, scene, dop853.integrate(model, begin, times, tolerance=1e-11)).phi
+    ours = read(model, scene, Integrator(model).run(begin, times, tolerance=1e-11)).phi
 
     def slope(_: float, y: np.ndarray) -> np.ndarray:
         return np.concatenate([y[2:], accelerations(scene, y[1], y[3])])
@@ -57,7 +59,7 @@ def test_continuous_output_is_of_seventh_order() -> None:
     errors = []
     for step in steps:
         times = step * (np.arange(int(2 / step)) + 0.1)
-        found = read(model, scene, dop853.integrate(model, begin, times, timestep=float(step))).phi
+        found = read(model, scene, integrate(model, begin, times, timestep=float(step))).phi
         errors.append(np.abs(found - exact(scene, times, 0.3).phi).max())
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(7.5, abs=0.8)
 
@@ -66,20 +68,20 @@ def test_samples_do_not_change_the_steps() -> None:
     scene = sliding()
     model = build(scene)
     begin = start(model, scene, 1.0, 0.0)
-    few, many = (dop853.integrate(model, begin, np.linspace(0, 1, n), tolerance=1e-8) for n in (2, 1001))
+    few, many = (Integrator(model).run(begin, np.linspace(0, 1, n), tolerance=1e-8) for n in (2, 1001))
     assert np.array_equal(few[-1], many[-1]) or np.abs(few[-1] - many[-1]).max() < 1e-7
 
 
 def test_given_up_after_a_limit() -> None:
     model = build(frozen())
     with pytest.raises(DivergenceError, match=r"given up at t = [\d.]+ s after \d+ evaluations"):
-        dop853.integrate(model, np.array([1.0, 0.0]), np.array([0.0, 1e4]), timestep=1e-3, limit=1000)
+        Integrator(model).run(np.array([1.0, 0.0]), np.array([0.0, 1e4]), timestep=1e-3, limit=1000)
 
 
 def test_a_start_that_is_not_finite_is_a_divergence() -> None:
     model = build(frozen())
     with pytest.raises(DivergenceError, match="no longer finite"):
-        dop853.integrate(model, np.array([1.0, 1e300]), np.array([0.0, 1.0]), tolerance=1e-6)
+        Integrator(model).run(np.array([1.0, 1e300]), np.array([0.0, 1.0]), tolerance=1e-6)
 
 
 def test_quaternions_are_refused() -> None:
@@ -87,4 +89,68 @@ def test_quaternions_are_refused() -> None:
         "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
     )
     with pytest.raises(ValueError, match="only slide and hinge joints"):
-        dop853.integrate(free, np.zeros(13), np.array([0.0, 1.0]))
+        Integrator(free)
+
+
+def test_evaluations_are_counted() -> None:
+    """Twelve a step and the first; three more where samples fall into a step."""
+    model = build(frozen())
+    integrator = Integrator(model)
+    begin = start(model, frozen(), 1.0, 0.0)
+    for samples, expected in ((11, 1 + 10 * 12), (21, 1 + 10 * 15)):
+        integrator.run(begin, np.linspace(0, 1, samples), timestep=0.1)
+        assert integrator.evaluations == expected
+    assert integrator.mesh == pytest.approx(np.linspace(0, 1, 11), abs=1e-15)
+
+
+def test_a_mesh_of_even_steps_is_a_timestep() -> None:
+    model = build(frozen())
+    begin, times = start(model, frozen(), 1.0, 0.0), np.linspace(0, 1, 7)
+    fixed, meshed = (
+        Integrator(model).run(begin, times, **each) for each in ({"timestep": 0.125}, {"mesh": np.linspace(0, 1, 9)})
+    )
+    assert np.array_equal(fixed, meshed)
+
+
+def test_steps_that_a_run_chose_repeat_it() -> None:
+    model = build(sliding())
+    begin, times = start(model, sliding(), 1.0, 0.0), np.linspace(0, 1, 7)
+    integrator = Integrator(model)
+    chosen = integrator.run(begin, times, tolerance=1e-8)
+    again = integrator.run(begin, times, mesh=integrator.mesh)
+    assert again == pytest.approx(chosen, rel=1e-13)  # a step is the difference of two times, rounded
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_what_is_left_out_of_an_evaluation_changes_no_bit(name: str) -> None:
+    """The functions called for a smooth model give mj_forward's acceleration, constant forces included."""
+    scene = SCENES[name]
+    model = build(scene)
+    begin = start(model, scene, 0.7, 2.0)
+    integrator = Integrator(model)
+    assert len(integrator._pointers[0]) > 1
+    slope = np.empty_like(begin)
+    dop853_steps._slope(integrator._pointers, integrator._views, begin, slope)
+    data = mujoco.MjData(model)
+    data.qpos, data.qvel = np.split(begin, 2)
+    mujoco.mj_forward(model, data)
+    # The actuator's force is added to the others in another order: one rounding of their sum.
+    exactly = model.nu == 0
+    assert slope[model.nv :] == pytest.approx(data.qacc, rel=0 if exactly else 1e-15, abs=0)
+
+
+def test_the_clock_is_put_back() -> None:
+    model = build(frozen())
+    seen = mujoco.MjData(model)
+    integrate(model, np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.1)
+    mujoco.mj_forward(model, seen)
+    assert seen.timer[mujoco.mjtTimer.mjTIMER_FORWARD].duration > 0
+
+
+def test_no_clock_is_read_while_stepping() -> None:
+    model = build(frozen())
+    integrator = Integrator(model)
+    integrator.run(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.1)
+    timers = integrator._data.timer
+    assert timers[mujoco.mjtTimer.mjTIMER_VELOCITY].number > 100
+    assert timers[mujoco.mjtTimer.mjTIMER_VELOCITY].duration == 0

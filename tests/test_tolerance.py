@@ -13,28 +13,32 @@ from mjbeer.measurement import relative_phi_error
 from tests.scenes import scenes
 
 TOLERANCE = 1e-10
-# Rounding of the start alone, amplified by more than this, is 1e-11: a motion beside a separatrix, of which
-# nobody knows ten digits.
-WORST_CONDITION = 1e5
+# Rounding of the start alone, amplified by more than this, is a tenth of the tolerance: a motion beside a separatrix,
+# of which nobody knows that many digits.
+WORST_CONDITION = 1e15
 NEARBY = 1e-8
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
-@given(scenes(), st.floats(-3.2, 3.2), st.sampled_from([0.0, 1.0]), st.floats(-5, 5))
-def test_true_error_is_below_the_tolerance(scene: Scene, phi0: float, spins: float, spin: float) -> None:
+@given(
+    scenes(), st.floats(-3.2, 3.2), st.sampled_from([0.0, 1.0]), st.floats(-5, 5), st.sampled_from([1e-3, 1e-6, 1e-10])
+)
+def test_true_error_is_below_the_tolerance(
+    scene: Scene, phi0: float, spins: float, spin: float, tolerance: float
+) -> None:
     unit = math.sqrt(scene.can.radius / scene.gravity)
     duration, phi_dot0 = 30 * unit, spins * spin / unit
     times = np.linspace(0, duration, 301)
     truth = exact(scene, times, phi0, phi_dot0)
     nearby = exact(scene, times, phi0 + NEARBY, phi_dot0 + NEARBY / unit)
     angle = np.maximum(1, np.maximum.accumulate(np.abs(truth.phi - truth.phi[0])))
-    assume(np.max(np.abs(nearby.phi - truth.phi) / angle) / NEARBY < WORST_CONDITION)
-    run = simulate(scene, duration, phi0, phi_dot0, tolerance=TOLERANCE, times=times)
-    assert relative_phi_error(run) <= TOLERANCE
+    assume(np.max(np.abs(nearby.phi - truth.phi) / angle) / NEARBY < WORST_CONDITION * tolerance)
+    run = simulate(scene, duration, phi0, phi_dot0, tolerance=tolerance, times=times)
+    assert relative_phi_error(run) <= tolerance
     u_error = np.abs(run.u - truth.u) / scene.can.radius
-    assert np.max(u_error / np.maximum(1, np.abs(truth.u) / scene.can.radius)) <= TOLERANCE
+    assert np.max(u_error / np.maximum(1, np.abs(truth.u) / scene.can.radius)) <= tolerance
     assert run.error_estimate is not None
-    assert run.error_estimate <= TOLERANCE
+    assert run.error_estimate <= tolerance
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
@@ -55,7 +59,7 @@ def test_contact_is_not_smooth_and_says_how_far_it_got() -> None:
 
 
 def test_more_digits_than_a_double_has_are_refused() -> None:
-    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
+    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs differ by"):
         simulate(sliding(), 1, 1.0, tolerance=1e-17)
 
 

@@ -37,7 +37,12 @@ def point_share(scene: Scene) -> Share:
     """
     load = scene.load
     is_point = load.inertia < _LITTLE * load.mass * load.offset**2
-    moved = min(scene.can.mass / 2, load.mass) if is_point else 0.0
+    return share(scene, min(scene.can.mass / 2, load.mass) if is_point else 0.0)
+
+
+def share(scene: Scene, moved: float) -> Share:
+    """The load of a scene with a mass [kg] `moved` to it from the can."""
+    load = scene.load
     mass = load.mass + moved
     inertia = load.inertia + load.mass * load.offset**2 * moved / mass
     return Share(moved, mass, load.mass * load.offset / mass, inertia)

