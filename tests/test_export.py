@@ -10,12 +10,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, build, exact, frozen, hoop, pendulum, sliding, state
+from mjbeer import Can, Scene, exact, frozen, hoop, pendulum, sliding, state
 from mjbeer.cli import main
 from mjbeer.exceptions import OutputError, UnsupportedError
 from mjbeer.export import export
 from mjbeer.library import library
-from mjbeer.model import INTEGRATORS
+from mjbeer.model import INTEGRATORS, specify
 from tests.scenes import METAL, SCENES
 
 START = 1.0, 0.5
@@ -94,7 +94,7 @@ def test_an_export_is_the_model_and_moves_exactly(
     export(scene, path, *START, rolling, timestep=TIMESTEP, friction=FRICTION)
     assert not re.search(r"\b(file|\w+dir)=|<include", path.read_text())
     model = load(path, monkeypatch)
-    built = build(scene, rolling, visuals=True, timestep=TIMESTEP, friction=FRICTION)
+    built = specify(scene, rolling, True, timestep=TIMESTEP, friction=FRICTION).compile()
     assert_same_physics(model, built)
     assert [model.key(i).name for i in range(model.nkey)] == ["start"]
     start = state.start(built, scene, *START)
@@ -114,7 +114,8 @@ def test_cans_of_every_size(
     path = tmp_path / "model.xml"
     export(scene, path, *START, rolling, timestep=TIMESTEP * pace, friction=FRICTION)
     model = load(path, monkeypatch)
-    assert_same_physics(model, build(scene, rolling, True, timestep=TIMESTEP * pace, friction=FRICTION))
+    built = specify(scene, rolling, True, timestep=TIMESTEP * pace, friction=FRICTION).compile()
+    assert_same_physics(model, built)
     assert_moves_exactly(scene, model, TOLERANCE[rolling], 0.3 * pace)
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.forces import accelerations
-from mjbeer.model import INTEGRATORS, ROLLINGS
+from mjbeer.model import INTEGRATORS, ROLLINGS, specify
 from mjbeer.state import read, start
 from tests.scenes import MASSIVE, METAL, SCENES, scenes
 
@@ -105,12 +105,29 @@ def test_contact_has_two_geoms_and_one_pair() -> None:
 @pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
 def test_constraints_are_as_stiff_as_asked_for(rolling: str, integrator: str) -> None:
     """MuJoCo clamps a time constant under two timesteps unless refsafe is off."""
-    model = build(frozen(), rolling, integrator=integrator, timestep=2e-3)
+    model = specify(frozen(), rolling, integrator=integrator, timestep=2e-3).compile()
     solref = model.eq_solref[0] if rolling == "equality" else model.pair_solref[0]
     stiff = 1e-3 if rolling == "equality" else 2e-3
     assert solref[0] == (stiff if integrator in ("RK4", "discrete", "DOP853") else 4e-3)
     assert model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
     assert model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_DIAGEXACT
+
+
+@pytest.mark.parametrize("name", MASSIVE)
+def test_the_equality_is_rigid(name: str) -> None:
+    """The accelerations are the theory's, which knows no softness, and those of the reduced model."""
+    scene = SCENES[name]
+    expected = accelerations(scene, np.float64(0.7), np.float64(2.0))
+    found = forward(build(scene, "equality"), scene, 0.7, 2.0)
+    assert found == pytest.approx([float(each) for each in expected], rel=ROUNDING)
+
+
+def test_the_equality_as_compiled_is_soft() -> None:
+    """What the test above would say of solimp 0.9999: off by 1e-4 of the force."""
+    scene = frozen()
+    expected = accelerations(scene, np.float64(0.7), np.float64(2.0))[1]
+    soft = forward(specify(scene, "equality").compile(), scene, 0.7, 2.0)[1]
+    assert 1e-5 < abs(soft / expected - 1) < 1e-3
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -45,6 +45,19 @@ def roll_by_equality(spec: mujoco.MjSpec, scene: Scene, unit: float, timeconst: 
     _harden(spec, rolling, timeconst)
 
 
+def make_rigid(model: mujoco.MjModel) -> None:
+    """Have the joint equality of a compiled model solved exactly; MJCF cannot say this.
+
+    A row's softness is a share of the inverse inertia that the compiled model has for its joints, which nothing else
+    reads here. Without it, one sweep of PGS over the one row is its solution, without a tolerance, where Newton
+    would weigh a nearly infinite stiffness against the inertias.
+    """
+    model.dof_invweight0[:] = 0
+    model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
+    model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
+    model.opt.iterations, model.opt.tolerance = 1, 0.0
+
+
 def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, timeconst: float, friction: float) -> None:
     """A cylinder on a plane, with friction and nothing else to hold it there."""
     _inertials(spec, scene, unit)

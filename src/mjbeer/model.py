@@ -61,9 +61,12 @@ def build(
     """
     spec = specify(scene, rolling, visuals, integrator, timestep, friction)
     try:
-        return spec.compile()
+        model = spec.compile()
     except ValueError as error:
         raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
+    if rolling == "equality":
+        constrained.make_rigid(model)
+    return model
 
 
 def specify(
@@ -74,7 +77,10 @@ def specify(
     timestep: float = 1e-3,
     friction: float = FRICTION,
 ) -> mujoco.MjSpec:
-    """The editable specification that `build` compiles, with the same parameters and errors."""
+    """The editable specification that `build` compiles, with the same parameters and errors.
+
+    Compiled by itself, its joint equality is as stiff as MJCF can say; `build` makes it rigid.
+    """
     checks.choice("rolling", rolling, ROLLINGS)
     checks.choice("integrator", integrator, (*INTEGRATORS, DOP853))
     checks.positive("timestep", timestep, "s")
