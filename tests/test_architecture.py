@@ -6,8 +6,8 @@ import sys
 import pytest
 
 THEORY = [
-    *("can", "checks", "clock", "diagnostics", "exact", "exceptions", "forces"),
-    *("load", "motion", "oscillator", "scene", "segment", "trajectory"),
+    *("can", "cases", "checks", "clock", "diagnostics", "equations", "exact", "exceptions", "forces"),
+    *("load", "motion", "oscillator", "predictions", "scene", "segment", "trajectory"),
 ]
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 LOADED = "import sys; print(sorted({'mujoco', 'numba', 'llvmlite', 'mediapy', 'OpenGL'} & set(sys.modules)))"

@@ -1,0 +1,89 @@
+"""Numerical errors that theory gives in advance.
+
+Semi-implicit Euler, v += h a(q, v), q += h v, is MuJoCo's "Euler" and, on models without damping, what "implicit",
+"implicitfast" and "discrete" come to. What is said of a soft constraint holds for MuJoCo's, whatever integrates it.
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from mjbeer.scene import Scene
+
+_DIFFERENCE = 1e-5
+"""Step of the central differences [rad, or rad/s over the frequency scale]: their error is 1e-10 of the slope."""
+
+
+def frequency_shift(frequency: float, timestep: float) -> float:
+    """Relative error of a small swing's `frequency` [rad/s] under semi-implicit Euler: (omega h)^2/24.
+
+    The map has eigenvalues exp(+-i nu h) with sin(nu h/2) = omega h/2.
+    """
+    return (frequency * timestep) ** 2 / 24
+
+
+def distance_excess(timestep: float, duration: float) -> float:
+    """Relative error of the distance under semi-implicit Euler at constant acceleration, from rest: h/T.
+
+    After n = T/h steps it is a h^2 n (n + 1)/2 instead of a T^2/2.
+    """
+    return timestep / duration
+
+
+def residual_slip(penetration: float, radius: float) -> float:
+    """Slip over distance rolled of a can that sinks into the incline by `penetration` [m]: -delta/2a.
+
+    MuJoCo's contact point lies midway between the two surfaces, at a - delta/2 from the axis: the can rolls as one
+    with that radius.
+    """
+    return -penetration / (2 * radius)
+
+
+def diagonal_excess(scene: Scene) -> float:
+    """By what MuJoCo overestimates the diagonal of the equality u = a roll.
+
+    It adds the joints' inverse inertias as they are, metres and radians alike: (1/m_u + 1/I)/(1/m_u + a^2/I) where
+    the two are not coupled, with m_u and I the inverses of the diagonal of M^-1. A frozen load couples them, in the
+    position phi = 0 by -m b, and the true diagonal is J M^-1 J^T with J = (1, -a).
+    """
+    can, load, moment = scene.can, scene.load, scene.load.mass * scene.load.offset
+    if scene.attachment == "frozen":
+        inertia = can.inertia + load.inertia + moment * load.offset
+        mass_matrix = np.array([[scene.mass, -moment], [-moment, inertia]])
+    else:
+        swing = load.inertia + moment * load.offset
+        mass_matrix = np.array(
+            [[scene.mass, -moment, -moment], [-moment, can.inertia + swing, swing], [-moment, swing, swing]]
+        )
+    inverse = np.linalg.inv(mass_matrix)[:2, :2]
+    row = np.array([1.0, -can.radius])
+    return float(np.trace(inverse) / (row @ inverse @ row))
+
+
+def softened(impedance: float, excess: float) -> float:
+    """Share of a constraint's force that is let through where its diagonal is overestimated by a factor `excess`.
+
+    The regularizer is R = (1 - d)/d times MuJoCo's diagonal, the share A/(A + R) with the true one A.
+    """
+    return 1 / (1 + (1 - impedance) / impedance * excess)
+
+
+def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> np.ndarray:
+    """Error of phi under semi-implicit Euler, in the limit of small timesteps, per timestep [rad/s], at `times` [s].
+
+    By backward error analysis the method follows q' = v + h/2 a, v' = a - h/2 (a_q v + a_v a) up to h^2 (E. Hairer,
+    C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX); the error is that perturbation, carried along
+    by the linearized motion. It holds where phi is a coordinate of the model, as in the reduced ones.
+    """
+    form = scene.oscillator
+    rate = float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
+
+    def slopes(_: float, state: np.ndarray) -> np.ndarray:
+        q, v, dq, dv = state
+        a = float(form.acceleration(q, v))
+        e, f = _DIFFERENCE, _DIFFERENCE * rate
+        a_q = float(form.acceleration(q + e, v) - form.acceleration(q - e, v)) / (2 * e)
+        a_v = float(form.acceleration(q, v + f) - form.acceleration(q, v - f)) / (2 * f)
+        return np.array([v, a, dv + a / 2, a_q * dq + a_v * dv - (a_q * v + a_v * a) / 2])
+
+    span, start = (0.0, float(times[-1])), [phi0, phi_dot0, 0.0, 0.0]
+    return solve_ivp(slopes, span, start, "DOP853", times, rtol=1e-8, atol=1e-8).y[2]
