@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mjbeer.trajectory import Trajectory
 
 Rolling = Literal["reduced", "equality", "contact"]
+CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop"]
 Integrator = Literal["Euler", "implicit", "implicitfast", "discrete", "RK4", "DOP853"]
 
 

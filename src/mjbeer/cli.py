@@ -1,4 +1,4 @@
-"""The command line: mjbeer simulate | render | export | validate | report."""
+"""The command line: mjbeer simulate | render | export | validate | benchmark | advise | report."""
 
 import pathlib
 from collections.abc import Sequence
@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 import tyro
 from rich.console import Console
 
-from mjbeer.arguments import AnyScene, Rolling, Run, radians
+from mjbeer.arguments import AnyScene, CaseName, Rolling, Run, radians
+from mjbeer.cases import DEFAULT
 from mjbeer.exceptions import MjbeerError
 
 _FAILED, _WRONG, _INTERRUPTED = 1, 2, 130
@@ -134,12 +135,63 @@ class Report:
         return 0 if all(check.passed for check in checks) else _FAILED
 
 
-Command = Simulate | Render | Export | Validate | Report
+@dataclass(frozen=True)
+class Benchmark:
+    """Measure error against run time, in six minutes: integrators, ways of rolling, and other tools."""
+
+    scenes: Annotated[tuple[CaseName, ...], tyro.conf.Positional] = DEFAULT
+    """Scenes to measure."""
+    output: pathlib.Path = pathlib.Path("benchmark")
+    """Folder to write to; a study that was interrupted there goes on."""
+    quick: bool = False
+    """Shorter ladders: about a minute."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import benchmark, benchmark_report, benchmark_tables
+
+        study = benchmark.run(self.scenes, self.output, self.quick, _err)
+        benchmark_report.write(study, self.output)
+        for grid in benchmark_tables.tables(study):
+            _out.print(grid.rich())
+        _say(f"the study is in {self.output / 'summary.md'}")
+        return 0
+
+
+@dataclass(frozen=True)
+class Advise:
+    """Print the cheapest setting that met a tolerance in a stored study."""
+
+    scene: Annotated[CaseName, tyro.conf.Positional]
+    """Scene of the study that is most like yours."""
+    tolerance: float = 1e-6
+    """Largest error of phi and u/a [rad]."""
+    rolling: Rolling | None = None
+    """Way of rolling; any if not given."""
+    study: pathlib.Path | None = None
+    """A study.json that `mjbeer benchmark` wrote; the one that came with mjbeer if not given."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import advice
+
+        _out.print(
+            advice.advise(self.scene, self.tolerance, self.rolling, self.study),
+            highlight=False,
+            markup=False,
+            soft_wrap=True,
+        )
+        return 0
+
+
+Command = Simulate | Render | Export | Validate | Benchmark | Advise | Report
 _COMMAND = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
     | Annotated[Render, tyro.conf.subcommand("render")]
     | Annotated[Export, tyro.conf.subcommand("export")]
     | Annotated[Validate, tyro.conf.subcommand("validate")]
+    | Annotated[Benchmark, tyro.conf.subcommand("benchmark")]
+    | Annotated[Advise, tyro.conf.subcommand("advise")]
     | Annotated[Report, tyro.conf.subcommand("report")]
 )
 _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf.CascadeSubcommandArgs)

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from mjbeer import checks, state, stepping
+from mjbeer import checks, dop853, state, stepping
+from mjbeer import tolerance as global_tolerance
 from mjbeer.exceptions import ParameterError
 from mjbeer.model import DOP853, FRICTION, build
 from mjbeer.scene import Scene
@@ -53,7 +54,8 @@ def simulate(
     if tolerance is not None:
         checks.positive("tolerance", tolerance, "rad")
         integrator = DOP853
-    model = build(scene, rolling, integrator=integrator, timestep=timestep, friction=friction)
+    tuned_to = timestep if tolerance is None else global_tolerance.tuning(scene, rolling, timestep)
+    model = build(scene, rolling, integrator=integrator, timestep=tuned_to, friction=friction)
     start = state.start(model, scene, phi0, phi_dot0)
     moments = _moments(duration, timestep, times)
     estimate = None
@@ -61,14 +63,9 @@ def simulate(
         steps = _steps(moments, timestep)
         states, moments = stepping.step(model, start[None], steps)[0], steps * timestep
     elif tolerance is None:
-        from mjbeer import dop853
-
-        states = dop853.integrate(model, start, moments, timestep=timestep)
+        states = dop853.integrate(model, start, moments, timestep)
     else:
-        from mjbeer import tolerance as global_tolerance
-        from mjbeer.dop853 import Integrator
-
-        solution = global_tolerance.solve(Integrator(model), model, scene, start, moments, tolerance)
+        solution = global_tolerance.solve(dop853.Integrator(model), model, scene, start, moments, tolerance)
         states, estimate = solution.states, solution.estimate
     moved = state.read(model, scene, states)
     fixed = timestep if tolerance is None else None

@@ -72,6 +72,16 @@ def solve(
         raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
 
 
+def tuning(scene: Scene, rolling: str, timestep: float) -> float:
+    """The timestep [s] to tune a model's constraints to where the steps are the integrator's own.
+
+    A rigid equality only takes back what rounding lets slip. In half a swing of the smallest pendulum that fits into
+    the can, sqrt(a/g), it does so gently enough not to limit the steps.
+    """
+    slow = scene.gravity > 0 and rolling == "equality"
+    return float(np.sqrt(scene.can.radius / scene.gravity)) / 2 if slow else timestep
+
+
 def refine(mesh: np.ndarray, finer: float) -> np.ndarray:
     """Times of a mesh with `finer` steps for each of those of `mesh`."""
     place = np.linspace(0, len(mesh) - 1, round(finer * (len(mesh) - 1)) + 1)
