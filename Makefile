@@ -34,4 +34,4 @@ $(STAMP): pyproject.toml
 	@touch $@
 
 clean:
-	rm -rf $(VENV) report dist
+	rm -rf $(VENV) report benchmark dist

@@ -1,4 +1,4 @@
-"""Stand-ins for what takes long: a validation table of made-up rows, and videos that are not drawn."""
+"""Stand-ins for what takes long: made-up rows to validate, videos that are not drawn, a benchmark of short ladders."""
 
 import inspect
 import pathlib
@@ -7,9 +7,34 @@ from typing import Any
 
 import pytest
 
-from mjbeer import output, validation, video
+from mjbeer import benchmark as benchmarks
+from mjbeer import output, peers, settings, validation, video
 from mjbeer.exceptions import RenderingError
 from mjbeer.row import Row
+from mjbeer.settings import Curve
+
+STEPS = tuple(16e-3 / 2**k for k in range(6))
+LARGE = tuple(64e-3 / 2**k for k in range(7))
+LADDERS = {
+    Curve("reduced", "Euler", "timestep"): STEPS,
+    Curve("reduced", "RK4", "timestep"): STEPS,
+    Curve("reduced", "DOP853", "timestep"): LARGE,
+    Curve("reduced", "DOP853", "tolerance"): (1e-6, 1e-9),
+    Curve("equality", "RK4", "timestep"): STEPS,
+    Curve("contact", "DOP853", "timestep"): LARGE[:5],
+    Curve("equality, slide first", "Euler", "timestep"): (2e-3,),
+    Curve("equality, hinge first", "Euler", "timestep"): (2e-3,),
+    Curve("contact, defaults", "Euler", "timestep"): (2e-3,),
+}
+
+
+def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make the benchmark one of short ladders and two peers, timed twice, with a made-up cost of stages."""
+    monkeypatch.setattr(settings, "curves", lambda scene, quick: dict(LADDERS))
+    monkeypatch.setattr(benchmarks, "installed", lambda: [peers.DOP853, peers.ODEINT])
+    stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
+    monkeypatch.setattr(benchmarks, "ablate", lambda: stages)
+    monkeypatch.setattr(benchmarks, "REPEATS", 2)
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from mjbeer import validation
+from mjbeer import advice, benchmark_tables, study, validation
 from mjbeer.cli import main
 from tests import stubs
 
@@ -83,10 +83,11 @@ def test_no_command_is_left_out_below() -> None:
 
 @pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "mjbeer"])
 def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With no rows to validate, and videos that are not drawn."""
+    """With no rows to validate, videos that are not drawn, and a benchmark of short ladders."""
     monkeypatch.chdir(tmp_path)
     stubs.validate(monkeypatch)
     stubs.draw(monkeypatch)
+    stubs.benchmark(monkeypatch)
     words = re.split(r"[|>]", command)[0]
     try:
         status = main(shlex.split(words, comments=True)[1:])
@@ -108,6 +109,16 @@ def test_links_and_paths_lead_somewhere() -> None:
         targets = [each["target"] for each in LINK.finditer(text) if "://" not in each["target"]]
         paths = re.findall(r"(?<![\w/])(?:mjcf|src|tests|renders)/[\w/]*(?:\.\w+)?", text)
         assert not [each for each in [*targets, *paths] if not (path.parent / each).exists()], path
+
+
+def test_run_times_of_the_readme_are_those_of_the_study_that_comes_with_mjbeer() -> None:
+    stored, text = study.load(advice.SHIPPED), README.read_text()
+    for grid in (
+        benchmark_tables.cheapest(stored, "frozen"),
+        benchmark_tables.others(stored),
+        benchmark_tables.usual(stored),
+    ):
+        assert grid.markdown().partition("\n\n")[2].strip() in text, grid.title
 
 
 def test_the_table_of_the_readme_is_that_of_the_program() -> None:

@@ -75,7 +75,7 @@ def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> N
     assert len(modules) > 10
     expected = {f"mjbeer/{each.as_posix()}" for each in templates} | {each.as_posix() for each in modules}
     packaged = {name for name in names if name.startswith("mjbeer/")}
-    assert packaged == expected | {"mjbeer/py.typed"}
+    assert packaged == expected | {"mjbeer/py.typed", "mjbeer/data/study.json"}
 
 
 def test_the_wheel_has_license_readme_and_entry_point(wheel: pathlib.Path) -> None:

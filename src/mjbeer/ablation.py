@@ -47,7 +47,7 @@ def ablate() -> list[dict[str, Any]]:
     return rows
 
 
-def _loops(name: str, integrator: str) -> dict[str, Callable[[], object]]:
+def _loops(name: str, integrator: str) -> dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]]:
     case = CASES[name]
     lean = build(case.scene, integrator=integrator)
     loops = {"nothing": _loop(name, lean)}
@@ -71,12 +71,12 @@ def _drawable(name: str, integrator: str, disabled: int) -> mujoco.MjModel:
 
 def _loop(
     name: str, model: mujoco.MjModel, watch: Callable[[], AbstractContextManager[None]] = untimed
-) -> Callable[[], object]:
+) -> Callable[[], tuple[np.ndarray, np.ndarray]]:
     data, full = mujoco.MjData(model), np.zeros((1, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
     start = state.start(model, CASES[name].scene, CASES[name].phi0, 0.0)
     full[0, 1 : 1 + len(start)] = start
 
-    def loop() -> object:
+    def loop() -> tuple[np.ndarray, np.ndarray]:
         with quiet(), watch(), rollout.Rollout(nthread=0) as pool:
             return pool.rollout(model, [data], full, nstep=_STEPS)
 

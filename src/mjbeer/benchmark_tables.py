@@ -9,7 +9,7 @@ from mjbeer.point import Point
 from mjbeer.settings import TIMESTEP, TOLERANCE, aligned
 from mjbeer.study import Study
 from mjbeer.usual import USUAL
-from mjbeer.verdict import verdict
+from mjbeer.verdict import Verdict, verdict
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which others are compared with the best setting."""
@@ -111,7 +111,7 @@ def verdicts(study: Study, case: str) -> Grid:
     return Grid(f"{case}: verdicts", columns, rows)
 
 
-def verdict_of(points: list[Point]) -> object:
+def verdict_of(points: list[Point]) -> Verdict:
     """The verdict on a curve, from the rungs that need no interpolation."""
     even = [each for each in points if each.method != DOP853 or aligned(each.value)]
     return verdict([each.value for each in even], [each.error for each in even])

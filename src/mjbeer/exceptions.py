@@ -18,7 +18,7 @@ class NoLibrationError(MjbeerError):
 
 
 class UnsupportedError(MjbeerError):
-    """MuJoCo cannot represent this scene in the requested way of rolling."""
+    """An engine, MuJoCo or another, has no model of this scene in the requested way of rolling."""
 
 
 class DivergenceError(MjbeerError):

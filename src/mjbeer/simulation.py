@@ -40,8 +40,8 @@ def simulate(
     With a `tolerance` [rad] the run is DOP853 with steps of its own, and is repeated until the error of phi
     and u/a over the whole motion is below it (relative to the angle where that exceeds 1 rad); the estimate
     is kept on the trajectory. `timestep` is then only the sampling interval, and what constraints are tuned
-    to. It is the error of integrating the model: that of the model itself is zero for "reduced", but not for
-    a soft constraint.
+    to. It is the error of integrating the model: that of the model itself is zero for "reduced" and "equality",
+    but not for a soft contact.
 
     Raises:
       ParameterError: on a parameter that is not allowed.

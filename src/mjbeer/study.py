@@ -1,5 +1,6 @@
 """A stored study: its points, what they were measured with, and how it is kept on disk."""
 
+import csv
 import dataclasses
 import io
 import json
@@ -50,14 +51,16 @@ class Study:
         output.write(path, head[: head.rindex("}")] + ',\n "points": [\n' + ",\n".join(lines) + "\n]}\n")
 
     def csv(self) -> str:
-        """One line a point: its setting, its errors and its least and median run time."""
+        """One line a point: its setting, its errors and its least and median run time; empty where unknown."""
         names = [each.name for each in dataclasses.fields(Point) if each.name != "times"]
         text = io.StringIO()
-        text.write(",".join([*names, "error", "time_min", "time_median", "repeats"]) + "\n")
+        writer = csv.DictWriter(text, [*names, "error", "time_min", "time_median", "repeats"], lineterminator="\n")
+        writer.writeheader()
         for point in self.points:
-            values = [getattr(point, name) for name in names]
-            values += [point.error, point.time, point.median_time, len(point.times)]
-            text.write(",".join(_cell(each) for each in values) + "\n")
+            known = {name: value for name, value in _known(point).items() if name != "times"}
+            if point.failure is None:
+                known |= {"error": point.error, "time_min": point.time, "time_median": point.median_time}
+            writer.writerow(known | {"repeats": len(point.times)})
         return text.getvalue()
 
 
@@ -107,13 +110,6 @@ def _known(point: Point) -> dict[str, Any]:
     values = {name: value for name, value in dataclasses.asdict(point).items() if value is not None}
     values["times"] = [round(each, 9) for each in point.times]
     return {name: value for name, value in values.items() if not isinstance(value, float) or math.isfinite(value)}
-
-
-def _cell(value: object) -> str:
-    if value is None or (isinstance(value, float) and not math.isfinite(value)):
-        return ""
-    text = repr(value) if isinstance(value, float) else str(value)
-    return '"' + text.replace('"', '""') + '"' if {",", '"', "\n"} & set(text) else text
 
 
 def same_conditions(one: Study, settings: dict[str, Any], where: dict[str, Any]) -> bool:

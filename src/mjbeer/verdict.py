@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 _AGREE = 0.1
 """How far local orders of one fit may be from their mean."""
-_RUNGS = 3
+_RUNGS = 4
 """Fewest rungs of a fit."""
 _FLAT = 0.5
 """A floor is where no later rung has less than this share of the error."""
@@ -40,7 +40,7 @@ class Verdict:
 def verdict(steps: ArrayLike, errors: ArrayLike) -> Verdict:
     """The verdict on the errors [rad] of a ladder of decreasing timesteps or tolerances.
 
-    An order is fitted to the longest stretch of at least three rungs whose local orders, log(e1/e2)/log(h1/h2), are
+    An order is fitted to the longest stretch of at least four rungs whose local orders, log(e1/e2)/log(h1/h2), are
     within 0.1 of their mean; of two as long, to the finer one. A floor needs two rungs that bring nothing.
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
