@@ -59,8 +59,8 @@ def prepare(case: Case, curve: Curve, value: float, peers: dict[str, Peer]) -> P
         stepper, steps = Stepper(model), np.rint(times / timestep).astype(int)
         run = lambda: stepper.run(start[None], steps)[0]  # noqa: E731
     elif curve.knob == TOLERANCE:
-        integrator = Integrator(model)
-        run = lambda: tolerance.solve(integrator, model, scene, start, times, value).states  # noqa: E731
+        solver = tolerance.Solver(model, scene)
+        run = lambda: solver.run(start, times, value).states  # noqa: E731
     else:
         integrator = Integrator(model)
         run = lambda: integrator.run(start, times, timestep)  # noqa: E731

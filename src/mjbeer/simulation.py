@@ -65,7 +65,7 @@ def simulate(
     elif tolerance is None:
         states = dop853.integrate(model, start, moments, timestep)
     else:
-        solution = global_tolerance.solve(dop853.Integrator(model), model, scene, start, moments, tolerance)
+        solution = global_tolerance.Solver(model, scene).run(start, moments, tolerance)
         states, estimate = solution.states, solution.estimate
     moved = state.read(model, scene, states)
     fixed = timestep if tolerance is None else None

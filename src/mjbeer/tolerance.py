@@ -20,11 +20,12 @@ _FINER = 1.3
 _LEAST, _MOST = 1.1, 4.0
 """Fewest and most steps of a later run for each of the run before."""
 _CAUTION = 1.5
-"""The estimate over the distance of two runs: ten times what the method leaves of it, and where rounding rules,
-the finer run is off by as much as the other."""
-_NUDGE = 1e-13
+"""The estimate over the distance of the first two runs: ten times what the method leaves of it."""
+_CAUTION_LATER = 3.0
+"""The same for later ones, which start at the same place: where rounding rules, they may be near by chance."""
+_NUDGE = 4e-14
 """How far from the start the first run starts, relative to the scales. Rounding adds some 1e-15 to a run; what a
-motion beside a separatrix makes of that is in the distance of the first two, a hundred times as large."""
+motion beside a separatrix makes of that is in the distance of the first two, forty times as large."""
 _EVALUATIONS = 5_000_000
 """Most evaluations that one run may take: some seconds. A smooth motion takes thousands."""
 
@@ -37,39 +38,51 @@ class Solution:
     estimate: float
 
 
-def solve(
-    integrator: Integrator, model: mujoco.MjModel, scene: Scene, start: np.ndarray, times: np.ndarray, tolerance: float
-) -> Solution:
-    """States at `times` [s] whose error in phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
+class Solver:
+    """A model of a scene set up to be integrated to tolerances."""
 
-    The first run chooses its steps, and starts a little beside the start; each other one divides the steps of the
-    run before. The estimate is one and a half times the distance of the last two.
+    def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
+        self._integrator, self._scale = Integrator(model), scales(model, scene)
+        unit = read(model, scene, np.eye(model.nq + model.nv))
+        # phi and u/a are sums of components of the state.
+        self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
 
-    Raises:
-      ToleranceError: if the runs do not come that close; the message says how close they came.
-    """
-    scale, finer, best = scales(model, scene), _FINER, np.inf
-    nudged = start + _NUDGE * scale
-    try:
-        coarse = integrator.run(nudged, times, tolerance=_FIRST * tolerance, scale=scale, limit=_EVALUATIONS)
-        while True:
-            mesh = refine(integrator.mesh, finer)
-            if len(mesh) * 12 > _EVALUATIONS:
-                raise DivergenceError(f"{len(mesh)} steps would be too many")
-            fine = integrator.run(start, times, mesh=mesh)
-            estimate = _CAUTION * distance(model, scene, coarse, fine)
-            if estimate <= tolerance:
-                return Solution(fine, estimate)
-            if estimate > best / 2:
-                raise ToleranceError(
-                    f"tolerance {tolerance:g} rad is not reached: two runs differ by {best:.2g} rad, and finer ones by "
-                    f"{estimate:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
-                )
-            best, coarse = estimate, fine
-            # The next distance is the error of the finer run, a fifth of the estimate at most.
-            finer = min(max(_LEAST, _FINER * (estimate / (5 * tolerance)) ** (1 / _ORDER)), _MOST)
-    except DivergenceError as error:
-        raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
+    def run(self, start: np.ndarray, times: np.ndarray, tolerance: float) -> Solution:
+        """States at `times` [s] whose error in phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
+
+        The first run chooses its steps, and starts a little beside the `start`; each other one divides the steps of
+        the run before. The estimate is a multiple of the distance of the last two.
+
+        Raises:
+          ToleranceError: if the runs do not come that close; the message says how close they came.
+        """
+        finer, best = _FINER, np.inf
+        caution, local, beside = _CAUTION, _FIRST * tolerance, start + _NUDGE * self._scale
+        try:
+            coarse = self._integrator.run(beside, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
+            while True:
+                mesh = refine(self._integrator.mesh, finer)
+                if len(mesh) * 12 > _EVALUATIONS:
+                    raise DivergenceError(f"{len(mesh)} steps would be too many")
+                fine = self._integrator.run(start, times, mesh=mesh)
+                estimate = caution * self._distance(coarse, fine)
+                if estimate <= tolerance:
+                    return Solution(fine, estimate)
+                if estimate > best / 2:
+                    raise ToleranceError(
+                        f"tolerance {tolerance:g} rad is not reached: two runs differ by {best:.2g} rad, and finer "
+                        f"ones by {estimate:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
+                    )
+                best, coarse, caution = estimate, fine, _CAUTION_LATER
+                # The next distance is the error of the finer run, a tenth of the estimate.
+                finer = min(max(_LEAST, _FINER * (estimate / (5 * tolerance)) ** (1 / _ORDER)), _MOST)
+        except DivergenceError as error:
+            raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
+
+    def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
+        """Largest difference of phi and of u/a [rad], relative to the angle where that exceeds 1 rad."""
+        angles, truth = one @ self._angles, other @ self._angles
+        return max(farthest(angles[:, column], truth[:, column]) for column in (0, 1))
 
 
 def tuning(scene: Scene, rolling: str, timestep: float) -> float:
@@ -86,12 +99,6 @@ def refine(mesh: np.ndarray, finer: float) -> np.ndarray:
     """Times of a mesh with `finer` steps for each of those of `mesh`."""
     place = np.linspace(0, len(mesh) - 1, round(finer * (len(mesh) - 1)) + 1)
     return np.interp(place, np.arange(len(mesh)), mesh)
-
-
-def distance(model: mujoco.MjModel, scene: Scene, one: np.ndarray, other: np.ndarray) -> float:
-    """Largest difference of phi and of u/a between two runs [rad], relative to the angle where that exceeds 1 rad."""
-    first, second = read(model, scene, one), read(model, scene, other)
-    return max(farthest(first.phi, second.phi), farthest(first.u / scene.can.radius, second.u / scene.can.radius))
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
