@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
+from mjbeer import audit, output, peers, settings, validation, video
 from mjbeer import benchmark as benchmarks
-from mjbeer import output, peers, settings, validation, video
+from mjbeer.claim import confirmed
 from mjbeer.exceptions import RenderingError
 from mjbeer.row import Row
 from mjbeer.settings import Curve
@@ -38,9 +39,18 @@ def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
-    """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3."""
+    """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
     rows = [Row(name, "a stub", 1e-3, "rad", "none", lambda error=error: error) for name, error in errors.items()]
     monkeypatch.setattr(validation, "rows", lambda: rows)
+    monkeypatch.setattr(audit, "claims", list)
+
+
+def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
+    """Make the audit one of confirmed equations with an error each, and the bound 1e-3."""
+    claims = [
+        confirmed(name, "a stub", "none", lambda e=error: (1.0 + e, -1.0), 1e-3, "") for name, error in errors.items()
+    ]
+    monkeypatch.setattr(audit, "claims", lambda: claims)
 
 
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:

@@ -8,6 +8,8 @@ import pytest
 THEORY = [
     *("can", "cases", "checks", "clock", "diagnostics", "equations", "exact", "exceptions", "forces"),
     *("load", "motion", "oscillator", "predictions", "scene", "segment", "trajectory"),
+    *("claim", "closed_forms", "quantities", "paper_sliding", "paper_can", "paper_frozen", "paper_hopping"),
+    *("paper_pendulum", "paper_segment"),
 ]
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 LOADED = "import sys; print(sorted({'mujoco', 'numba', 'llvmlite', 'mediapy', 'OpenGL'} & set(sys.modules)))"

@@ -44,6 +44,22 @@ def test_validate_as_json(
     ]
 
 
+@pytest.mark.parametrize(("error", "status"), [(1e-4, 0), (2e-3, 1)])
+def test_an_equation_that_fails_is_in_the_exit_status(
+    error: float, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.validate(monkeypatch, first=1e-5)
+    stubs.audited(monkeypatch, good=1e-6, other=error)
+    assert main(["validate"]) == status
+    lines = capsys.readouterr().out.splitlines()
+    (other,) = (line for line in lines if "other" in line)
+    assert ("FAIL" in other) == (status == 1)
+    assert main(["validate", "--json"]) == status
+    content = json.loads(capsys.readouterr().out)
+    assert [row["equation"] for row in content["audit"]] == ["good", "other"]
+    assert content["passed"] == (status == 0)
+
+
 @pytest.mark.parametrize("quick", [True, False])
 def test_a_report_has_the_table_and_four_scenes(
     quick: bool, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -11,12 +11,17 @@ from rich.console import Console
 from rich.table import Table
 
 from mjbeer import Scene, exact, frozen, hoop, simulate, table
+from mjbeer.claim import CONFIRMED, CORRECTED, Finding
 from mjbeer.row import Check
 from tests.scenes import SCENES
 
 PASSED = Check("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
 FAILED = Check("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
 UNKNOWN = Check("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
+
+RIGHT = Finding("(16)", "motion of phi", CONFIRMED, "MuJoCo", 5e-15, None, 1e-12, None, "rounding")
+MISPRINT = Finding("(49)", "motion of phi", CORRECTED, "MuJoCo", 0.0589, 4e-10, 2e-8, 0.059, "drift")
+NO_MISPRINT = Finding("(50)", "rolling", CORRECTED, "MuJoCo", 1e-9, math.nan, 2e-8, 0.059, "drift")
 
 
 def shown(content: Table) -> str:
@@ -93,7 +98,7 @@ def test_markdown() -> None:
 
 
 def test_json_has_versions_verdict_and_rows() -> None:
-    content = json.loads(table.validation_json([PASSED, FAILED]))
+    content = json.loads(table.validation_json([PASSED, FAILED], []))
     assert content["versions"] == {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
     assert content["passed"] is False
     assert content["checks"] == [
@@ -106,12 +111,41 @@ def test_json_has_versions_verdict_and_rows() -> None:
             "reason": "it hops or not", "passed": False,
         },
     ]  # fmt: skip
-    assert json.loads(table.validation_json([PASSED]))["passed"] is True
+    assert json.loads(table.validation_json([PASSED], []))["passed"] is True
 
 
 def test_json_of_an_error_that_is_no_number_is_still_json() -> None:
     # Python would write NaN, which no other reader of JSON takes.
-    text = table.validation_json([UNKNOWN])
+    text = table.validation_json([UNKNOWN], [])
     (row,) = json.loads(text, parse_constant=pytest.fail)["checks"]
     assert row["error"] is None
     assert row["passed"] is False
+
+
+def test_the_audit_for_the_terminal() -> None:
+    lines = shown(table.audit([RIGHT, MISPRINT, NO_MISPRINT])).splitlines()
+    right, misprint, none = (next(line for line in lines if each in line) for each in ("(16)", "(49)", "(50)"))
+    assert all(each in right for each in ("confirmed", "MuJoCo", "5.0e-15", "1.0e-12", "pass"))
+    assert all(each in misprint for each in ("confirmed after correction", "0.059", "4.0e-10", "2.0e-08", "pass"))
+    assert all(each in none for each in ("1e-09", "nan", "FAIL"))
+
+
+def test_the_audit_as_markdown() -> None:
+    assert table.audit_markdown([RIGHT, NO_MISPRINT]) == (
+        "| equation | quantity | verdict | witness | error, printed | error, right | at most | what dominates |\n"
+        "|---|---|---|---|---|---|---|---|\n"
+        "| (16) | motion of phi | confirmed | MuJoCo | 5.0e-15 |  | 1.0e-12 | rounding |\n"
+        "| (50) | rolling | confirmed after correction | MuJoCo | 1e-09 | nan | 2.0e-08 **FAIL** | drift |\n"
+    )
+
+
+def test_json_has_the_audit_and_a_misprint_decides() -> None:
+    content = json.loads(table.validation_json([PASSED], [RIGHT, NO_MISPRINT]), parse_constant=pytest.fail)
+    assert content["passed"] is False
+    right, none = content["audit"]
+    assert right == {
+        "equation": "(16)", "quantity": "motion of phi", "verdict": "confirmed", "witness": "MuJoCo", "printed": 5e-15,
+        "right": None, "bound": 1e-12, "misses_by": None, "reason": "rounding", "passed": True,
+    }  # fmt: skip
+    assert (none["right"], none["passed"]) == (None, False)
+    assert json.loads(table.validation_json([PASSED], [RIGHT, MISPRINT]))["passed"] is True

@@ -99,7 +99,7 @@ class Export:
 
 @dataclass(frozen=True)
 class Validate:
-    """Check the models against exact theory, row by row; exit status 1 if a row fails."""
+    """Check the models against exact theory and the paper against both, row by row; exit status 1 if a row fails."""
 
     json: bool = False
     """Print the table as JSON."""
@@ -108,12 +108,12 @@ class Validate:
         """Do it; the exit status."""
         from mjbeer import output, report, table
 
-        checks = report.check(_err)
+        verdict = report.check(_err)
         if self.json:
-            output.show(table.validation_json(checks))
+            output.show(table.validation_json(verdict.checks, verdict.findings))
         else:
-            _out.print(table.validation(checks))
-        return 0 if all(check.passed for check in checks) else _FAILED
+            _out.print(table.validation(verdict.checks), table.audit(verdict.findings))
+        return 0 if verdict.passed else _FAILED
 
 
 @dataclass(frozen=True)
@@ -129,10 +129,10 @@ class Report:
         """Do it; the exit status."""
         from mjbeer import report, table
 
-        checks = report.write(self.output, self.quick, _err)
-        _out.print(table.validation(checks))
+        verdict = report.write(self.output, self.quick, _err)
+        _out.print(table.validation(verdict.checks), table.audit(verdict.findings))
         _say(f"the report is in {self.output / 'summary.md'}")
-        return 0 if all(check.passed for check in checks) else _FAILED
+        return 0 if verdict.passed else _FAILED
 
 
 @dataclass(frozen=True)

@@ -2,25 +2,31 @@
 
 import math
 
+from mjbeer import paper_frozen, paper_sliding
+from mjbeer.quantities import Letters, letters
 from mjbeer.scene import Scene
+
+
+def constants(scene: Scene) -> Letters:
+    """The letters of a scene."""
+    return Letters(**letters(scene))
 
 
 def printed_55(scene: Scene) -> float:
     """Eq. (55) as printed [rad/s]: its denominator lacks the factor 2 in 2ab cos(phi_0)."""
-    a, b, phi = scene.can.radius, scene.load.offset, scene.equilibrium()
-    return math.sqrt(scene.gravity * b * math.cos(scene.incline + phi) / (1.5 * a**2 - a * b * math.cos(phi)))
+    phi = scene.equilibrium()
+    return math.sqrt(paper_frozen.printed_55(constants(scene), math.cos(phi), math.cos(scene.incline + phi)))
 
 
 def eq_10(scene: Scene) -> float:
     """Eq. (10) [rad/s], with the factor 1/a that its middle form lacks."""
-    squared = 24 * math.pi * scene.gravity * math.cos(scene.incline) / ((9 * math.pi**2 - 32) * scene.can.radius)
-    return math.sqrt(squared)
+    return math.sqrt(paper_sliding.eq_10(constants(scene), math.pi))
 
 
 def corrected_55(scene: Scene) -> float:
     """Eq. (55) with the denominator that eq. (52) gives [rad/s]."""
-    a, b, phi = scene.can.radius, scene.load.offset, scene.equilibrium()
-    return math.sqrt(scene.gravity * b * math.cos(scene.incline + phi) / (1.5 * a**2 - 2 * a * b * math.cos(phi)))
+    phi = scene.equilibrium()
+    return math.sqrt(paper_frozen.eq_55(constants(scene), math.cos(phi), math.cos(scene.incline + phi)))
 
 
 def eq_53(scene: Scene) -> float:

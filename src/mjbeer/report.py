@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.progress import Progress
 
-from mjbeer import output, table, validation
+from mjbeer import audit, output, table, validation
 from mjbeer.can import Can
+from mjbeer.claim import Finding
 from mjbeer.row import Check
 from mjbeer.scene import frozen, hoop, pendulum, sliding
 from mjbeer.simulation import simulate
@@ -63,20 +64,39 @@ _FILMS = (
 )
 
 
-def check(console: Console) -> list[Check]:
-    """Run every row of the validation table, with a progress bar on `console`."""
-    rows = validation.rows()
-    done = []
+@dataclass(frozen=True)
+class Verdict:
+    """All rows, measured."""
+
+    checks: list[Check]
+    """Those of the validation table."""
+    findings: list[Finding]
+    """Those of the audit of the paper."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether all of them did."""
+        return all(each.passed for each in (*self.checks, *self.findings))
+
+
+def check(console: Console) -> Verdict:
+    """Run every row of the validation table and of the audit, with a progress bar on `console`."""
+    rows, claims = validation.rows(), audit.claims()
+    checks, findings = [], []
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("validating", total=len(rows))
+        task = progress.add_task("validating", total=len(rows) + len(claims))
         for row in rows:
             progress.update(task, description=f"{row.quantity} ({row.by})")
-            done.append(row.run())
+            checks.append(row.run())
             progress.advance(task)
-    return done
+        for claim in claims:
+            progress.update(task, description=f"{claim.equation} {claim.quantity}")
+            findings.append(claim.run())
+            progress.advance(task)
+    return Verdict(checks, findings)
 
 
-def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
+def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
     """Write validation.json, a video and a picture of each scene, and summary.md into a folder.
 
     Every file appears whole or not at all; the summary comes last, and that of an earlier report goes first.
@@ -87,8 +107,8 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
     """
     from mjbeer.video import render, save_frame
 
-    checks = check(console)
-    output.write(folder / "validation.json", table.validation_json(checks))
+    verdict = check(console)
+    output.write(folder / "validation.json", table.validation_json(verdict.checks, verdict.findings))
     (folder / "summary.md").unlink(missing_ok=True)
     size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
@@ -96,14 +116,17 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> list[Check]:
         render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
         save_frame(trajectory, film.still, folder / f"{film.name}.png")
         console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
-    output.write(folder / "summary.md", _summary(checks))
-    return checks
+    output.write(folder / "summary.md", _summary(verdict))
+    return verdict
 
 
-def _summary(checks: list[Check]) -> str:
-    passed = sum(each.passed for each in checks)
-    lines = ["# mjbeer: report", "", f"{passed} of {len(checks)} checks passed.", ""]
+def _summary(verdict: Verdict) -> str:
+    checks, findings = verdict.checks, verdict.findings
+    lines = ["# mjbeer: report", ""]
+    lines += [f"{sum(each.passed for each in checks)} of {len(checks)} checks passed.", ""]
+    lines += [f"{sum(each.passed for each in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
     for film in _FILMS:
         lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
     lines += ["## Validation against exact theory", "", table.validation_markdown(checks)]
+    lines += ["## The paper, equation by equation", "", table.audit_markdown(findings)]
     return "\n".join(lines)

@@ -124,7 +124,8 @@ class Scene:
         """Steady acceleration of the axis down the incline [m/s^2].
 
         Sliding: footnote 4 (eq. 1 for a massless can), at the equilibrium. Frozen: that of the balanced
-        can, (2/3) g sin(alpha) for a massless one (A.3), the mean of the roll-down in the long run.
+        can, (2/3) g sin(alpha) for a massless one (A.3). A load off the axis rolls down faster in the long run,
+        by the mean inertia over the square of the mean of its root.
         """
         drive = self.mass * self.gravity * math.sin(self.incline)
         can = self.can.mass + self.can.inertia / self.can.radius**2
