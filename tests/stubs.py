@@ -7,12 +7,13 @@ from typing import Any
 
 import pytest
 
-from mjbeer import audit, output, peers, settings, validation, video
+from mjbeer import audit, exact, output, peers, settings, sliding, stories, validation, video
 from mjbeer import benchmark as benchmarks
 from mjbeer.claim import confirmed
 from mjbeer.exceptions import RenderingError
 from mjbeer.row import Row
 from mjbeer.settings import Curve
+from mjbeer.story import Film, Story
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
@@ -54,7 +55,10 @@ def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
 
 
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:
-    """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far."""
+    """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far.
+
+    The paper has a single story then, whose plot is a text file too.
+    """
     calls: list[dict[str, Any]] = []
 
     def stub(name: str, real: Callable[..., None]) -> Callable[..., None]:
@@ -70,6 +74,11 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
 
         return instead
 
+    def tell(path: pathlib.Path) -> None:
+        output.write(path.with_name(f"{path.name}.svg"), "plot")
+
+    film = Film(0.5, lambda: exact(sliding(), [0.0, 0.1], 0.1))
+    monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     for name in ("render", "save_frame"):
         monkeypatch.setattr(video, name, stub(name, getattr(video, name)))
     return calls

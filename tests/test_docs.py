@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import pytest
 
-from mjbeer import advice, benchmark_tables, study, validation
+from mjbeer import advice, audit, benchmark_tables, study, validation
+from mjbeer.claim import CORRECTED, LIMIT
 from mjbeer.cli import main
 from tests import stubs
 
@@ -136,3 +137,33 @@ def test_the_table_of_the_readme_is_that_of_the_program() -> None:
     # An error of today's differs in its digits, not in its being within the bound.
     assert all(float(error) <= row.bound for (_, _, error, *_), row in zip(table, rows, strict=True))
     assert f"these {len(rows)} rows" in text
+
+
+PHYSICS = CHECKOUT / "docs" / "physics.md"
+
+
+def test_the_misprints_of_the_physics_are_those_of_the_audit() -> None:
+    """Row by row, with what they miss by; and the tests that are named exist."""
+    _, _, after = PHYSICS.read_text().partition("| equation | printed | right | misses by | derived or shown in |\n")
+    rows = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()[1:]]
+    claims = [each for each in audit.claims() if each.verdict == CORRECTED]
+    told = sorted((row[0], float(row[3])) for row in rows)
+    assert told == sorted((each.equation, float(each.misses_by or 0)) for each in claims)
+    tests = "".join(path.read_text() for path in (CHECKOUT / "tests").glob("test_*.py"))
+    assert not [row[4] for row in rows if f"def {row[4].strip('`')}(" not in tests]
+
+
+def test_every_figure_is_in_the_physics() -> None:
+    shown = set(re.findall(r"\(figures/([\w-]+)\.svg\)", PHYSICS.read_text()))
+    assert shown == {each.stem for each in (CHECKOUT / "docs" / "figures").iterdir()}
+
+
+def test_the_limits_of_the_physics_are_those_of_the_audit() -> None:
+    _, _, after = PHYSICS.read_text().partition("| where | claim | holds | beyond that |\n")
+    named = {
+        each
+        for line in after.partition("\n\n")[0].splitlines()[1:]
+        for each in line.split(" | ")[0].strip("| ").split(", ")
+    }
+    limits = {each for claim in audit.claims() if claim.verdict == LIMIT for each in claim.equation.split(", ")}
+    assert named == limits

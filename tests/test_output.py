@@ -120,3 +120,13 @@ def test_a_folder_that_may_not_be_written_to_is_an_output_error(
 def test_show_writes_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
     output.show("a,b\n1,2\n")
     assert capsys.readouterr() == ("a,b\n1,2\n", "")
+
+
+def test_removing_what_is_there_and_what_is_not(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").touch()
+    output.remove(tmp_path / "file")
+    output.remove(tmp_path / "file")
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="cannot write"):
+        output.remove(tmp_path / "file" / "within")

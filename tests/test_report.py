@@ -13,7 +13,7 @@ from mjbeer.measurement import takeoff
 from tests import stubs
 
 FILMS = ("sliding", "frozen", "pendulum", "hoop")
-FILES = {"validation.json", "summary.md", *(f"{film}.{kind}" for film in FILMS for kind in ("mp4", "png"))}
+FILES = {"validation.json", "summary.md", "paper", *(f"{film}.{kind}" for film in FILMS for kind in ("mp4", "png"))}
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-4, 0), (1e-3, 0), (2e-3, 1), (math.nan, 1)])
@@ -78,8 +78,10 @@ def test_a_report_has_the_table_and_four_scenes(
     out, err = capsys.readouterr()
     assert "second" in out
     assert err.endswith(f"the report is in {folder / 'summary.md'}\n")
-    assert len(calls) == 8
-    assert {call["width"] for call in calls if call["function"] == "render"} == {640 if quick else 1280}
+    assert set(os.listdir(folder / "paper")) == {"stories.md", "told.svg", *([] if quick else ["told.mp4"])}
+    gallery = [call for call in calls if call["path"].parent == folder]
+    assert len(gallery) == 8
+    assert {call["width"] for call in gallery if call["function"] == "render"} == {640 if quick else 1280}
 
 
 def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
@@ -87,7 +89,7 @@ def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
 ) -> None:
     stubs.validate(monkeypatch)
     calls = stubs.draw(monkeypatch)
-    main(["report", "--output", str(tmp_path)])
+    main(["report", "--quick", "--output", str(tmp_path)])
     runs = {call["path"].stem: call["trajectory"] for call in calls}
     kinds = {name: (run.scene.attachment, run.scene.load.fill is None) for name, run in runs.items()}
     assert kinds == {

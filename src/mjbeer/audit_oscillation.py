@@ -15,9 +15,12 @@ from mjbeer.motions import LARGE, MODERATE, REDUCED, SMALL, swing, swung
 from mjbeer.quantities import Letters, Terms
 from mjbeer.scene import Scene, sliding
 from mjbeer.simulation import simulate
+from mjbeer.witness import watch
 
 FAST = 350.0
 """phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times what it takes."""
+SLOW = 45.0
+"""One that just loops: 39.4 rad/s is the least, and from 47.4 rad/s on the incline would have to pull."""
 DECADE = (50.0, 100.0, 200.0, 400.0)
 """phi_dot [rad/s] at phi = 0: mean rates of 35 to 354 rad/s."""
 _HESITATION = 0.01
@@ -87,6 +90,10 @@ def _looping() -> Iterator[Claim]:
         "sec. 2.3.2", "no loop from rest: phi stays within its start; it loops from 1.01 times the separatrix's rate",
         REDUCED, lambda: _furthest(1.01), lambda: _furthest(0.0), 0.67, 1e-9, "DOP853",
     )  # fmt: skip
+    yield limit(
+        "sec. 2.3.2", "the can stays on the incline (N > 0) while its beer loops: beyond, at 350 rad/s; within, at 45",
+        REDUCED, lambda: _pressed(FAST), lambda: _pressed(SLOW), 1.95, 0.0, "the sign of N",
+    )  # fmt: skip
     yield corrected(
         "(26)", "ripple of phi at 2 Omega: delta/4, whatever Omega; printed none", REDUCED,
         lambda: (_loop(FAST).phi[2], 0.0), lambda: (_loop(FAST).phi[2], -paper.ripple_26(c)), 1.0, 8e-3,
@@ -110,6 +117,14 @@ def _looping() -> Iterator[Claim]:
         lambda: (_loop(FAST).sway[1], -c.b), lambda: (_loop(FAST).sway[1], -paper.sway_29(c)), 0.026, 1e-3,
         "the next order in delta = 0.22",
     )  # fmt: skip
+
+
+def _pressed(phi_dot0: float) -> Terms:
+    """|N| and -N [N] over some turns, by MuJoCo's acceleration of the load."""
+    seen = watch(sliding(), "reduced", 3 * 2 * math.pi / phi_dot0, 0.0, phi_dot0)
+    q = seen.quantities
+    normal = q.m * (q.g * q.cos_alpha + seen.across[2])
+    return np.abs(normal), -normal
 
 
 @cache

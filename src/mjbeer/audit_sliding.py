@@ -108,7 +108,7 @@ def _lagrange() -> Iterator[Claim]:
         )  # fmt: skip
     yield corrected(
         "(14)", "V, its first form: -mgz for +mgz", REDUCED, lambda: (*paper.printed_14(q), -swing().potential),
-        lambda: (*paper.potential_14(q), -swing().potential), 2.0, EXACT, ROUNDING,
+        lambda: (*paper.potential_14(q), -swing().potential), 1.92, EXACT, ROUNDING,
     )  # fmt: skip
     yield confirmed("(15)", "s_ddot", REDUCED, lambda: paper.eq_15(q), EXACT, ROUNDING)
     yield confirmed("(16)", "equation of motion of phi", REDUCED, lambda: paper.eq_16(q), EXACT, ROUNDING)

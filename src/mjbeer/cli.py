@@ -1,4 +1,4 @@
-"""The command line: mjbeer simulate | render | export | validate | benchmark | advise | report."""
+"""The command line: mjbeer simulate | render | export | validate | benchmark | advise | report | paper."""
 
 import pathlib
 from collections.abc import Sequence
@@ -184,7 +184,25 @@ class Advise:
         return 0
 
 
-Command = Simulate | Render | Export | Validate | Benchmark | Advise | Report
+@dataclass(frozen=True)
+class Paper:
+    """Draw the paper's stories, a plot each, into a folder with a summary."""
+
+    output: pathlib.Path = pathlib.Path("paper")
+    """Folder to write to."""
+    films: bool = False
+    """Films of what moves, too."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import stories
+
+        stories.write(self.output, self.films, _err)
+        _say(f"the stories are in {self.output / 'stories.md'}")
+        return 0
+
+
+Command = Simulate | Render | Export | Validate | Benchmark | Advise | Report | Paper
 _COMMAND = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
     | Annotated[Render, tyro.conf.subcommand("render")]
@@ -193,6 +211,7 @@ _COMMAND = (
     | Annotated[Benchmark, tyro.conf.subcommand("benchmark")]
     | Annotated[Advise, tyro.conf.subcommand("advise")]
     | Annotated[Report, tyro.conf.subcommand("report")]
+    | Annotated[Paper, tyro.conf.subcommand("paper")]
 )
 _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf.CascadeSubcommandArgs)
 

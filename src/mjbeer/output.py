@@ -45,6 +45,18 @@ def write(path: str | os.PathLike[str], text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
+def remove(path: str | os.PathLike[str]) -> None:
+    """Remove a file if it is there.
+
+    Raises:
+      OutputError: if it cannot be removed, or its folder is none.
+    """
+    try:
+        pathlib.Path(path).unlink(missing_ok=True)
+    except OSError as error:
+        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+
+
 def show(text: str) -> None:
     """Write to standard output, all of it before this returns.
 

@@ -54,7 +54,7 @@ def slip(ratio: float, mu: float) -> float:
     def margin(phi: float) -> float:
         return mu * normal(ratio, phi) - abs(friction(ratio, phi))
 
-    steps = 20_000
+    steps = 2000
     angles = [math.pi * (1 - i / steps) for i in range(1, steps)]
     for before, after in itertools.pairwise(angles):
         if margin(after) < 0:

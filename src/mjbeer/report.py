@@ -1,4 +1,4 @@
-"""The report: the validation table and a video of each scene, in a folder with a summary."""
+"""The report: the tables, a video of each scene and the paper's stories, in a folder with a summary."""
 
 import math
 import pathlib
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rich.console import Console
 from rich.progress import Progress
 
-from mjbeer import audit, output, table, validation
+from mjbeer import audit, output, stories, table, validation
 from mjbeer.can import Can
 from mjbeer.claim import Finding
 from mjbeer.row import Check
@@ -97,7 +97,9 @@ def check(console: Console) -> Verdict:
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
-    """Write validation.json, a video and a picture of each scene, and summary.md into a folder.
+    """Write validation.json, a video and a picture of each scene, the paper's stories and summary.md into a folder.
+
+    Quickly, the videos are smaller and the stories have plots and no films.
 
     Every file appears whole or not at all; the summary comes last, and that of an earlier report goes first.
 
@@ -109,13 +111,15 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
 
     verdict = check(console)
     output.write(folder / "validation.json", table.validation_json(verdict.checks, verdict.findings))
-    (folder / "summary.md").unlink(missing_ok=True)
+    output.remove(folder / "summary.md")
     size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
         trajectory = film.trajectory()
         render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
         save_frame(trajectory, film.still, folder / f"{film.name}.png")
         console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
+    stories.write(folder / "paper", not quick, console)
+    console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
     output.write(folder / "summary.md", _summary(verdict))
     return verdict
 
@@ -127,6 +131,7 @@ def _summary(verdict: Verdict) -> str:
     lines += [f"{sum(each.passed for each in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
     for film in _FILMS:
         lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
+    lines += ["## The paper's stories", "", "A plot each: [paper/stories.md](paper/stories.md).", ""]
     lines += ["## Validation against exact theory", "", table.validation_markdown(checks)]
     lines += ["## The paper, equation by equation", "", table.audit_markdown(findings)]
     return "\n".join(lines)
