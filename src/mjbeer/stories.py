@@ -9,7 +9,8 @@ from mjbeer import output, stories_can, stories_frozen, stories_hopping, stories
 from mjbeer.story import Story
 
 _CHAPTERS = (stories_sliding, stories_can, stories_frozen, stories_hopping)
-_SIZE = (640, 360, 30)
+_SIZE = (640, 360, 20)
+"""Width and height [pixels] and frames per second of a film: small, for there are ten of them."""
 
 
 def stories() -> list[Story]:

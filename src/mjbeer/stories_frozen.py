@@ -25,13 +25,14 @@ def stories() -> Iterator[Story]:
     yield Story(
         "rocking",
         "A can with frozen beer, let go at phi = 0: it rocks about its equilibrium and does not roll off. Footnote 8's "
-        "equation, as printed, swings otherwise.",
-        _rocking, Film(0.5, lambda: simulate(footnote_scene(), 2.0, 0.0, integrator=DOP853)),
+        "equation, as printed, swings otherwise. The film has a half-full can.",
+        _rocking, Film(0.5, lambda: simulate(frozen(), 2.0, 0.0, integrator=DOP853)),
     )  # fmt: skip
     yield Story(
         "roll-down",
         "The figure of A.3: the same can let go with the beer on top. It runs off like a solid cylinder, in jerks; "
-        "but from 0.848 s on the incline would have to pull, and before that it takes ever more friction.",
+        "but from 0.848 s on the incline would have to pull, and before that it takes ever more friction. The film "
+        "has a half-full can, which slips and hops.",
         _roll_down, Film(0.25, lambda: _parting(1.0)),
     )  # fmt: skip
     yield Story(
@@ -106,7 +107,7 @@ def _roll_down(path: pathlib.Path) -> None:
 
 def _parting(friction: float) -> Trajectory:
     """In contact, until after the can has left the incline."""
-    return simulate(footnote_scene(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=friction)
+    return simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=friction)
 
 
 def _held(part: float) -> Trajectory:
