@@ -23,6 +23,8 @@ _CAUTION = 1.5
 """The estimate over the distance of the first two runs: ten times what the method leaves of it."""
 _CAUTION_LATER = 3.0
 """The same for later ones, which start at the same place: where rounding rules, they may be near by chance."""
+_PROGRESS = 0.75
+"""The distance of two runs over that of the two before, above which finer ones are not worth it."""
 _NUDGE = 4e-14
 """How far from the start the first run starts, relative to the scales. Rounding adds some 1e-15 to a run; what a
 motion beside a separatrix makes of that is in the distance of the first two, forty times as large."""
@@ -56,8 +58,8 @@ class Solver:
         Raises:
           ToleranceError: if the runs do not come that close; the message says how close they came.
         """
-        finer, best = _FINER, np.inf
-        caution, local, beside = _CAUTION, _FIRST * tolerance, start + _NUDGE * self._scale
+        finer, caution, before = _FINER, _CAUTION, np.inf
+        local, beside = _FIRST * tolerance, start + _NUDGE * self._scale
         try:
             coarse = self._integrator.run(beside, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
             while True:
@@ -65,15 +67,16 @@ class Solver:
                 if len(mesh) * 12 > _EVALUATIONS:
                     raise DivergenceError(f"{len(mesh)} steps would be too many")
                 fine = self._integrator.run(start, times, mesh=mesh)
-                estimate = caution * self._distance(coarse, fine)
+                apart = self._distance(coarse, fine)
+                estimate = caution * apart
                 if estimate <= tolerance:
                     return Solution(fine, estimate)
-                if estimate > best / 2:
+                if apart > _PROGRESS * before:
                     raise ToleranceError(
-                        f"tolerance {tolerance:g} rad is not reached: two runs differ by {best:.2g} rad, and finer "
-                        f"ones by {estimate:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
+                        f"tolerance {tolerance:g} rad is not reached: two runs differ by {before:.2g} rad, and finer "
+                        f"ones by {apart:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
                     )
-                best, coarse, caution = estimate, fine, _CAUTION_LATER
+                coarse, before, caution = fine, apart, _CAUTION_LATER
                 # The next distance is the error of the finer run, a tenth of the estimate.
                 finer = min(max(_LEAST, _FINER * (estimate / (5 * tolerance)) ** (1 / _ORDER)), _MOST)
         except DivergenceError as error:
