@@ -23,6 +23,8 @@ _CAUTION = 1.5
 """The estimate over the distance of the first two runs: ten times what the method leaves of it."""
 _CAUTION_LATER = 3.0
 """The same for later ones, which start at the same place: where rounding rules, they may be near by chance."""
+_NEAR_ROUNDING = 1e-11
+"""Tolerance from which down the first two are judged like later ones."""
 _PROGRESS = 0.75
 """The distance of two runs over that of the two before, above which finer ones are not worth it."""
 _NUDGE = 4e-14
@@ -58,7 +60,8 @@ class Solver:
         Raises:
           ToleranceError: if the runs do not come that close; the message says how close they came.
         """
-        finer, caution, before = _FINER, _CAUTION, np.inf
+        finer, before = _FINER, np.inf
+        caution = _CAUTION if tolerance > _NEAR_ROUNDING else _CAUTION_LATER
         local, beside = _FIRST * tolerance, start + _NUDGE * self._scale
         try:
             coarse = self._integrator.run(beside, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
