@@ -6,8 +6,21 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from mjbeer import Scene, exact, frozen, hoop, pendulum, sliding
+from mjbeer import (
+    Scene,
+    exact,
+    frozen,
+    hoop,
+    paper_can,
+    paper_frozen,
+    paper_pendulum,
+    paper_sliding,
+    pendulum,
+    sliding,
+)
+from mjbeer.claim import miss
 from mjbeer.forces import accelerations, rolling_forces
+from mjbeer.quantities import Quantities, letters
 from tests.scenes import METAL, SCENES
 from tests.test_motion import Motion, Witness, mp, mpf
 
@@ -18,35 +31,35 @@ ROUNDING = 5e-15
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 @pytest.mark.parametrize(("phi", "rate"), [(0.7, 3.0), (-2.0, -11.0)])
 def test_motion_obeys_the_corrected_equations(scene: Scene, phi: float, rate: float) -> None:
-    """As the list of misprints corrects them; (47), (49) and (61) as printed leave a residual that is no rounding."""
-    can, load, g, alpha = scene.can, scene.load, scene.gravity, scene.incline
-    a, m, b, can_mass = can.radius, load.mass, load.offset, can.mass
+    """(47), (49) and (61) as printed leave a residual that is no rounding."""
     u2, phi2 = (float(each) for each in accelerations(scene, phi, rate))
-    sin, cos, rolling = math.sin(phi), math.cos(phi), can_mass + can.inertia / a**2
-    axial, whole = load.inertia + m * b**2, m + rolling
-    drive, wheel = (m + can_mass) * g * math.sin(alpha), b * (cos * phi2 - sin * rate**2)
-    forces = m * g + whole * (abs(u2) + b * (abs(phi2) + rate**2))
-    torques = forces * a + load.inertia * abs(phi2)
-    if scene.attachment == "frozen":  # (52), with the can's mass
-        resists = axial + can.inertia + (m + can_mass) * a**2 - 2 * m * a * b * cos
-        pull = drive * a - m * g * b * math.sin(alpha + phi)
-        assert abs(resists * phi2 + m * a * b * sin * rate**2 - pull) < ROUNDING * torques
+    a, b, sin, cos = scene.can.radius, scene.load.offset, math.sin(phi), math.cos(phi)
+    theta = scene.incline + phi
+    q = Quantities(
+        **letters(scene), s=0, s_dot=0, s_ddot=u2 - b * (cos * phi2 - sin * rate**2), u=0, u_dot=0, u_ddot=u2, phi=phi,
+        phi_dot=rate, phi_ddot=phi2, sin_phi=sin, cos_phi=cos, sin_theta=math.sin(theta), cos_theta=math.cos(theta),
+    )  # fmt: skip
+    if scene.attachment == "frozen":
         assert u2 == pytest.approx(a * phi2, rel=ROUNDING)
+        whole = q.m + q.can_mass
+        resists = q.axial + q.can_inertia + whole * a**2
+        pull = -whole * q.g * a * q.sin_alpha, q.m * q.g * b * q.sin_theta
+        lever = q.m * a * b
+        assert miss((resists * phi2, -2 * lever * cos * phi2, lever * sin * rate**2, *pull)) < ROUNDING
+        if scene.can.mass == 0:  # then it is (52)
+            assert miss(paper_frozen.eq_52(q)) < ROUNDING
         return
-    s2 = u2 - wheel
-    assert abs(whole * u2 - m * wheel - drive) < ROUNDING * forces  # (46), (57)
-    assert abs(whole * s2 + rolling * wheel - drive) < ROUNDING * forces  # (48), (60)
-    eq_47 = axial * phi2 - m * b * cos * u2 + m * g * b * math.sin(alpha + phi)
-    assert abs(eq_47) < ROUNDING * torques
-    swings = (load.inertia + m * b**2 * sin**2) * phi2 + m * b**2 * sin * cos * rate**2
-    swings += m * g * b * math.cos(alpha) * sin
-    rolls = rolling * b * cos * (s2 + wheel) - can_mass * g * b * math.sin(alpha) * cos
-    assert abs(swings + rolls) < ROUNDING * torques  # (49), (61)
-    printed_47 = eq_47 + (m * a**2 - axial) * phi2
-    printed_49 = swings + rolling * (b**2 * sin**2 * phi2 + b * cos * s2)
-    assert abs(printed_47) > 0.01 * torques
-    assert abs(printed_49) > 1e-3 * torques or rolling == 0
-    assert abs(swings) < ROUNDING * torques or rolling > 0  # (16)
+    for equation in (paper_can.eq_46, paper_can.eq_47, paper_can.eq_48, paper_can.eq_49):
+        assert miss(equation(q)) < ROUNDING
+    assert miss(paper_can.printed_47(q)) > 0.01
+    if scene.can.mass == 0:
+        assert miss(paper_sliding.eq_16(q)) < ROUNDING
+    else:
+        assert miss(paper_can.printed_49(q)) > 1e-3
+    if scene.load.inertia == 0:
+        for equation in (paper_pendulum.eq_57, paper_pendulum.eq_58, paper_pendulum.eq_60, paper_pendulum.eq_61):
+            assert miss(equation(q)) < ROUNDING
+        assert miss(paper_pendulum.printed_61(q)) > 1e-3
 
 
 def positions(scene: Scene, motion: Motion, time: mpf, guess: mpf) -> tuple[mpf, mpf, mpf]:
