@@ -62,9 +62,9 @@ def footnote() -> Witness:
 
 
 @cache
-def swung(scene: Scene, phi0: float, duration: float = 4.0) -> Trajectory:
+def swung(scene: Scene, phi0: float, duration: float = 4.0, rolling: str = "reduced") -> Trajectory:
     """A swing that is measured, in 4000 steps."""
-    return simulate(scene, duration, phi0, integrator=DOP853, timestep=duration / 4000)
+    return simulate(scene, duration, phi0, rolling=rolling, integrator=DOP853, timestep=duration / 4000)
 
 
 def balanced(k: float, gravity: float = 9.81) -> Scene:
