@@ -100,25 +100,6 @@ def test_evaluations_are_counted() -> None:
     for samples, expected in ((11, 1 + 10 * 12), (21, 1 + 10 * 15)):
         integrator.run(begin, np.linspace(0, 1, samples), timestep=0.1)
         assert integrator.evaluations == expected
-    assert integrator.mesh == pytest.approx(np.linspace(0, 1, 11), abs=1e-15)
-
-
-def test_a_mesh_of_even_steps_is_a_timestep() -> None:
-    model = build(frozen())
-    begin, times = start(model, frozen(), 1.0, 0.0), np.linspace(0, 1, 7)
-    fixed, meshed = (
-        Integrator(model).run(begin, times, **each) for each in ({"timestep": 0.125}, {"mesh": np.linspace(0, 1, 9)})
-    )
-    assert np.array_equal(fixed, meshed)
-
-
-def test_steps_that_a_run_chose_repeat_it() -> None:
-    model = build(sliding())
-    begin, times = start(model, sliding(), 1.0, 0.0), np.linspace(0, 1, 7)
-    integrator = Integrator(model)
-    chosen = integrator.run(begin, times, tolerance=1e-8)
-    again = integrator.run(begin, times, mesh=integrator.mesh)
-    assert again == pytest.approx(chosen, rel=1e-13)  # a step is the difference of two times, rounded
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -8,14 +8,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer import tolerance as global_tolerance
 from mjbeer.exceptions import ToleranceError
 from mjbeer.measurement import relative_phi_error
 from tests.scenes import scenes
 
 TOLERANCE = 1e-10
-# Rounding of the start alone, amplified by more than this, is a tenth of the tolerance: a motion beside a separatrix,
-# of which nobody knows that many digits.
-WORST_CONDITION = 1e15
+# Rounding of the start alone, amplified by more than this, is a thousandth of the tolerance, and that of all steps may
+# be all of it: a motion beside a separatrix, of which nobody knows that many digits.
+WORST_CONDITION = 1e13
 NEARBY = 1e-8
 
 
@@ -51,15 +52,15 @@ def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> N
     assert run.timestep is None
 
 
-def test_contact_is_not_smooth_and_says_how_far_it_got() -> None:
-    with pytest.raises(
-        ToleranceError, match=r"tolerance 1e-12 rad is not reached: .*(differ by|given up at t =) [\d.]"
-    ):
+def test_contact_is_not_smooth_and_says_how_far_it_got(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the patience of a test: where the can parts from the incline no step is small enough."""
+    monkeypatch.setattr(global_tolerance, "_EVALUATIONS", 200_000)
+    with pytest.raises(ToleranceError, match=r"tolerance 1e-12 rad is not reached: .* given up at t = 0.7\d+ s"):
         simulate(frozen(), 1.2, math.pi, rolling="contact", tolerance=1e-12)
 
 
 def test_more_digits_than_a_double_has_are_refused() -> None:
-    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs differ by"):
+    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
         simulate(sliding(), 1, 1.0, tolerance=1e-17)
 
 

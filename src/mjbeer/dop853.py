@@ -35,24 +35,20 @@ class Integrator:
         self._views = (self._data.qpos, self._data.qvel, acceleration)
         self.evaluations = 0
         """Evaluations of the forward dynamics that the last run took."""
-        self.mesh = np.zeros(1)
-        """Times [s] between which the last run took its steps."""
 
     def run(
         self,
         start: np.ndarray,
         times: np.ndarray,
         timestep: float | None = None,
-        mesh: np.ndarray | None = None,
         tolerance: float = 1e-10,
         scale: np.ndarray | None = None,
         limit: float = math.inf,
     ) -> np.ndarray:
         """States at the increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        A `timestep` [s] fixes the step; a `mesh` gives the times [s] between which to step, from 0 to the last of
-        `times` or later. Otherwise each step keeps its local error below `tolerance` times (`scale` + |state|),
-        with `scale` of shape (nq + nv,). More than `limit` evaluations are given up.
+        A `timestep` [s] fixes the step. Otherwise each step keeps its local error below `tolerance` times
+        (`scale` + |state|), with `scale` of shape (nq + nv,). More than `limit` evaluations are given up.
 
         Raises:
           DivergenceError: if the motion stops being finite, the step vanishes, or the limit is reached.
@@ -60,22 +56,19 @@ class Integrator:
         state, samples = start.copy(), np.empty((len(times), self._size))
         slopes = np.zeros((dop853_steps.ROWS, self._size))
         scale = np.ones(self._size) if scale is None else scale
-        given = np.empty(0) if mesh is None else mesh
-        place, passed = (0.0, timestep or 0.0, 0, 0, 1.0), [np.zeros(1)]
+        place = (0.0, timestep or 0.0, 0, 0, 1.0)
         self.evaluations, status = 0, dop853_steps.BLOCK_END
         with quiet(), untimed():
             while status == dop853_steps.BLOCK_END:
-                status, place, spent, more = dop853_steps.advance(
-                    self._pointers, self._views, state, slopes, times, samples, given, place,
+                status, place, spent = dop853_steps.advance(
+                    self._pointers, self._views, state, slopes, times, samples, place,
                     timestep is not None, tolerance, scale,
                 )  # fmt: skip
-                passed.append(more)
                 self.evaluations += spent
                 if status == dop853_steps.BLOCK_END and self.evaluations > limit:
                     raise DivergenceError(
                         f"the DOP853 run was given up at t = {place[0]:.6g} s after {self.evaluations} evaluations"
                     )
-        self.mesh = np.concatenate(passed)
         if status != dop853_steps.DONE:
             not_finite = status == dop853_steps.NOT_FINITE
             cause = "its state is no longer finite" if not_finite else "no step is small enough for it"

@@ -73,25 +73,23 @@ def _combine(weights, count, slopes, out):
 
 @njit(cache=True)
 def advance(
-    pointers, views, state, slopes, times, samples, mesh, place, fixed, tolerance, scale
+    pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale
 ):  # fmt: skip
     """Take up to a block of steps, from `state` on, and fill in the `samples` that they pass.
 
     `place` is where the run is: time, step, next sample, number of steps, error of the last step; it comes back
-    anew. A step is `fixed`, or goes to the next time of the `mesh` if that has any, or keeps its error below the
-    `tolerance`. Also returned: how it ended, the evaluations spent, and the times of the steps.
+    anew. A step is `fixed`, or keeps its error below the `tolerance`. Also returned: how it ended, and the
+    evaluations spent.
     """
     time, step, sample, steps, before = place
     size = state.size
     new, work, total = np.empty(size), np.empty(size), np.empty(size)
-    weights, passed = np.empty((7, size)), np.empty(_BLOCK)
-    evaluations = taken = 0
-    given = mesh.size > 0
-    controlled = not (fixed or given)
+    weights = np.empty((7, size))
+    evaluations = 0
     if steps == 0:
         _slope(pointers, views, state, slopes[0])
         evaluations += 1
-        if controlled:
+        if not fixed:
             step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
             evaluations += 1
     status = BLOCK_END
@@ -102,8 +100,6 @@ def advance(
         if sample == times.size:
             status = DONE
             break
-        if given:
-            step = mesh[steps + 1] - mesh[steps]
         for s in range(1, _STAGES):
             _combine(_A[s], s, slopes, total)
             for i in range(size):
@@ -115,10 +111,10 @@ def advance(
             new[i] = state[i] + step * total[i]
             finite = finite and abs(new[i]) < _LARGEST
         evaluations += _STAGES - 1
-        if not (finite or controlled):
+        if fixed and not finite:
             status = NOT_FINITE
             break
-        if controlled:
+        if not fixed:
             error = np.inf
             if finite:
                 error = _error(state, new, slopes, step, tolerance, scale, work, total)
@@ -131,7 +127,7 @@ def advance(
         _slope(pointers, views, new, slopes[_STAGES])
         evaluations += 1
         steps += 1
-        end = steps * step if fixed else mesh[steps] if given else time + step
+        end = steps * step if fixed else time + step
         last = end * (1 + 1e-14)
         prepared = False
         while sample < times.size and times[sample] <= last:
@@ -146,18 +142,16 @@ def advance(
                 _interpolate(state, weights, part, samples[sample])
             sample += 1
         time = end
-        passed[taken] = time
-        taken += 1
         for i in range(size):
             state[i] = new[i]
             slopes[0, i] = slopes[_STAGES, i]
-        if controlled:
+        if not fixed:
             growth = _SAFETY * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
             step *= min(_GROW, max(_SHRINK, growth))
             before = max(error, _LEAST)
             if time < times[-1]:  # a motion at rest would take steps without bound
                 step = min(step, times[-1] - time)
-    return status, (time, step, sample, steps, before), evaluations, passed[:taken].copy()
+    return status, (time, step, sample, steps, before), evaluations
 
 
 @njit(cache=True)

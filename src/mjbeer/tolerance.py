@@ -11,22 +11,24 @@ from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.scene import Scene
 from mjbeer.state import read
 
-_ORDER = 8
 _FIRST = 0.07
 """Local tolerance of the first run per global tolerance. Over some ten periods local errors add up to 2-20 times
 themselves (measured on all scenes)."""
-_FINER = 1.3
-"""Steps of the second run for each of the first one's: an eighth of its error."""
-_LEAST, _MOST = 1.1, 4.0
-"""Fewest and most steps of a later run for each of the run before."""
-_CAUTION = 1.5
-"""The estimate over the distance of the first two runs: ten times what the method leaves of it."""
-_CAUTION_LATER = 3.0
-"""The same for later ones, which start at the same place: where rounding rules, they may be near by chance."""
-_NEAR_ROUNDING = 1e-11
-"""Tolerance from which down the first two are judged like later ones."""
+_COARSEST = 1e-5
+"""Largest local tolerance: with larger steps a motion that spins up goes astray before the order shows."""
+_RATIO = 8.0
+"""Local tolerance of one run over that of the next: 1.3 times the evaluations at order 8."""
+_SMALLEST = 1e-16
+"""Local tolerance below which a step's error is rounding."""
+_CAUTION, _MORE_CAUTION = 1.5, 3.0
+"""The estimate over the distance of two runs; the method leaves an eighth of it in the finer one. The greater one
+is for pairs that may be near each other by chance: later ones, which start at the same place, and those of ..."""
+_SMOOTH = (1e-11, 1e-5)
+"""... tolerances outside these, where rounding rules, or where steps are too large for the method's order."""
 _PROGRESS = 0.75
-"""The distance of two runs over that of the two before, above which finer ones are not worth it."""
+"""The distance of two runs over that of the two before, above which the finer ones brought nothing."""
+_PATIENCE = 1
+"""How often in a row they may: steps that are too large for a motion miss by anything."""
 _NUDGE = 4e-14
 """How far from the start the first run starts, relative to the scales. Rounding adds some 1e-15 to a run; what a
 motion beside a separatrix makes of that is in the distance of the first two, forty times as large."""
@@ -54,34 +56,37 @@ class Solver:
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float) -> Solution:
         """States at `times` [s] whose error in phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
-        The first run chooses its steps, and starts a little beside the `start`; each other one divides the steps of
-        the run before. The estimate is a multiple of the distance of the last two.
+        Each run keeps its steps' errors below an eighth of what the run before did, and the first one starts a little
+        beside the `start`. The estimate is a multiple of the distance of the last two.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message says how close they came.
         """
-        finer, before = _FINER, np.inf
-        caution = _CAUTION if tolerance > _NEAR_ROUNDING else _CAUTION_LATER
-        local, beside = _FIRST * tolerance, start + _NUDGE * self._scale
+        local, before, stalled = min(_FIRST * tolerance, _COARSEST), np.inf, 0
+        caution = _CAUTION if _SMOOTH[0] < tolerance < _SMOOTH[1] else _MORE_CAUTION
+        coarse = self._run(start + _NUDGE * self._scale, times, local, tolerance)
+        while True:
+            local /= _RATIO
+            if local < _SMALLEST:
+                raise ToleranceError(
+                    f"tolerance {tolerance:g} rad is not reached: two runs at the limit of rounding differ by "
+                    f"{before:.2g} rad"
+                )
+            fine = self._run(start, times, local, tolerance)
+            apart = self._distance(coarse, fine)
+            if caution * apart <= tolerance:
+                return Solution(fine, caution * apart)
+            stalled = stalled + 1 if apart > _PROGRESS * before else 0
+            if stalled > _PATIENCE:
+                raise ToleranceError(
+                    f"tolerance {tolerance:g} rad is not reached: two runs differ by {before:.2g} rad, and finer "
+                    f"ones by {apart:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
+                )
+            coarse, before, caution = fine, apart, _MORE_CAUTION
+
+    def _run(self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float) -> np.ndarray:
         try:
-            coarse = self._integrator.run(beside, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
-            while True:
-                mesh = refine(self._integrator.mesh, finer)
-                if len(mesh) * 12 > _EVALUATIONS:
-                    raise DivergenceError(f"{len(mesh)} steps would be too many")
-                fine = self._integrator.run(start, times, mesh=mesh)
-                apart = self._distance(coarse, fine)
-                estimate = caution * apart
-                if estimate <= tolerance:
-                    return Solution(fine, estimate)
-                if apart > _PROGRESS * before:
-                    raise ToleranceError(
-                        f"tolerance {tolerance:g} rad is not reached: two runs differ by {before:.2g} rad, and finer "
-                        f"ones by {apart:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
-                    )
-                coarse, before, caution = fine, apart, _CAUTION_LATER
-                # The next distance is the error of the finer run, a tenth of the estimate.
-                finer = min(max(_LEAST, _FINER * (estimate / (5 * tolerance)) ** (1 / _ORDER)), _MOST)
+            return self._integrator.run(start, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
         except DivergenceError as error:
             raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
 
@@ -99,12 +104,6 @@ def tuning(scene: Scene, rolling: str, timestep: float) -> float:
     """
     slow = scene.gravity > 0 and rolling == "equality"
     return float(np.sqrt(scene.can.radius / scene.gravity)) / 2 if slow else timestep
-
-
-def refine(mesh: np.ndarray, finer: float) -> np.ndarray:
-    """Times of a mesh with `finer` steps for each of those of `mesh`."""
-    place = np.linspace(0, len(mesh) - 1, round(finer * (len(mesh) - 1)) + 1)
-    return np.interp(place, np.arange(len(mesh)), mesh)
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
