@@ -63,6 +63,7 @@ class Solver:
           ToleranceError: if the runs do not come that close; the message says how close they came.
         """
         local, before, stalled = min(_FIRST * tolerance, _COARSEST), np.inf, 0
+        local = max(local, _RATIO * _SMALLEST)
         caution = _CAUTION if _SMOOTH[0] < tolerance < _SMOOTH[1] else _MORE_CAUTION
         coarse = self._run(start + _NUDGE * self._scale, times, local, tolerance)
         while True:
