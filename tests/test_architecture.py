@@ -6,7 +6,7 @@ import sys
 import pytest
 
 THEORY = [
-    *("can", "cases", "checks", "clock", "diagnostics", "equations", "exact", "exceptions", "forces"),
+    *("can", "cases", "checks", "clock", "conserved", "diagnostics", "equations", "exact", "exceptions", "forces"),
     *("load", "motion", "oscillator", "predictions", "scene", "segment", "trajectory"),
     *("claim", "closed_forms", "quantities", "paper_sliding", "paper_can", "paper_frozen", "paper_hopping"),
     *("paper_pendulum", "paper_segment"),

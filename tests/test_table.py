@@ -65,7 +65,7 @@ def test_the_summary_says_what_a_run_says_about_itself() -> None:
     assert f"{run.lift.min() / 0.033:.2e}, {run.lift.max() / 0.033:.2e} radii" in text
     assert f"friction coefficient needed {run.forces.needed.max():.4g}" in text
     assert "can roll without slipping to the end" in text
-    assert "estimated error" not in text
+    assert f"estimated error of phi and u/a {run.error_estimate:.2e} rad" in text
 
 
 def test_the_summary_has_the_estimated_error_of_a_tolerance() -> None:

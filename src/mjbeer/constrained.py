@@ -16,6 +16,11 @@ _IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]
 _FRICTION_HARDNESS = 100.0
 """impratio: friction rows this much harder than the normal one. More gains little; from 1e6 on the solver
 stops converging (measured on frozen: error 3e-7 rad at 100, 2e-7 at 1e4, 5e-3 at 1e6)."""
+_TOLERANCE, _STANDARD_GRAVITY = 1e-8, 9.81
+"""Where MuJoCo's solver stops [m^2/s^4], its own default, and the gravity that suits [m/s^2]: its scale is the square
+of an acceleration, so that in weak gravity it would stop before it begins, and nothing would roll."""
+_WEIGHTLESS = 1e-6
+"""Gravity over the standard one that stands for none at all."""
 _BEARS_STIFFNESS = ("RK4", "discrete", "DOP853")
 
 
@@ -70,6 +75,8 @@ def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, timeconst: f
     _harden(spec, rolling, timeconst)
     spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
     spec.option.impratio = _FRICTION_HARDNESS
+    weight = max(scene.gravity / _STANDARD_GRAVITY, _WEIGHTLESS)
+    spec.option.tolerance = _TOLERANCE * min(1.0, weight) ** 2
 
 
 def _make_contact(spec: mujoco.MjSpec) -> None:

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mjbeer.conserved import implied_error
+
 if TYPE_CHECKING:
     from mjbeer.trajectory import Trajectory
 
-ENERGY_DRIFT = 1e-3
-"""Largest relative energy drift that is trusted. With every scene, integrator and way of rolling, timesteps
-of 0.2 to 8 ms and amplitudes to 2.5 rad, phi is at most 0.016 rad off in 2 s where the drift is less."""
+ERROR = 1e-2
+"""Largest estimated error of phi and u/a that is trusted [rad], relative beyond 1 rad: half a degree."""
 SLIP = 1e-3
 """Largest slip that is trusted, in radii: a milliradian of roll angle."""
 LIFT = 1e-3
@@ -106,15 +107,23 @@ def warnings(trajectory: Trajectory) -> tuple[str, ...]:
     """Why the motion is not to be relied on, a sentence each."""
     found = []
     radius = trajectory.scene.can.radius
-    drift = trajectory.energy_drift
-    slid = float(np.abs(trajectory.slip).max()) / radius
-    if drift > ENERGY_DRIFT:
+    implied = implied_error(trajectory)
+    if not implied <= ERROR:
         found.append(
-            f"energy drifts by {drift:.2g} of the swing's own (trusted up to {ENERGY_DRIFT:g}): "
-            "take a smaller timestep or a better integrator" + ("; slipping takes energy too" if slid > SLIP else "")
+            f"energy or momentum drift like an error of {implied:.2g} rad of phi or u/a (trusted up to {ERROR:g}): "
+            "take a smaller timestep or a better integrator"
         )
+    slid = float(np.abs(trajectory.slip).max()) / radius
     if slid > SLIP:
         found.append(f"the can slips by {slid:.2g} radii (trusted up to {SLIP:g})")
+    estimate = trajectory.error_estimate
+    if estimate is not None and not estimate <= ERROR:
+        finer = "half the timestep" if trajectory.timestep is not None else "a tighter tolerance"
+        found.append(
+            f"phi and u/a are off by {estimate:.2g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
+            if math.isfinite(estimate)
+            else f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
+        )
     lifted = float(np.abs(trajectory.lift).max()) / radius
     if lifted > LIFT:
         found.append(f"the can parts from the incline, or sinks in, by {lifted:.2g} radii (trusted up to {LIFT:g})")

@@ -1,18 +1,25 @@
 """Simulate a scene with MuJoCo."""
 
 import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 
+import mujoco
 import numpy as np
 
 from mjbeer import checks, dop853, state, stepping
 from mjbeer import tolerance as global_tolerance
-from mjbeer.exceptions import ParameterError
+from mjbeer.distance import farthest
+from mjbeer.exceptions import DivergenceError, ParameterError
 from mjbeer.model import DOP853, FRICTION, build
 from mjbeer.scene import Scene
 from mjbeer.trajectory import Trajectory
 
 _ON_A_STEP = 1e-6
 """How far from a multiple of the timestep a requested time may be, in timesteps: what rounding can do to it."""
+_FALLS = 2.0
+"""By what an error at least falls from a timestep to half of it: that of a first-order method."""
 _MOST_SAMPLES = 1e8
 """Most samples that are kept unasked: ten gigabytes."""
 
@@ -41,7 +48,7 @@ def simulate(
     and u/a over the whole motion is below it (relative to the angle where that exceeds 1 rad); the estimate
     is kept on the trajectory. `timestep` is then only the sampling interval, and what constraints are tuned
     to. It is the error of integrating the model: that of the model itself is zero for "reduced" and "equality",
-    but not for a soft contact.
+    but not for a soft contact. Without a tolerance the error is estimated when one asks the trajectory for it.
 
     Raises:
       ParameterError: on a parameter that is not allowed.
@@ -49,16 +56,42 @@ def simulate(
       DivergenceError: if the motion stops being finite.
       ToleranceError: if the tolerance is not reached.
     """
+    make = partial(_build, scene, rolling, friction)
+    return follow(make, scene, duration, phi0, phi_dot0, rolling, integrator, timestep, tolerance, times)
+
+
+Make = Callable[[str, float], mujoco.MjModel]
+"""Makes the model of a scene for an integrator and a timestep [s]."""
+
+
+def _build(scene: Scene, rolling: str, friction: float, integrator: str, timestep: float) -> mujoco.MjModel:
+    return build(scene, rolling, integrator=integrator, timestep=timestep, friction=friction)
+
+
+def follow(
+    make: Make,
+    scene: Scene,
+    duration: float,
+    phi0: float,
+    phi_dot0: float = 0.0,
+    rolling: str = "reduced",
+    integrator: str = "RK4",
+    timestep: float = 1e-3,
+    tolerance: float | None = None,
+    times: np.ndarray | None = None,
+) -> Trajectory:
+    """Motion of a scene as the model that `make` makes has it, which need not be mjbeer's own; see `simulate`.
+
+    The model has the joints of the scene's `rolling`.
+    """
     checks.positive("duration", duration, "s")
     phi0, phi_dot0 = checks.start(phi0, phi_dot0)
     if tolerance is not None:
         checks.positive("tolerance", tolerance, "rad")
         integrator = DOP853
-    tuned_to = timestep if tolerance is None else global_tolerance.tuning(scene, rolling, timestep)
-    model = build(scene, rolling, integrator=integrator, timestep=tuned_to, friction=friction)
+    model = make(integrator, timestep if tolerance is None else global_tolerance.tuning(scene, rolling, timestep))
     start = state.start(model, scene, phi0, phi_dot0)
     moments = _moments(duration, timestep, times)
-    estimate = None
     if integrator != DOP853:
         steps = _steps(moments, timestep)
         states, moments = stepping.step(model, start[None], steps)[0], steps * timestep
@@ -66,10 +99,30 @@ def simulate(
         states = dop853.integrate(model, start, moments, timestep)
     else:
         solution = global_tolerance.Solver(model, scene).run(start, moments, tolerance)
-        states, estimate = solution.states, solution.estimate
-    moved = state.read(model, scene, states)
+        states = solution.states
     fixed = timestep if tolerance is None else None
-    return Trajectory(scene, rolling, integrator, fixed, moments, **vars(moved), error_estimate=estimate)
+    run = Trajectory(scene, rolling, integrator, fixed, moments, **vars(state.read(model, scene, states)))
+    if tolerance is None:
+        opinion = partial(_halved, make, run, max(duration, float(moments[-1])), phi0, phi_dot0)
+    else:
+        opinion = partial(float, solution.estimate)
+    return replace(run, second_opinion=opinion)
+
+
+def _halved(make: Make, run: Trajectory, duration: float, phi0: float, phi_dot0: float) -> float:
+    """The error [rad] that a run at half the timestep shows, if halving it halves the error at least.
+
+    Constraints that are tuned to the timestep get harder with it, so that what their softness does shows too.
+    """
+    assert run.timestep is not None
+    settings = run.rolling, run.integrator, run.timestep / 2, None, run.time
+    try:
+        finer = follow(make, run.scene, duration, phi0, phi_dot0, *settings)
+    except DivergenceError:
+        return math.inf
+    radius = run.scene.can.radius
+    apart = max(farthest(run.phi, finer.phi), farthest(run.u / radius, finer.u / radius))
+    return apart * _FALLS / (_FALLS - 1)
 
 
 def _moments(duration: float, timestep: float, times: np.ndarray | None) -> np.ndarray:

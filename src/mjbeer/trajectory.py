@@ -1,6 +1,7 @@
 """A motion of a scene, from theory or from a simulation, with what it says about itself."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -36,9 +37,17 @@ class Trajectory:
     lift: np.ndarray
     """Height of the can above the incline [m]; slightly negative in a soft contact."""
     lift_dot: np.ndarray
-    error_estimate: float | None = None
-    """Estimated global error of phi and u/a by a second run, where a tolerance was asked for:
-    [rad], relative to the total angle where that exceeds 1 rad."""
+    second_opinion: Callable[[], float] | None = field(default=None, repr=False)
+    """Estimates the error of a simulation by another run; not called before somebody asks."""
+
+    @cached_property
+    def error_estimate(self) -> float | None:
+        """Estimated global error of phi and u/a [rad], relative to the total angle where that exceeds 1 rad.
+
+        It is by a second run: the one that a tolerance took anyway, or one at half the timestep, which is made when
+        this is first asked for and takes twice as long as the first. Infinite if that one diverges; None for theory.
+        """
+        return None if self.second_opinion is None else self.second_opinion()
 
     @cached_property
     def energy(self) -> np.ndarray:

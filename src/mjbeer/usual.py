@@ -26,7 +26,7 @@ def build_usual(scene: Scene, written: str, integrator: str = "Euler", timestep:
     option = spec.option
     option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
     option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
-    option.cone, option.impratio = mujoco.mjtCone.mjCONE_PYRAMIDAL, 1.0
+    option.cone, option.impratio, option.tolerance = mujoco.mjtCone.mjCONE_PYRAMIDAL, 1.0, 1e-8
     constraint = spec.equality("rolling") if rolling == "equality" else spec.pair("rolling")
     constraint.solref, constraint.solimp = _SOLREF, _SOLIMP
     if written == "equality, hinge first":
