@@ -153,13 +153,13 @@ def test_measured_frequency_is_that_of_the_exact_period() -> None:
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(rolling: str, integrator: str) -> None:
-    """Twice the distance, for a method of order p, is 2 - 2^(1-p) times the error: 1 to 2 times, with order settled."""
+    """2.5 times the distance is 2.5 (1 - 2^-p) times the error: 1.25 to 2.5 times, with the order p settled."""
     scene, steps = SCENES["frozen, metal can"], {"Euler": 1e-4, "RK4": 4e-3, "DOP853": 3e-2}
     run = simulate(scene, 1.2, 1.0, rolling=rolling, integrator=integrator, timestep=steps[integrator])
     truth = exact(scene, run.time, 1.0)
     error = max(farthest(run.phi, truth.phi), farthest(run.u / scene.can.radius, truth.u / scene.can.radius))
     assert run.error_estimate is not None
-    assert 0.9 * error < run.error_estimate < 2.2 * error
+    assert 1.2 * error < run.error_estimate < 2.6 * error
 
 
 def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -156,7 +156,10 @@ def advance(
 
 @njit(cache=True)
 def _first_step(pointers, views, state, slopes, tolerance, scale, work):
-    """Starting step size, Hairer's algorithm in section II.4."""
+    """Starting step size, Hairer's algorithm in section II.4.
+
+    It goes with the tolerance, like every other step: two runs that judge each other must not have the same steps.
+    """
     size = state.size
     d0 = d1 = 0.0
     for i in range(size):
@@ -174,7 +177,7 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     d2 = math.sqrt(d2 / size) / guess
     if max(d1, d2) <= 1e-15:
         return max(1e-6, guess * 1e-3)
-    return min(100 * guess, (0.01 / max(d1, d2)) ** (1 / 8))
+    return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
 
 
 @njit(cache=True)
