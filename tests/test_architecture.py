@@ -9,7 +9,7 @@ THEORY = [
     *("can", "cases", "checks", "clock", "conserved", "diagnostics", "equations", "exact", "exceptions", "forces"),
     *("load", "motion", "oscillator", "predictions", "scene", "segment", "trajectory"),
     *("claim", "closed_forms", "quantities", "paper_sliding", "paper_can", "paper_frozen", "paper_hopping"),
-    *("paper_pendulum", "paper_segment"),
+    *("paper_pendulum", "paper_segment", "linear_stability", "soft_rows", "small_motions"),
 ]
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 LOADED = "import sys; print(sorted({'mujoco', 'numba', 'llvmlite', 'mediapy', 'OpenGL'} & set(sys.modules)))"

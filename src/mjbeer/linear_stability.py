@@ -66,7 +66,7 @@ def spectral_radius(matrix: np.ndarray) -> float:
 
 
 def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
-    """The states G^n x for n from 0 to `steps`, shape (steps + 1, len(x)), by doubling; infinite where they overflow."""
+    """States G^n x for n from 0 to `steps`, shape (steps + 1, len(x)), by doubling; not finite if they overflow."""
     states, power = np.array([start], dtype=float), np.array(matrix)
     with np.errstate(over="ignore", invalid="ignore"):
         while len(states) <= steps:

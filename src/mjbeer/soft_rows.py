@@ -103,7 +103,8 @@ def stable_slip(integrator: str) -> float:
     """Largest h/timeconst of a friction row, which has the damping b = 2/timeconst and no stiffness.
 
     1 under semi-implicit Euler, and under a Runge-Kutta method half of its limit on the negative real axis, 1.393 for
-    RK4: a contact bears half of the timestep that an equality does.
+    RK4: a contact bears half of the timestep that an equality does. That is for an impedance of 1. A friction row that
+    `impratio` makes much harder than its contact gets all of its reference, b = 2/(d tau), and bears d times as much.
     """
     if integrator == "discrete":
         return math.inf

@@ -19,16 +19,19 @@ from mjbeer.scene import Scene, frozen
 from mjbeer.settled import settle
 from mjbeer.soft_rows import Row
 
+FREE = ("gravity", "spring")
+"""Families without a constraint."""
 UNSTABLE, INACCURATE, ACCURATE = 0, 1, 2
 """What a run is."""
 IMPEDANCE = 0.9
 """solimp's dmin and dmax of the rows: MuJoCo's default dmin."""
 _SWING = 1e-4
 """Angle from which the can is let go [rad]."""
-_SEED = 1e-3
-"""By which share of that, or of half the contact's depth, the rows are off at the start."""
+_SEED = 1e-7
+"""By which share of that, or of half the contact's depth, the rows are off at the start. A stiff row throws this back
+in a time constant, and the swing with it: 1e-4 would already be an error of 1 % at a time constant of 1 ms."""
 _STEPS = 1000
-"""Least number of steps of a run: an instability of 1.2 % a step shows, a tenth of the start's seed included."""
+"""Least number of steps of a run: in that time an instability of 2 % a step outgrows any seed."""
 _LEVEL = frozen(incline=0.0)
 
 
@@ -38,7 +41,7 @@ class Plan:
 
     family: str
     """"equality" or "contact" with a solref of time constants, "direct" (an equality with a direct solref), or
-    "gravity" (no constraint)."""
+    "gravity" (no constraint), or "spring" (the same, with a joint's spring of its frequency instead of gravity)."""
     integrator: str
     refsafe: bool = False
     dampratio: float = 1.0
@@ -60,7 +63,7 @@ class Bench:
 
     def __init__(self, plan: Plan, value: float) -> None:
         self._plan, self._value = plan, value
-        self._scene = frozen(incline=0.0, gravity=value) if plan.family == "gravity" else _LEVEL
+        self._scene = frozen(incline=0.0, gravity=value) if plan.family in FREE else _LEVEL
         self._model = _model(plan, self._scene, value)
         excess = diagonal_excess(self._scene)
         # With the hinge first the row is divided by the radius, but not what MuJoCo takes for its diagonal.
@@ -91,8 +94,13 @@ class Bench:
 
     def _step(self, rest: np.ndarray, timestep: float) -> np.ndarray:
         plan, joints = self._plan, _joints(self._model)
-        if plan.family == "gravity":
-            return linear_stability.amplification(plan.integrator, (self._frequency * timestep) ** 2)
+        if plan.family in FREE:
+            spring = Row(self._frequency**2, 0.0, 1.0)
+            if plan.family == "spring" and plan.integrator == "discrete":  # implicit in it, as in a row
+                spring = spring.at_end_of_step(timestep)
+            return linear_stability.amplification(
+                plan.integrator, spring.stiffness * timestep**2, spring.damping * timestep
+            )
         if plan.family == "contact":
             system = small_motions.by_contact(
                 self._scene, -rest[joints["lift"]], self._points, float(self._model.opt.impratio)
@@ -137,8 +145,11 @@ class Bench:
 
 
 def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
-    if plan.family == "gravity":
-        return build(scene, "reduced", integrator=plan.integrator)
+    if plan.family in FREE:
+        model = build(scene, "reduced", integrator=plan.integrator)
+        if plan.family == "spring":
+            _hang(model, scene)
+        return model
     rolling = "contact" if plan.family == "contact" else "equality"
     spec = specify(scene, rolling, integrator=plan.integrator)
     row = spec.pair("rolling") if rolling == "contact" else spec.equality("rolling")
@@ -153,6 +164,17 @@ def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
         row.name1, row.name2 = row.name2, row.name1
         row.data[:5] = [0, 1 / scene.can.radius, 0, 0, 0]
     return spec.compile()
+
+
+def _hang(model: mujoco.MjModel, scene: Scene) -> None:
+    """Replace gravity by a spring on the joint phi that gives a small swing the same frequency."""
+    data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, mass)
+    at = int(model.joint("phi").dofadr[0])
+    model.joint("phi").stiffness[0] = scene.frequency() ** 2 * mass[at, at]
+    model.opt.gravity[:] = 0.0
+    model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SPRING)
 
 
 def _touching(model: mujoco.MjModel) -> int:
