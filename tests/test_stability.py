@@ -109,6 +109,27 @@ def test_rows_are_those_that_mujoco_solves(integrator: str, timeconst: float) ->
     assert row.impedance <= MAX_IMPEDANCE
 
 
+@pytest.mark.parametrize("impedance", [0.9, 0.5])
+@pytest.mark.parametrize("dampratio", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("share", [0.1, 0.99, 1.01, 3.0])
+def test_refsafe_resolves_contacts_under_discrete(impedance: float, dampratio: float, share: float) -> None:
+    """On either side of its threshold."""
+    timestep = 1e-3
+    timeconst = share * timestep / (dampratio * math.sqrt(impedance))
+    spec = specify(frozen(incline=0.0), "contact", integrator="discrete", timestep=timestep)
+    rolling = spec.pair("rolling")
+    rolling.solref, rolling.solimp = [timeconst, dampratio], [impedance, impedance, 0.001, 0.5, 2]
+    spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.joint("lift").qpos = -1e-6
+    mujoco.mj_forward(model, data)
+    row = soft_rows.spring(soft_rows.resolved(timeconst, dampratio, impedance, timestep), dampratio, impedance)
+    stiffness, damping, share_let_through, _ = data.efc_KBIP[0]
+    assert (stiffness * share_let_through, damping) == pytest.approx((row.stiffness, row.damping), rel=ROUNDING)
+    assert row.stiffness * timestep**2 <= 1 + ROUNDING
+
+
 def test_limits_agree() -> None:
     found = [
         stability_limits.measure("frozen", "reduced", "RK4"),

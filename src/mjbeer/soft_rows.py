@@ -68,8 +68,12 @@ def safe(timeconst: float, timestep: float) -> float:
 
 
 def resolved(timeconst: float, dampratio: float, impedance: float, timestep: float) -> float:
-    """The time constant [s] that refsafe makes of a contact's under "discrete": h/sqrt(d) where tau zeta < h."""
-    return timestep / (math.sqrt(impedance) * dampratio) if timeconst * dampratio < timestep else timeconst
+    """The time constant [s] that refsafe makes of a contact's under "discrete": at least h/(zeta sqrt(d)).
+
+    That is the row whose k h^2 is 1: it takes back all of its residual in one step. MuJoCo's manual puts the threshold
+    at tau zeta = h, without the impedance; what it solves is this.
+    """
+    return max(timeconst, timestep / (dampratio * math.sqrt(impedance)))
 
 
 def radius(integrator: str, row: Row, timestep: float, excess: float = 1.0) -> float:
