@@ -54,4 +54,4 @@ def test_a_run_that_is_wrong_without_a_word_is_caught(
 
 def test_an_error_in_the_program_is_no_outcome() -> None:
     with pytest.raises(ZeroDivisionError):
-        judge(lambda: 1 / 0)  # ty: ignore
+        judge(lambda: 1 / 0)

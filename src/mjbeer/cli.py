@@ -1,4 +1,5 @@
-"""The command line: mjbeer simulate | render | export | validate | benchmark | advise | report | paper."""
+"""The command line: mjbeer simulate | render | export | validate | benchmark | advise |
+stability | report | paper."""
 
 import pathlib
 from collections.abc import Sequence
@@ -185,6 +186,34 @@ class Advise:
 
 
 @dataclass(frozen=True)
+class Stability:
+    """Try stiff and extreme cases, find where stability ends, against theory; exit status 1 if they disagree."""
+
+    output: pathlib.Path = pathlib.Path("stability")
+    """Folder to write to; a study that was interrupted there goes on."""
+    long: bool = False
+    """Everything: all integrators, finer maps, 3000 random runs, a million swings."""
+    json: bool = False
+    """Print the results as JSON."""
+
+    def run(self) -> int:
+        """Do it; the exit status."""
+        from mjbeer import output, stability, stability_report
+
+        found = stability.run(self.output, not self.long, _err)
+        stability_report.write(found, self.output)
+        if self.json:
+            output.show(found.json())
+        else:
+            for grid in stability_report.tables(found):
+                _out.print(grid.rich())
+        for each in found.unexpected:
+            _say(f"not as theory expects: {each}", "red")
+        _say(f"the study is in {self.output / 'summary.md'}")
+        return _FAILED if found.unexpected else 0
+
+
+@dataclass(frozen=True)
 class Paper:
     """Draw the paper's stories, a plot each, into a folder with a summary."""
 
@@ -202,7 +231,7 @@ class Paper:
         return 0
 
 
-Command = Simulate | Render | Export | Validate | Benchmark | Advise | Report | Paper
+Command = Simulate | Render | Export | Validate | Benchmark | Advise | Stability | Report | Paper
 _COMMAND = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
     | Annotated[Render, tyro.conf.subcommand("render")]
@@ -210,6 +239,7 @@ _COMMAND = (
     | Annotated[Validate, tyro.conf.subcommand("validate")]
     | Annotated[Benchmark, tyro.conf.subcommand("benchmark")]
     | Annotated[Advise, tyro.conf.subcommand("advise")]
+    | Annotated[Stability, tyro.conf.subcommand("stability")]
     | Annotated[Report, tyro.conf.subcommand("report")]
     | Annotated[Paper, tyro.conf.subcommand("paper")]
 )
