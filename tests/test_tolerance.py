@@ -1,13 +1,14 @@
 """tolerance: the true error is below it, the estimate bounds the true error, and what cannot be met is an error."""
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer import Scene, catalogue_found, exact, frozen, pendulum, simulate, sliding
 from mjbeer import tolerance as global_tolerance
 from mjbeer.exceptions import ToleranceError
 from mjbeer.measurement import relative_phi_error
@@ -74,3 +75,22 @@ def test_single_precision_parameters_are_taken_as_doubles() -> None:
     scene = sliding(incline=np.float32(0.25), fill=np.float32(0.5))
     assert scene == sliding(incline=0.25, fill=0.5)
     assert simulate(scene, 0.1, np.float32(1.0)).phi.dtype == np.float64
+
+
+FOUND = [case.attempts[0].run for case in catalogue_found.cases() if "tolerance" in case.attempts[0].setting]
+assert len(FOUND) == 2
+
+
+@pytest.mark.parametrize("run", FOUND, ids=["few large steps", "a swing that large steps miss alike"])
+def test_what_the_random_search_found_keeps_to_its_tolerance(run: partial) -> None:
+    made, tolerance = run(), run.keywords["tolerance"]
+    error = relative_phi_error(made)
+    assert error <= tolerance
+    assert made.error_estimate is not None
+    assert error <= made.error_estimate <= tolerance
+
+
+def test_two_runs_that_lose_the_same_are_no_answer() -> None:
+    """After some thousand seconds the rounding of the can's distance is as large as the arm that swings its beer."""
+    with pytest.raises(ToleranceError, match="two runs agree, but energy or momentum drift like an error of"):
+        simulate(sliding(fill=1 - 1e-6), 2e4, 1.0, timestep=10.0, tolerance=1e-6)

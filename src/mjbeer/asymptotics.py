@@ -35,7 +35,7 @@ def _measured(row: Row) -> dict[str, Any]:
 def rows() -> Iterator[Row]:
     """The laws."""
     yield Row(
-        "frequency falls as distance from the fold to the power 1/4: exponent less that",
+        "frequency over distance from the fold: exponent less 1/4",
         "frozen, reduced, DOP853",
         1e-3,
         "",
@@ -45,7 +45,7 @@ def rows() -> Iterator[Row]:
     scenes = {"sliding, metal can": sliding(can=Can.sheet_metal()), "frozen": frozen(), "pendulum": pendulum()}
     for name, scene in scenes.items():
         yield Row(
-            "time to fall from beside the separatrix grows as the logarithm of the distance: slope",
+            "fall from beside the separatrix over the logarithm of the distance: slope",
             f"{name}, reduced, DOP853",
             1e-5,
             "relative",
@@ -54,7 +54,7 @@ def rows() -> Iterator[Row]:
         )
     for make, name in ((sliding, "sliding"), (frozen, "frozen")):
         yield Row(
-            "phi in units of sqrt(a/g) is the same for cans of 1 um to 100 m, and for 1e-6 to 1e6 m/s^2",
+            "similarity: phi over t sqrt(g/a), cans of 1 um to 100 m, 1e-6 to 1e6 m/s^2",
             f"{name}, metal can, reduced, DOP853",
             1e-10,
             "rad",
@@ -62,7 +62,7 @@ def rows() -> Iterator[Row]:
             lambda make=make: _dissimilarity(make),
         )
         yield Row(
-            "phi of a full can, let go at 1 rad, after 10 s: how far from there",
+            "full can, let go at 1 rad: how far it comes in 10 s",
             f"{name if make is sliding else 'frozen, on the level'}, reduced, RK4, 1 ms",
             0.0,
             "rad",

@@ -124,7 +124,7 @@ def tasks(quick: bool) -> list[Task]:
 def cases() -> Iterator[Endurance]:
     """The cases: a swing whose inertia is constant, since its can is too heavy to move, and one whose is not."""
     heavy, light = sliding(0.0, can=Can.hoop(mass=1e9)), sliding(0.0)
-    free, moving = "sliding in a can too heavy to move", "sliding in a massless can"
+    free, moving = "can too heavy to move", "massless can"
     symplectic = "semi-implicit Euler is symplectic where the mass matrix is constant"
     for integrator in ("Euler", "implicit", "implicitfast", "discrete"):
         swings = 1_000_000 if integrator == "Euler" else 10_000

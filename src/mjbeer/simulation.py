@@ -10,8 +10,10 @@ import numpy as np
 
 from mjbeer import checks, dop853, state, stepping
 from mjbeer import tolerance as global_tolerance
+from mjbeer.conserved import implied_error
+from mjbeer.diagnostics import ERROR
 from mjbeer.distance import farthest
-from mjbeer.exceptions import DivergenceError, ParameterError
+from mjbeer.exceptions import DivergenceError, ParameterError, ToleranceError
 from mjbeer.model import DOP853, FRICTION, build
 from mjbeer.scene import Scene
 from mjbeer.trajectory import Trajectory
@@ -103,11 +105,23 @@ def follow(
         states = solution.states
     fixed = timestep if tolerance is None else None
     run = Trajectory(scene, rolling, integrator, fixed, moments, **vars(state.read(model, scene, states)))
+    if tolerance is not None and rolling != "contact":
+        _check_conserved(run, tolerance)
     if tolerance is None:
         opinion = partial(_halved, make, run, max(duration, float(moments[-1])), phi0, phi_dot0)
     else:
         opinion = partial(float, solution.estimate)
     return replace(run, second_opinion=opinion)
+
+
+def _check_conserved(run: Trajectory, tolerance: float) -> None:
+    """Two runs agree on what they both lose, such as a short arm in the rounding of a long way."""
+    implied = implied_error(run)
+    if implied > max(tolerance, ERROR):
+        raise ToleranceError(
+            f"tolerance {tolerance:g} rad is not reached: two runs agree, but energy or momentum drift like an error "
+            f"of {implied:.2g} rad; the model loses in rounding what moves it"
+        )
 
 
 def _halved(make: Make, run: Trajectory, duration: float, phi0: float, phi_dot0: float) -> float:

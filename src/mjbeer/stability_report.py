@@ -3,7 +3,6 @@
 import pathlib
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from mjbeer import output, stability_limits, stability_maps, stability_plots, stability_tables
 from mjbeer.charts import COLOURS, chart
@@ -17,6 +16,7 @@ inaccurate** if they do not and the run says so, **unstable, detected** if it bl
 be none of those.
 """
 _FLOOR = 1e-16
+_COLOURS = dict(zip(("Euler", "RK4", "DOP853", "discrete", "implicit", "implicitfast"), COLOURS, strict=False))
 _ENDURANCE = (
     "endurance: energy drifts with the number of swings by laws that theory gives. It stays in bounds where "
     "semi-implicit Euler is symplectic; where each step loses a share, were it by rounded coefficients, it falls in "
@@ -38,18 +38,17 @@ def write(found: Stability, folder: pathlib.Path) -> None:
     for name, caption in (each.split(": ", 1) for each in pictures):
         lines += [f"![{name}]({name}.svg)", "", f"{caption[0].upper()}{caption[1:]}", ""]
     lines += [grid.markdown() for grid in tables(found)[1:]]
-    lines += [stability_tables.reasons(found).markdown()]
+    lines += [stability_tables.catalogue(found).markdown(), stability_tables.reasons(found).markdown()]
     output.write(folder / "summary.md", "\n".join(lines))
 
 
 def tables(found: Stability) -> list[Grid]:
-    """For the terminal."""
+    """For the terminal; the catalogue's own, with a line a case, are in the summary."""
     return [
         stability_tables.verdicts(found),
         stability_tables.laws(found),
         stability_limits.grid(found.of("limits")),
         stability_maps.grid(found.of("maps")),
-        stability_tables.catalogue(found),
         stability_tables.search(found),
         stability_tables.endurance(found),
     ]
@@ -66,20 +65,17 @@ def endurance(found: Stability, path: pathlib.Path) -> None:
     Raises:
       OutputError: if a file cannot be written.
     """
-    with chart(path, width=9, height=6) as (axes,):
-        for number, each in enumerate(found.of("endurance")):
-            _curve(axes, each, COLOURS[number % len(COLOURS)], ("-", "--")[number // len(COLOURS) % 2])
+    with chart(path, width=9, height=7) as (axes,):
+        for each in found.of("endurance"):
+            bounded, steady = each["law"] == "bounded", each["expected"] == "bounded" or "heavy" in each["name"]
+            size = np.maximum(np.abs(each["width" if bounded else "drift"]), _FLOOR)
+            label = f"{each['integrator']}, {each['steps']} steps a swing, {each['name']}: {each['law'] or 'no law'}"
+            line = "-" if steady else "--"
+            axes.plot(each["counts"], size, line, color=_COLOURS[each["integrator"]], label=label)
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(_FLOOR, 2)
-        axes.set_xlabel("swings")
+        axes.set_xlabel("swings of 1 rad")
         axes.set_ylabel("change of the swing's energy, as a share of it")
         axes.set_title("How much energy a swing gains or loses by being simulated")
-        axes.figure.legend(loc="outside lower center", fontsize=9)
-
-
-def _curve(axes: Axes, each: dict, colour: str, line: str) -> None:
-    bounded = each["law"] == "bounded"
-    size = np.maximum(np.abs(each["width" if bounded else "drift"]), _FLOOR)
-    label = f"{each['name']}, {each['integrator']}, T/{each['steps']}: {each['law'] or 'no law'}"
-    axes.plot(each["counts"], size, line, color=colour, label=label)
+        axes.figure.legend(loc="outside lower center", fontsize=8, ncols=2)

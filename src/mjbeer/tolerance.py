@@ -25,6 +25,9 @@ _CAUTION, _MORE_CAUTION = 1.5, 3.0
 is for pairs that may be near each other by chance: later ones, which start at the same place, and those of ..."""
 _SMOOTH = (1e-11, 1e-5)
 """... tolerances outside these, where rounding rules, or where steps are too large for the method's order."""
+_LOOSE, _MOST_CAUTION = 3e-4, 8.0
+"""A tolerance that the largest steps meet with ease, and the estimate for such. What they miss, they may miss alike: of
+2,000 random runs to 1e-3 rad one was 7.5 times as far off as from the other."""
 _PROGRESS = 0.75
 """The distance of two runs over that of the two before, above which the finer ones brought nothing."""
 _PATIENCE = 1
@@ -65,6 +68,8 @@ class Solver:
         local, before, stalled = min(_FIRST * tolerance, _COARSEST), np.inf, 0
         local = max(local, _RATIO * _SMALLEST)
         caution = _CAUTION if _SMOOTH[0] < tolerance < _SMOOTH[1] else _MORE_CAUTION
+        if tolerance > _LOOSE:
+            caution = _MOST_CAUTION
         coarse = self._run(start + _NUDGE * self._scale, times, local, tolerance)
         while True:
             local /= _RATIO

@@ -1,0 +1,82 @@
+"""What the random search found, and what was mended for it."""
+
+import math
+from collections.abc import Iterator
+from functools import partial
+
+from mjbeer.can import Can
+from mjbeer.extreme import Attempt, Extreme
+from mjbeer.load import Load
+from mjbeer.outcome import ACCURATE, REFUSED
+from mjbeer.scene import Scene, frozen, pendulum, sliding
+from mjbeer.simulation import simulate
+
+
+def cases() -> Iterator[Extreme]:
+    """The cases."""
+    slow = math.sqrt(0.033 / 2.8e-6)
+    yield Extreme(
+        "found",
+        "contact in a gravity of 2.8e-6 m/s^2",
+        "MuJoCo's solver stops where its cost falls by less than 1e-8 m^2/s^4: in weak gravity, before it begins. "
+        "Nothing rolled, and neither slip nor lift told",
+        "the same motion, in units of sqrt(a/g); the tolerance has to go with the square of gravity",
+        tuple(
+            Attempt(
+                f"contact, RK4, {name}",
+                partial(simulate, make(gravity=2.8e-6), 30 * slow, 1.0, 0.0, "contact", "RK4", slow / 100),
+                (ACCURATE,),
+            )
+            for name, make in (("pendulum", pendulum), ("frozen", frozen))
+        ),
+    )
+    yield Extreme(
+        "found",
+        "a motion of a few large steps, to a tolerance",
+        "two runs with the same steps agree, whatever their error: it was 1e-8 rad, and estimated as 3e-13",
+        "steps go with the tolerance, the first one too",
+        (
+            Attempt(
+                "reduced, to a tolerance of 0.0001",
+                partial(
+                    simulate, _shallow(), 4.7e-3, 1.0, rolling="reduced", timestep=8.43e-6, tolerance=1e-4
+                ),
+                (ACCURATE,),
+            ),
+        ),
+    )  # fmt: skip
+    yield Extreme(
+        "found",
+        "a swing through 2 rad, to a loose tolerance",
+        "two runs with large steps missed a motion alike: they were 1.4e-4 rad apart, and 1.1e-3 rad off",
+        "no order shows in steps so large; the distance of two runs is to be judged with more caution",
+        (
+            Attempt(
+                "reduced, to a tolerance of 0.001",
+                partial(simulate, _astray(), 5.04, 1.762099488321489, -10.949445992431022, tolerance=1e-3),
+                (ACCURATE,),
+            ),
+        ),
+    )
+    go = partial(simulate, sliding(fill=1 - 1e-6), 2e4, 1.0)
+    yield Extreme(
+        "found",
+        "sliding, fill 1 - 1e-6, ten thousand seconds",
+        "the arm b is lost in the rounding of a distance of 3e8 m, and two runs to a tolerance lose it alike",
+        "a swing of 4000 s; only its energy tells that it is gone",
+        (
+            Attempt("reduced, RK4, 1 s", partial(go, timestep=1.0)),
+            Attempt("reduced, to a tolerance of 1e-06", partial(go, timestep=10.0, tolerance=1e-6), (REFUSED,)),
+        ),
+    )
+
+
+def _shallow() -> Scene:
+    can = Can(6.263714345860458e-05, 1.9e-4, 0.00023028930756246934, 9.035197730376284e-13)
+    load = Load(1.1852666317467886e-06, 1.0168321325164374e-05, 2.0064495523860784e-15)
+    return Scene(can, load, 0.4162788034423696, "frozen")
+
+
+def _astray() -> Scene:
+    can = Can(0.025006609705965473, 0.075, 79385.39201711072, 49.64210918385945)
+    return Scene(can, Load(41429.27842882292, 0.01647772919452516), 0.1789453673759448, "sliding")
