@@ -6,13 +6,12 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding, templates
+from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, sliding, templates
 from mjbeer.cli import main
-from mjbeer.display import display_model
 from mjbeer.exceptions import TemplateError
 
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
-# What may be taken away without harm, as nothing refers to it.
+# What nothing refers to by name: without it, a template is only not as it came.
 SPARE = {
     ("geom", "can_wall"), ("geom", "can_end"), ("geom", "can_mark"), ("geom", "can_spot"), ("geom", "axle"),
     ("geom", "load_arm"), ("geom", "wall"), ("light", "sun"), ("texture", "sky"),
@@ -78,17 +77,6 @@ def test_an_element_that_is_missing_is_named(copy: pathlib.Path, file: str, pare
         assert message == (
             f"{copy / template}.xml has no {kind} named {name!r}, which mjbeer uses; restore the template"
         )
-
-
-@pytest.mark.parametrize("template", SCENES)
-def test_what_is_spare_may_go(copy: pathlib.Path, template: str) -> None:
-    for file in (f"{template}.xml", "shared.xml", "incline.xml"):
-        for parent, tag, name in elements(file):
-            if (tag, name) in SPARE:
-                remove(copy / file, parent, tag, name)
-    build(SCENES[template], visuals=True)
-    display_model(SCENES[template])
-    assert simulate(SCENES[template], 0.01, 1.0).trusted
 
 
 def test_no_templates_at_all(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:

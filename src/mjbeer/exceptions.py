@@ -34,8 +34,8 @@ class RenderingError(MjbeerError):
 
 
 class TemplateError(MjbeerError):
-    """An MJCF template is missing or lacks an element that mjbeer addresses by name."""
+    """An MJCF template is missing, or not as it came with mjbeer."""
 
 
 class OutputError(MjbeerError):
-    """An output file could not be written."""
+    """An output file could not be written, or another command is writing to its folder."""

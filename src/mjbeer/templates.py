@@ -1,5 +1,6 @@
-"""The MJCF templates: where they are, and reading one with every element there by name."""
+"""The MJCF templates: where they are, and reading one that is as it came with mjbeer."""
 
+import hashlib
 import pathlib
 
 import mujoco
@@ -34,22 +35,52 @@ def read(template: str) -> mujoco.MjSpec:
     """A template as an editable specification. What is added to it has its angles in radians.
 
     Raises:
-      TemplateError: if it cannot be read; the message has MuJoCo's reason.
+      TemplateError: if it cannot be read, or is not as it came with mjbeer; the message says what is wrong.
     """
     path = folder() / f"{template}.xml"
     try:
         spec = mujoco.MjSpec.from_file(str(path))
-    except ValueError as error:
+        changed = [each for each in (path, *map(path.with_stem, _SHARED)) if digest(each) != _DIGESTS[each.stem]]
+    except (ValueError, OSError) as error:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
+    if changed:
+        raise TemplateError(_missing(path, spec, _EVERYWHERE, _ALONE[template]) or _other(changed[0]))
     spec.compiler.degree = False  # the angles in the templates are those of the incline, which is always set anew
-    for kind, names in (*_EVERYWHERE.items(), *_ALONE[template].items()):
-        look = spec.find_default if kind == "default" else getattr(spec, kind)
-        for each in names.split():
-            if look(each) is None:
-                raise TemplateError(f"{path} has no {kind} named {each!r}, which mjbeer uses; restore the template")
     return spec
 
 
+def digest(path: pathlib.Path) -> str:
+    """What a file is recognized by, whatever its line ends."""
+    return hashlib.sha256(path.read_bytes().replace(b"\r\n", b"\n")).hexdigest()[:16]
+
+
+def _missing(path: pathlib.Path, spec: mujoco.MjSpec, *wanted: dict[str, str]) -> str | None:
+    """What to say of the first element that is missing, if one is."""
+    for kind, names in (item for each in wanted for item in each.items()):
+        look = spec.find_default if kind == "default" else getattr(spec, kind)
+        for name in names.split():
+            if look(name) is None:
+                return f"{path} has no {kind} named {name!r}, which mjbeer uses; restore the template"
+    return None
+
+
+def _other(path: pathlib.Path) -> str:
+    return (
+        f"{path} is not as it came with mjbeer, whose models it would make wrong without a word; restore the template "
+        "(reinstall mjbeer, or in a checkout `git checkout mjcf`), and make changes in a copy of the folder"
+    )
+
+
+_SHARED = ("shared", "incline")
+"""What every template includes."""
+_DIGESTS = {
+    "frozen": "1c70544c14d6c99b",
+    "hoop": "2458f1126cd8aa04",
+    "pendulum": "a81f2feb83c9b761",
+    "sliding": "6132c33443c017ca",
+    "shared": "1a8d6eefa6f266da",
+    "incline": "2442c767fc9f6d69",
+}
 # What model and appearance address by name: kind by kind, in every template and in each alone.
 _EVERYWHERE = {
     "body": "incline can load",
