@@ -5,13 +5,14 @@ import math
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sysconfig
 
 import numpy as np
 import pytest
 
-from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding, table
+from mjbeer import exact, frozen, hoop, interruption, pendulum, simulate, sliding, table
 from mjbeer.cli import main
 
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
@@ -138,13 +139,15 @@ def test_a_run_that_is_not_to_be_trusted_says_so(words: str, reason: str, capsys
     assert "not to be trusted" not in out
 
 
-def test_interrupted(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    def interrupt(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("mjbeer.simulation.simulate", interrupt)
-    assert main(["simulate", "frozen"]) == 130
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+def test_interrupted(
+    number: int, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    handlers = [signal.getsignal(each) for each in interruption.SIGNALS]
+    monkeypatch.setattr("mjbeer.simulation.simulate", lambda *_, **__: signal.raise_signal(number))
+    assert main(["simulate", "frozen"]) == status
     assert capsys.readouterr() == ("", "mjbeer: interrupted; what was written is whole\n")
+    assert handlers == [signal.getsignal(each) for each in interruption.SIGNALS]
 
 
 def test_names_of_files_are_shown_as_they_are(

@@ -1,6 +1,7 @@
 """Which off-screen OpenGL is used, and what is said if there is none."""
 
 import os
+import pathlib
 import subprocess
 import sys
 
@@ -8,6 +9,7 @@ import pytest
 
 from mjbeer import gl
 from mjbeer.exceptions import RenderingError
+from tests.processes import ENVIRONMENT, run
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a choice of backends")
 
@@ -116,6 +118,33 @@ def test_import_loads_no_opengl_and_sets_no_environment() -> None:
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""
+
+
+@linux
+@pytest.mark.parametrize("asked", ["banana", "osmesa"])
+def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
+    """MuJoCo itself cannot be imported with the first, nor with the second where there is none."""
+    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=ENVIRONMENT | {"MUJOCO_GL": asked})
+    assert (status, err) == (0, "")
+    assert "phi at the end" in out
+
+
+@linux
+def test_a_library_that_crashes_when_it_is_loaded(tmp_path: pathlib.Path) -> None:
+    """The module that loads it stands for it; the video is not begun, and the message has the remedy."""
+    (tmp_path / "OpenGL").mkdir()
+    (tmp_path / "OpenGL" / "__init__.py").write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    environment = ENVIRONMENT | {
+        "PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")]), "MUJOCO_GL": "egl"
+    }  # fmt: skip
+    film = tmp_path / "new" / "film.mp4"
+    status, _, err = run(["render", "frozen", "--duration", "0.1", "--output", str(film)], env=environment)
+    assert status == 2
+    assert err.startswith(
+        "mjbeer: no off-screen OpenGL (MUJOCO_GL=egl rules out others):\n  egl: crashed with signal 11"
+    )
+    assert gl.REMEDY in err
+    assert not list(film.parent.glob("*"))
 
 
 def test_context_is_drawn_with() -> None:

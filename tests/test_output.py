@@ -99,8 +99,10 @@ def test_a_link_stays_and_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:
 
 def test_a_file_in_the_way_of_a_folder_is_an_output_error(tmp_path: pathlib.Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match=r"cannot write .*motion\.csv: (Not a directory|File exists)"):
-        output.write(tmp_path / "file" / "motion.csv", "")
+    for path in (tmp_path / "file" / "motion.csv", tmp_path / "file" / "deeper" / "motion.csv"):
+        with pytest.raises(OutputError) as caught:
+            output.write(path, "")
+        assert str(caught.value) == f"cannot write {path}: {tmp_path / 'file'} is not a folder"
     assert os.listdir(tmp_path) == ["file"]
 
 

@@ -166,17 +166,15 @@ def test_where_no_file_can_be_is_an_error(undrawn: list[int], tmp_path: pathlib.
         video.render(motion(), tmp_path / "file" / "can.mp4", progress=False, **SIZE)
 
 
-# mediapy leaves the pipe of a failed ffmpeg to the garbage collector, which pytest hears of.
-unclosed = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-
-
-@unclosed
 @pytest.mark.parametrize(
     ("script", "reason"),
     [
         ("#!/bin/sh\necho out of tune >&2\nexit 3\n", "out of tune"),
         ("#!/bin/sh\ncat > /dev/null\necho out of tune >&2\nexit 3\n", "out of tune"),
         ("#!/bin/sh\ncat > /dev/null\n", "it ended well, but wrote nothing"),
+        ("#!/bin/sh\nexit 0\n", "it ended before the video did"),
+        ("#!/bin/sh\nhead -c 500000 > /dev/null\necho out of tune >&2\nexit 3\n", "out of tune"),
+        ("#!/bin/sh\nhead -c 500000 > /dev/null\nkill -SEGV $$\n", "it was ended by SIGSEGV"),
         ("no program", "Exec format error"),
     ],
 )
@@ -189,10 +187,9 @@ def test_a_broken_ffmpeg_leaves_nothing_and_says_why(
     assert "pip install --force-reinstall imageio-ffmpeg" in str(caught.value)
     assert os.listdir(tmp_path) == []
     del caught
-    gc.collect()
+    gc.collect()  # no pipe is left to it, of which pytest would hear
 
 
-@unclosed
 def test_what_ffmpeg_says_is_told_even_if_it_is_gone_at_the_end(ffmpeg, tmp_path: pathlib.Path) -> None:
     """So little is written that it waits in a buffer, and the pipe is found broken only when all is closed."""
     ffmpeg("#!/bin/sh\necho out of tune >&2\nexit 3\n")
@@ -204,6 +201,39 @@ def test_what_ffmpeg_says_is_told_even_if_it_is_gone_at_the_end(ffmpeg, tmp_path
     with pytest.raises(RenderingError, match="out of tune"):
         encoder.encode(frames(), tmp_path / "can.mp4", 16, 16, 10)
     gc.collect()
+
+
+@pytest.mark.parametrize("script", ["#!/bin/sh\nexec sleep 60\n", "#!/bin/sh\ncat > /dev/null\nexec sleep 60\n"])
+def test_an_ffmpeg_that_hangs_is_given_up(
+    script: str, undrawn: list[int], ffmpeg, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes no frames, or does not end."""
+    ffmpeg(script)
+    monkeypatch.setattr("mjbeer.ffmpeg._PATIENCE", 1)
+    with pytest.raises(RenderingError, match=r"it did not go on for 1 s"):
+        video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("reason", ["No space left on device", "Input/output error"])
+def test_what_the_disk_says_is_not_ffmpeg_s_fault(
+    reason: str, undrawn: list[int], ffmpeg, tmp_path: pathlib.Path
+) -> None:
+    ffmpeg(f"#!/bin/sh\ncat > /dev/null\necho 'Error writing trailer: {reason}' >&2\nexit 1\n")
+    with pytest.raises(OutputError) as caught:
+        video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
+    assert str(caught.value) == f"cannot write {tmp_path / 'can.mp4'}: {reason}"
+    assert os.listdir(tmp_path) == []
+
+
+def test_an_ffmpeg_that_may_not_run_says_so(
+    undrawn: list[int], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "ffmpeg").touch(mode=0o644)
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
+    with pytest.raises(RenderingError, match="ffmpeg' is not found"):
+        video.render(motion(), tmp_path / "new" / "can.mp4", progress=False, **SIZE)
+    assert os.listdir(tmp_path / "new") == []
 
 
 def test_no_ffmpeg_says_so(undrawn: list[int], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,20 +1,23 @@
 """The command line: mjbeer simulate | render | export | validate | benchmark | advise |
 stability | report | paper."""
 
+import contextlib
 import pathlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import tyro
-from rich.console import Console
+from rich.console import RenderableType
 
+from mjbeer import gl, interruption, output
 from mjbeer.arguments import AnyScene, CaseName, Rolling, Run, radians
 from mjbeer.cases import DEFAULT
 from mjbeer.exceptions import MjbeerError
+from mjbeer.exclusive import claimed
 
-_FAILED, _WRONG, _INTERRUPTED = 1, 2, 130
-_out, _err = Console(), Console(stderr=True)
+_FAILED, _WRONG = 1, 2
+_out, _err = output.Teller(), output.Teller(stderr=True)
 
 
 @dataclass(frozen=True)
@@ -26,17 +29,20 @@ class Simulate(Run):
 
     def run(self) -> int:
         """Do it; the exit status."""
-        from mjbeer import output, table
+        from mjbeer import table
 
+        file = None if str(self.output) == "-" else self.output
+        if file is not None:
+            output.check(file)
         trajectory = self.simulate()
-        if self.output is not None and str(self.output) != "-":
-            output.write(self.output, table.csv(trajectory))
-            _say(f"wrote {self.output}")
-        console = _out
-        if str(self.output) == "-":
+        if file is not None:
+            output.write(file, table.csv(trajectory))
+            _say(f"wrote {file}")
+        if file == self.output:
+            _show(table.summary(trajectory))
+        else:
             output.show(table.csv(trajectory))
-            console = _err
-        console.print(table.summary(trajectory))
+            _err.print(table.summary(trajectory))
         _warn(trajectory.warnings)
         return 0
 
@@ -60,6 +66,7 @@ class Render(Run):
         """Do it; the exit status."""
         from mjbeer.video import render
 
+        output.check(self.output)
         trajectory = self.simulate()
         _warn(trajectory.warnings)
         render(trajectory, self.output, self.width, self.height, speed=self.speed, camera=self.camera)
@@ -107,13 +114,13 @@ class Validate:
 
     def run(self) -> int:
         """Do it; the exit status."""
-        from mjbeer import output, report, table
+        from mjbeer import report, table
 
         verdict = report.check(_err)
         if self.json:
             output.show(table.validation_json(verdict.checks, verdict.findings))
         else:
-            _out.print(table.validation(verdict.checks), table.audit(verdict.findings))
+            _show(table.validation(verdict.checks), table.audit(verdict.findings))
         return 0 if verdict.passed else _FAILED
 
 
@@ -130,8 +137,9 @@ class Report:
         """Do it; the exit status."""
         from mjbeer import report, table
 
-        verdict = report.write(self.output, self.quick, _err)
-        _out.print(table.validation(verdict.checks), table.audit(verdict.findings))
+        with claimed(self.output), claimed(self.output / "paper"):
+            verdict = report.write(self.output, self.quick, _err)
+        _show(table.validation(verdict.checks), table.audit(verdict.findings))
         _say(f"the report is in {self.output / 'summary.md'}")
         return 0 if verdict.passed else _FAILED
 
@@ -151,10 +159,11 @@ class Benchmark:
         """Do it; the exit status."""
         from mjbeer import benchmark, benchmark_report, benchmark_tables
 
-        study = benchmark.run(self.scenes, self.output, self.quick, _err)
-        benchmark_report.write(study, self.output)
+        with claimed(self.output):
+            study = benchmark.run(self.scenes, self.output, self.quick, _err)
+            benchmark_report.write(study, self.output)
         for grid in benchmark_tables.tables(study):
-            _out.print(grid.rich())
+            _show(grid.rich())
         _say(f"the study is in {self.output / 'summary.md'}")
         return 0
 
@@ -176,12 +185,7 @@ class Advise:
         """Do it; the exit status."""
         from mjbeer import advice
 
-        _out.print(
-            advice.advise(self.scene, self.tolerance, self.rolling, self.study),
-            highlight=False,
-            markup=False,
-            soft_wrap=True,
-        )
+        output.show(advice.advise(self.scene, self.tolerance, self.rolling, self.study) + "\n")
         return 0
 
 
@@ -226,7 +230,8 @@ class Paper:
         """Do it; the exit status."""
         from mjbeer import stories
 
-        stories.write(self.output, self.films, _err)
+        with claimed(self.output):
+            stories.write(self.output, self.films, _err)
         _say(f"the stories are in {self.output / 'stories.md'}")
         return 0
 
@@ -247,16 +252,21 @@ _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit status is 0, 1 (a check failed), 2 (an error) or 130 (interrupted)."""
-    command = parse(arguments)
-    try:
-        return command.run()
-    except MjbeerError as error:
-        _say(f"mjbeer: {error}", "red")
-        return _WRONG
-    except KeyboardInterrupt:
-        _say("mjbeer: interrupted; what was written is whole", "red")
-        return _INTERRUPTED
+    """Run the command line: exit status 0, 1 (a check failed), 2 (an error), or 128 and the signal that ended it."""
+    output.open_closed()
+    with interruption.heeded():
+        try:
+            command = parse(arguments)
+            gl.keep_out()
+            return command.run()
+        except MjbeerError as error:
+            _say(f"mjbeer: {error}", "red")
+        except OSError as error:  # of the machine: too many processes, no standard output, ...
+            _say(f"mjbeer: {error}", "red")
+        except interruption.Interrupted as error:
+            _say("mjbeer: interrupted; what was written is whole", "red")
+            return error.status
+    return _WRONG
 
 
 def parse(arguments: Sequence[str] | None = None) -> Command:
@@ -275,6 +285,12 @@ def _warn(warnings: tuple[str, ...]) -> None:
         _say(f"not to be trusted: {each}", "yellow")
 
 
+def _show(*tables: RenderableType) -> None:
+    with output.printing():
+        _out.print(*tables)
+
+
 def _say(text: str, style: str = "") -> None:
     """A line on standard error; names of files may have brackets in them, which are no markup."""
-    _err.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
+    with contextlib.suppress(OSError):  # where nobody listens there is nothing more to say
+        _err.print(text, style=style, highlight=False, markup=False, soft_wrap=True)

@@ -2,14 +2,11 @@
 
 import pathlib
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mjbeer.exceptions import RenderingError
-
-if TYPE_CHECKING:
-    import mediapy
+from mjbeer.ffmpeg import Ffmpeg, no_video
+from mjbeer.interruption import undoing, withheld
 
 _QUALITY = 20
 """Constant rate factor of H.264: 18 shows no loss, 23 is ffmpeg's default."""
@@ -24,6 +21,7 @@ def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height:
 
     Raises:
       RenderingError: if ffmpeg does not work; the message has what it says.
+      OSError: if the disk is full, or broken.
     """
     # mediapy brings matplotlib and IPython, which takes a second or two that only videos should cost.
     import imageio_ffmpeg
@@ -33,40 +31,14 @@ def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
         arguments = f"{_FASTER} {_COLOURS}"
         writer = mediapy.VideoWriter(path, (height, width), fps=fps, codec="h264", crf=_QUALITY, ffmpeg_args=arguments)
-        writer.__enter__()
     except (OSError, RuntimeError) as error:
-        raise _no_video(error) from error
-    try:
+        raise no_video(error) from error
+    program = Ffmpeg(writer)
+    with program, undoing(program.kill):
+        with withheld():
+            program.start()
         for each in frames:
-            try:
-                writer.add_image(each)
-            except (OSError, RuntimeError) as error:
-                raise _no_video(_close(writer) or error) from error
-    except BaseException:
-        _close(writer)
-        raise
-    if (failure := _close(writer)) is not None:
-        raise _no_video(failure)
+            program.write(each)
+        program.end()
     if path.stat().st_size == 0:
-        raise _no_video("it ended well, but wrote nothing")
-
-
-def _close(writer: "mediapy.VideoWriter") -> RuntimeError | None:
-    """Let ffmpeg end; what it says, if it ended with an error."""
-    for _ in range(2):  # a broken pipe fails the first time, before what ffmpeg says is read
-        try:
-            writer.close()
-        except RuntimeError as error:
-            return error
-        except OSError:
-            continue
-        return None
-    return None
-
-
-def _no_video(reason: Exception | str) -> RenderingError:
-    return RenderingError(
-        f"ffmpeg did not write the video: {str(reason).strip()}\n"
-        "Reinstall it with `pip install --force-reinstall imageio-ffmpeg`, or name one that works in the environment "
-        "variable IMAGEIO_FFMPEG_EXE"
-    )
+        raise no_video("it ended well, but wrote nothing")

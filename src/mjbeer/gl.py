@@ -28,6 +28,8 @@ context.make_current()
 mujoco.MjrContext(mujoco.MjModel.from_xml_string("<mujoco/>"), 100).free()
 context.free()
 """
+_NONE = "disable"
+"""The value of MUJOCO_GL with which MuJoCo loads no OpenGL when it is imported."""
 _PATIENCE = 60
 """How long a backend may take to start [s]; it is a second or two."""
 
@@ -78,11 +80,26 @@ def backend() -> str:
     raise RenderingError(f"no off-screen OpenGL{only}:\n  {because}\n{REMEDY}")
 
 
+def keep_out() -> None:
+    """Import MuJoCo without the OpenGL that MUJOCO_GL names, which it would load at once, and fail where it cannot.
+
+    What draws nothing needs none; what does asks for a `context`.
+    """
+    asked = os.environ.get("MUJOCO_GL")
+    if sys.platform != "linux" or asked is None:
+        return
+    os.environ["MUJOCO_GL"] = _NONE
+    try:
+        import mujoco  # noqa: F401
+    finally:
+        os.environ["MUJOCO_GL"] = asked
+
+
 def _why_not(name: str) -> str | None:
     """None if a backend works, or the last line of what went wrong."""
-    command = [sys.executable, "-c", _PROBE.format(name)]
+    command, environment = [sys.executable, "-c", _PROBE.format(name)], os.environ | {"MUJOCO_GL": _NONE}
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=_PATIENCE, check=False)
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         return f"did not start within {_PATIENCE} s"
     if done.returncode == 0:

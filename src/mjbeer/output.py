@@ -1,5 +1,6 @@
 """Output files that appear whole or not at all."""
 
+import errno
 import os
 import pathlib
 import secrets
@@ -7,32 +8,76 @@ import sys
 from collections.abc import Generator
 from contextlib import contextmanager
 
+from rich.console import Console
+
 from mjbeer.exceptions import OutputError
+from mjbeer.interruption import undoing
 
 
 @contextmanager
 def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     """A temporary name beside `path` to write to; it becomes `path` when all went well, and goes otherwise.
 
+    What was written is on the disk before it gets its name: a machine that stops leaves all of it, or the old file.
+
     Raises:
-      OutputError: if `path` is a folder or a device, its folder cannot be made or written to, or the disk is full.
+      OutputError: if `path` is a folder, a device or read-only, its folder cannot be made or written to, or the disk
+        is full.
     """
+    check(path)
     target = pathlib.Path(os.path.realpath(path))  # a link stays, and what it points to is replaced
+    temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with undoing(lambda: temporary.unlink(missing_ok=True)):
+            temporary.touch(exist_ok=False)
+            yield temporary
+            with temporary.open("rb+") as written:
+                os.fsync(written.fileno())
+            temporary.replace(target)
+    except OSError as error:
+        raise _cannot(path, error) from error
+
+
+def check(path: str | os.PathLike[str]) -> None:
+    """Find out what can be known beforehand of a file that a long run ends with.
+
+    Raises:
+      OutputError: if it is a folder, a device or read-only, or what should be its folder is none or read-only.
+    """
+    target = pathlib.Path(os.path.realpath(path))
     try:
         if target.exists() and not target.is_file():
             raise OutputError(f"cannot write {path}: it is {'a folder' if target.is_dir() else 'not a regular file'}")
-        temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
-        target.parent.mkdir(parents=True, exist_ok=True)
-        temporary.touch(exist_ok=False)
+        if target.exists() and not os.access(target, os.W_OK):  # a rename would replace it even so
+            raise OutputError(f"cannot write {path}: it is read-only")
     except OSError as error:
-        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+        raise _cannot(path, error) from error
+    _check_folder(path, target.parent)
+
+
+def make(folder: pathlib.Path) -> None:
+    """Make a folder to write to, if it is not there.
+
+    Raises:
+      OutputError: if it cannot be made or written to.
+    """
+    _check_folder(folder, pathlib.Path(os.path.realpath(folder)))
     try:
-        yield temporary
-        temporary.replace(target)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
-    finally:
-        temporary.unlink(missing_ok=True)
+        raise _cannot(folder, error) from error
+
+
+def _check_folder(path: str | os.PathLike[str], folder: pathlib.Path) -> None:
+    try:
+        above = next(each for each in (folder, *folder.parents) if each.exists())
+    except OSError as error:
+        raise _cannot(path, error) from error
+    if not above.is_dir():
+        raise OutputError(f"cannot write {path}: {above} is not a folder")
+    if not os.access(above, os.W_OK | os.X_OK):
+        raise OutputError(f"cannot write {path}: the folder {above} is read-only")
 
 
 def write(path: str | os.PathLike[str], text: str) -> None:
@@ -54,19 +99,52 @@ def remove(path: str | os.PathLike[str]) -> None:
     try:
         pathlib.Path(path).unlink(missing_ok=True)
     except OSError as error:
-        raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+        raise _cannot(path, error) from error
+
+
+@contextmanager
+def printing() -> Generator[None]:
+    """What is printed in the block is written to standard output, all of it before the block ends.
+
+    Raises:
+      OutputError: if it cannot be written, as into a pipe that nobody reads any more.
+    """
+    try:
+        yield
+        sys.stdout.flush()
+    except OSError as error:
+        # What is left in the buffer would fail once more, with a traceback, when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
 
 
 def show(text: str) -> None:
     """Write to standard output, all of it before this returns.
 
     Raises:
-      OutputError: if it cannot be written, as into a pipe that nobody reads any more.
+      OutputError: if it cannot be written.
     """
-    try:
+    with printing():
         sys.stdout.write(text)
-        sys.stdout.flush()
-    except OSError as error:
-        # What is left in the buffer would fail once more, with a traceback, when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
+
+
+def open_closed() -> None:
+    """Give a program that was started with closed streams ones that say so when written to.
+
+    The next file that is opened would take their place, and get what libraries print.
+    """
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, encoding="utf-8")  # noqa: SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+
+
+class Teller(Console):
+    """A console that has nobody reading it be an error like any other, where rich would end the program."""
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
+
+
+def _cannot(path: str | os.PathLike[str], error: OSError) -> OutputError:
+    return OutputError(f"cannot write {path}: {error.strerror or error}")
