@@ -7,7 +7,8 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TextIO
 
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "COLUMNS")}
 _MAIN = "import sys, warnings; from mjbeer.cli import main; sys.exit(main())"
@@ -17,16 +18,37 @@ _CHECKOUT = pathlib.Path(__file__).parents[1]
 _PATIENCE = 60
 
 
-def start(words: Sequence[str], code: str = _MAIN, **options) -> subprocess.Popen[str]:
-    """Start `mjbeer` with some words, in a session of its own, as a terminal does; `code` may run before it."""
-    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
-    command = [sys.executable, "-P", "-c", f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}", *words]
-    return subprocess.Popen(command, start_new_session=True, text=True, **{"env": ENVIRONMENT} | streams)
+def start(
+    words: Sequence[str],
+    code: str = _MAIN,
+    env: Mapping[str, str] = ENVIRONMENT,
+    stdout: int | TextIO | None = subprocess.PIPE,
+    stderr: int | TextIO = subprocess.PIPE,
+    preexec_fn: Callable[[], None] | None = None,
+) -> subprocess.Popen[str]:
+    """Start Python's `code`, by default `mjbeer`, with some words, in a session of its own, as a terminal does."""
+    code = f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}"
+    return subprocess.Popen(
+        [sys.executable, "-P", "-c", code, *words],
+        start_new_session=True,
+        text=True,
+        env=env,
+        stdout=stdout,
+        stderr=stderr,
+        preexec_fn=preexec_fn,  # noqa: PLW1509 - it makes system calls only
+    )
 
 
-def run(words: Sequence[str], code: str = _MAIN, **options) -> tuple[int, str, str]:
-    """Exit status, standard output and standard error of `mjbeer` with some words."""
-    with start(words, code, **options) as process:
+def run(
+    words: Sequence[str],
+    code: str = _MAIN,
+    env: Mapping[str, str] = ENVIRONMENT,
+    stdout: int | TextIO | None = subprocess.PIPE,
+    stderr: int | TextIO = subprocess.PIPE,
+    preexec_fn: Callable[[], None] | None = None,
+) -> tuple[int, str, str]:
+    """Exit status, standard output and standard error of what `start` starts."""
+    with start(words, code, env, stdout, stderr, preexec_fn) as process:
         out, err = process.communicate(timeout=_PATIENCE)
     return process.returncode, out or "", err or ""
 

@@ -61,6 +61,27 @@ def test_a_full_disk_is_an_output_error(tmp_path: pathlib.Path, monkeypatch: pyt
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
+def test_what_has_its_name_is_on_the_disk(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And a disk that turns out to be full only then, as over a network, is one of the faults."""
+    target = tmp_path / "motion.csv"
+    target.write_text("old")
+    seen = []
+
+    def sync(file: int) -> None:
+        seen.append((os.fstat(file).st_size, target.read_text()))
+        if len(seen) > 1:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", sync)
+    output.write(target, "new")
+    assert target.read_text() == "new"
+    with pytest.raises(OutputError, match="No space left on device"):
+        output.write(target, "newer")
+    assert seen == [(3, "old"), (5, "new")]
+    assert os.listdir(tmp_path) == ["motion.csv"]
+    assert target.read_text() == "new"
+
+
 @pytest.mark.parametrize("mask", [0o022, 0o077, 0o000])
 def test_permissions_are_those_of_any_new_file(tmp_path: pathlib.Path, mask: int) -> None:
     before = os.umask(mask)

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from mjbeer import checks, settings, study
+from mjbeer import checks, output, settings, study
 from mjbeer.ablation import ablate
 from mjbeer.cases import CASES, Case
 from mjbeer.exceptions import MjbeerError
@@ -40,6 +40,7 @@ def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Consol
     cases = [CASES[checks.choice("scene", name, CASES)] for name in names]
     path = folder / "study.json"
     found = _begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
+    output.remove(folder / "summary.md")  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
     columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}")
     with Progress(*columns, TimeElapsedColumn(), console=console, disable=not console.is_terminal) as progress:

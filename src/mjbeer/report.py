@@ -110,8 +110,8 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
     from mjbeer.video import render, save_frame
 
     verdict = check(console)
-    output.write(folder / "validation.json", table.validation_json(verdict.checks, verdict.findings))
     output.remove(folder / "summary.md")
+    output.write(folder / "validation.json", table.validation_json(verdict.checks, verdict.findings))
     size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
         trajectory = film.trajectory()
