@@ -202,15 +202,15 @@ class Stability:
 
     def run(self) -> int:
         """Do it; the exit status."""
-        from mjbeer import output, stability, stability_report
+        from mjbeer import stability, stability_report
 
-        found = stability.run(self.output, not self.long, _err)
-        stability_report.write(found, self.output)
+        with claimed(self.output):
+            found = stability.run(self.output, not self.long, _err)
+            stability_report.write(found, self.output)
         if self.json:
             output.show(found.json())
         else:
-            for grid in stability_report.tables(found):
-                _out.print(grid.rich())
+            _show(*(grid.rich() for grid in stability_report.tables(found)))
         for each in found.unexpected:
             _say(f"not as theory expects: {each}", "red")
         _say(f"the study is in {self.output / 'summary.md'}")

@@ -79,6 +79,8 @@ def tasks(quick: bool) -> list[Task]:
 def run(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
     """Run what a study in `folder` lacks; it is kept there after each task, so that what was interrupted goes on.
 
+    A summary of an earlier one goes first.
+
     Raises:
       OutputError: if the folder cannot be written to.
       ParameterError: if there is a file of that name which is no study.
@@ -89,6 +91,7 @@ def run(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
         if (before.settings, before.machine) == (found.settings, found.machine):
             console.print(f"going on from {folder / _FILE}", highlight=False, markup=False, soft_wrap=True)
             found = before
+    output.remove(folder / "summary.md")
     columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}")
     todo = tasks(quick)
     with Progress(*columns, TimeElapsedColumn(), console=console, disable=not console.is_terminal) as progress:
