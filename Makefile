@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: help report test lint gl clean
+.PHONY: help report test search lint gl clean
 
 help:
 	@sed -n '1,2p' $(MAKEFILE_LIST)
@@ -16,6 +16,10 @@ report: $(STAMP) gl
 
 test: $(STAMP) gl lint
 	$(BIN)/python -m pytest -n auto
+
+# Two thousand random runs, of which none may be wrong and silent: minutes.
+search: $(STAMP)
+	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest tests/test_search.py
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -34,4 +38,4 @@ $(STAMP): pyproject.toml
 	@touch $@
 
 clean:
-	rm -rf $(VENV) report benchmark dist
+	rm -rf $(VENV) report benchmark stability dist

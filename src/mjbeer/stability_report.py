@@ -18,7 +18,7 @@ be none of those.
 _FLOOR = 1e-16
 _COLOURS = dict(zip(("Euler", "RK4", "DOP853", "discrete", "implicit", "implicitfast"), COLOURS, strict=False))
 _ENDURANCE = (
-    "endurance: energy drifts with the number of swings by laws that theory gives. It stays in bounds where "
+    "stability-endurance: energy drifts with the number of swings by laws that theory gives. It stays in bounds where "
     "semi-implicit Euler is symplectic; where each step loses a share, were it by rounded coefficients, it falls in "
     "proportion."
 )
@@ -31,7 +31,7 @@ def write(found: Stability, folder: pathlib.Path) -> None:
       OutputError: if a file cannot be written.
     """
     output.write(folder / "runs.csv", stability_tables.runs(found))
-    endurance(found, folder / "endurance")
+    endurance(found, folder / "stability-endurance")
     pictures = [*stability_plots.draw(found.of("limits"), found.of("maps"), folder), _ENDURANCE]
     lines = ["# mjbeer: stability", "", f"{_words(found)}", _READ]
     lines += [stability_tables.verdicts(found).markdown()]
