@@ -1,4 +1,4 @@
-"""Stand-ins for what takes long: made-up rows to validate, videos that are not drawn, a benchmark of short ladders."""
+"""Stand-ins for what takes long: made-up rows to validate, videos that are not drawn, studies that are short."""
 
 import inspect
 import pathlib
@@ -9,11 +9,13 @@ import pytest
 
 from mjbeer import audit, exact, output, peers, settings, sliding, stories, validation, video
 from mjbeer import benchmark as benchmarks
+from mjbeer import stability as stabilities
 from mjbeer.claim import confirmed
 from mjbeer.exceptions import RenderingError
 from mjbeer.row import Row
 from mjbeer.settings import Curve
 from mjbeer.story import Film, Story
+from mjbeer.task import Task
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
@@ -37,6 +39,15 @@ def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
     stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
     monkeypatch.setattr(benchmarks, "ablate", lambda: stages)
     monkeypatch.setattr(benchmarks, "REPEATS", 2)
+
+
+def stability(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make the stability study one of the first task of each group, but for the maps, which take longer."""
+    first: dict[str, Task] = {}
+    for each in stabilities.tasks(quick=True):
+        first.setdefault(each.group, each)
+    del first["maps"]
+    monkeypatch.setattr(stabilities, "tasks", lambda quick: list(first.values()))
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:

@@ -84,11 +84,12 @@ def test_no_command_is_left_out_below() -> None:
 
 @pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "mjbeer"])
 def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With no rows to validate, videos that are not drawn, and a benchmark of short ladders."""
+    """With no rows to validate, videos that are not drawn, and short studies."""
     monkeypatch.chdir(tmp_path)
     stubs.validate(monkeypatch)
     stubs.draw(monkeypatch)
     stubs.benchmark(monkeypatch)
+    stubs.stability(monkeypatch)
     words = re.split(r"[|>]", command)[0]
     try:
         status = main(shlex.split(words, comments=True)[1:])

@@ -9,6 +9,7 @@ from rich.console import Console
 from mjbeer import stability, stability_report, stability_tables
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.task import Task
+from tests import stubs
 
 QUIET = Console(quiet=True)
 
@@ -127,12 +128,8 @@ def test_tasks_have_names_of_their_own(quick: bool) -> None:
 
 
 def test_the_report_is_written(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One task of each group, for real, but for the maps, which take longer and have a test of their own."""
-    first: dict[str, Task] = {}
-    for each in stability.tasks(quick=True):
-        first.setdefault(each.group, each)
-    del first["maps"]
-    monkeypatch.setattr(stability, "tasks", lambda quick: list(first.values()))
+    """One task of each group, for real; the maps have a test of their own."""
+    stubs.stability(monkeypatch)
     found = stability.run(tmp_path, True, QUIET)
     stability_report.write(found, tmp_path)
     summary = (tmp_path / "summary.md").read_text()

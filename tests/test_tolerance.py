@@ -1,6 +1,7 @@
 """tolerance: the true error is below it, the estimate bounds the true error, and what cannot be met is an error."""
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Scene, catalogue_found, exact, frozen, pendulum, simulate, sliding
+from mjbeer import Can, Scene, catalogue_found, exact, frozen, pendulum, simulate, sliding
 from mjbeer import tolerance as global_tolerance
 from mjbeer.exceptions import ToleranceError
 from mjbeer.measurement import relative_phi_error
@@ -94,3 +95,15 @@ def test_two_runs_that_lose_the_same_are_no_answer() -> None:
     """After some thousand seconds the rounding of the can's distance is as large as the arm that swings its beer."""
     with pytest.raises(ToleranceError, match="two runs agree, but energy or momentum drift like an error of"):
         simulate(sliding(fill=1 - 1e-6), 2e4, 1.0, timestep=10.0, tolerance=1e-6)
+
+
+@pytest.mark.parametrize("rolling", ["reduced", "equality"])
+@pytest.mark.parametrize("radius", [1e-6, 1e3])
+@pytest.mark.parametrize("make", [sliding, frozen])
+def test_cans_of_any_size_keep_to_the_tolerance(make: Callable[..., Scene], radius: float, rolling: str) -> None:
+    """MuJoCo has a floor of 1e-15 under masses, and under softness per mass: a can of 1 um is under the one, and one of
+    1 km, 1e12 kg, would be soft by the other, and 1e-5 rad off."""
+    can = Can.sheet_metal(radius, 3.6 * radius, thickness=radius / 330)
+    scene, slow = make(can=can), math.sqrt(radius / 9.81)
+    run = simulate(scene, 30 * slow, 1.0, rolling=rolling, timestep=slow / 50, tolerance=1e-9)
+    assert relative_phi_error(run) < 1e-9

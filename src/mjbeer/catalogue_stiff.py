@@ -44,7 +44,7 @@ def _hard(label: str, scene: Scene, quick: bool = True, **settings: Any) -> Iter
         make = constrained(scene, rolling, **settings)
         for integrator in (*INTEGRATORS, DOP853):
             run = partial(follow, make, scene, 1.0, 0.0, 0.0, rolling, integrator, _TIMESTEP)
-            yield Attempt(f"{rolling}, {integrator}, 1 ms{label}", run, (), quick and integrator in _QUICK)
+            yield Attempt(f"{rolling}, {integrator}, 1 ms{label}", run, sample=quick and integrator in _QUICK)
 
 
 def _timeconsts() -> Iterator[Extreme]:
@@ -106,7 +106,7 @@ def _frictions() -> Iterator[Extreme]:
             go = partial(simulate, scene, 1.0, 0.0, 0.0, "contact", integrator, _TIMESTEP, friction=friction)
             good = (ACCURATE,) if integrator in ("RK4", DOP853) else ()
             expected = good if friction > needed else (INACCURATE,)
-            runs.append(Attempt(f"contact, {integrator}, 1 ms", go, expected, integrator in _QUICK))
+            runs.append(Attempt(f"contact, {integrator}, 1 ms", go, expected, sample=integrator in _QUICK))
         yield Extreme(
             "stiff",
             f"friction {friction:g}",
