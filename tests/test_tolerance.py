@@ -107,3 +107,11 @@ def test_cans_of_any_size_keep_to_the_tolerance(make: Callable[..., Scene], radi
     scene, slow = make(can=can), math.sqrt(radius / 9.81)
     run = simulate(scene, 30 * slow, 1.0, rolling=rolling, timestep=slow / 50, tolerance=1e-9)
     assert relative_phi_error(run) < 1e-9
+
+
+def test_an_equality_that_is_not_hard_enough_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As it would be if something tiny had to be above MuJoCo's floor under inertias: in so small a unit, all else is
+    so heavy that the floor under softness shows."""
+    monkeypatch.setattr("mjbeer.model.mass_unit", lambda _: 2.0**36)
+    with pytest.raises(ToleranceError, match=r"the can slips by .* of its way; with masses so unequal"):
+        simulate(frozen(), 2.0, 0.0, rolling="equality", tolerance=1e-9)

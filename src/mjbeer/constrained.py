@@ -8,7 +8,7 @@ import math
 import mujoco
 
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.inertial import point_share, set_inertial, weightless
+from mjbeer.inertial import frozen_inertia, point_share, set_inertial, weightless
 from mjbeer.scene import Scene
 
 _IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]
@@ -98,9 +98,9 @@ def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, t
 
 
 def _inertials(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
-    can, load = scene.can, scene.load
+    can = scene.can
     if scene.attachment == "frozen":  # one rigid body: all of it on the can
-        inertia = load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2
+        inertia = frozen_inertia(scene)
         if inertia == 0:
             raise UnsupportedError(
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo wants; "

@@ -40,6 +40,12 @@ def point_share(scene: Scene) -> Share:
     return share(scene, min(scene.can.mass / 2, load.mass) if is_point else 0.0)
 
 
+def frozen_inertia(scene: Scene) -> float:
+    """Moment of inertia of can and frozen load about their common centre of mass [kg m^2]."""
+    can, load = scene.can, scene.load
+    return load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2
+
+
 def share(scene: Scene, moved: float) -> Share:
     """The load of a scene with a mass [kg] `moved` to it from the can."""
     load = scene.load

@@ -115,12 +115,18 @@ def follow(
 
 
 def _check_conserved(run: Trajectory, tolerance: float) -> None:
-    """Two runs agree on what they both lose, such as a short arm in the rounding of a long way."""
-    implied = implied_error(run)
+    """Two runs agree on what they both lose: a short arm in the rounding of a long way, or an equality's hardness."""
+    implied, radius = implied_error(run), run.scene.can.radius
     if implied > max(tolerance, ERROR):
         raise ToleranceError(
             f"tolerance {tolerance:g} rad is not reached: two runs agree, but energy or momentum drift like an error "
             f"of {implied:.2g} rad; the model loses in rounding what moves it"
+        )
+    slid = float(np.abs(run.slip).max() / max(radius, np.abs(run.u - run.u[0]).max()))
+    if slid > tolerance:
+        raise ToleranceError(
+            f"tolerance {tolerance:g} rad is not reached: the can slips by {slid:.2g} of its way; with masses so "
+            'unequal MuJoCo has no harder equality, and rolling="reduced" needs none'
         )
 
 

@@ -2,6 +2,7 @@
 
 import math
 
+from mjbeer.inertial import frozen_inertia, point_share
 from mjbeer.scene import Scene
 
 _SMALLEST = 1e-9
@@ -20,8 +21,12 @@ def mass_unit(scene: Scene) -> float:
     Only ratios of masses enter the motion, and a power of two rounds nothing. Where a scene has both, it is the tiny
     ones that must not drown.
     """
-    can, load = scene.can, scene.load
-    present = (can.mass, can.inertia, load.mass, load.inertia, scene.oscillator.base)
+    can, form = scene.can, scene.oscillator
+    if scene.attachment == "frozen":  # one body
+        present = (scene.mass, frozen_inertia(scene), form.base)
+    else:
+        part = point_share(scene)
+        present = (can.mass - part.moved, can.inertia, part.mass, part.inertia, form.base)
     smallest = min(each for each in present if each > _NOTHING * max(present))
     up = math.ceil(math.log2(_SMALLEST / smallest))
     down = math.floor(math.log2(_LARGEST / (scene.mass + can.inertia / can.radius**2)))
