@@ -42,6 +42,23 @@ def test_the_error_of_euler_is_the_limit_of_small_steps() -> None:
     assert missed[0] / missed[1] == pytest.approx(2, abs=0.3)
 
 
+@pytest.mark.parametrize("integrator", ["Euler", "implicit"])
+def test_the_motion_of_euler_is_right_to_second_order(integrator: str) -> None:
+    """Rolling down: halving the step halves the error, and quarters what is missed of it."""
+    from mjbeer import exact, frozen, simulate
+
+    scene, times, missed, first = frozen(), np.array([0.0, 1.0]), [], []
+    for h in (5e-4, 2.5e-4):
+        predicted = predictions.euler_motion(scene, times, h, integrator, np.pi)[-1]
+        run = simulate(scene, 1.0, np.pi, rolling="equality", integrator=integrator, timestep=h, times=times)
+        missed.append(run.phi[-1] - predicted)
+        first.append(run.phi[-1] - exact(scene, times, np.pi).phi[-1])
+    assert np.sign(first[0]) == {"Euler": -1, "implicit": 1}[integrator]
+    assert abs(missed[0] / first[0]) < NEXT_ORDER
+    assert first[0] / first[1] == pytest.approx(2, abs=0.05)
+    assert missed[0] / missed[1] == pytest.approx(4, abs=0.2)
+
+
 def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
     """A can of radius 1 m."""
     scene = sliding(can=Can.hoop(1.0, 1.0, 2.0))

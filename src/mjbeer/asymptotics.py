@@ -9,8 +9,10 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.can import Can
+from mjbeer.exact import exact
 from mjbeer.measurement import observed_order
 from mjbeer.model import DOP853
+from mjbeer.predictions import euler_motion
 from mjbeer.row import Row
 from mjbeer.scene import Scene, frozen, pendulum, sliding
 from mjbeer.simulation import simulate
@@ -51,6 +53,15 @@ def rows() -> Iterator[Row]:
             "relative",
             "4e-16 rad of rounding at the top, where the smallest distance is 1e-10 rad",
             lambda scene=scene: _fall_slope(scene) / fall_slope(scene) - 1,
+        )
+    for integrator, duration in (("Euler", 8.0), ("implicit", 2.4)):
+        yield Row(
+            f"rolling down for {duration} s, by how much the timestep falsifies the turn",
+            f"frozen, equality, {integrator}, 1 ms",
+            1e-3,
+            "relative",
+            "second order in the timestep",
+            lambda integrator=integrator, duration=duration: _falsified(integrator, duration),
         )
     for make, name in ((sliding, "sliding"), (frozen, "frozen")):
         yield Row(
@@ -99,6 +110,13 @@ def _fall_slope(scene: Scene) -> float:
         run = simulate(scene, period / 2, top - beside, integrator=DOP853, timestep=period / 1000)
         times.append(CubicHermiteSpline(run.time, run.phi, run.phi_dot).solve(bottom, extrapolate=False)[0])
     return float(np.polyfit(np.log(_BESIDE_SEPARATRIX), times, 1)[0])
+
+
+def _falsified(integrator: str, duration: float) -> float:
+    scene, timestep, times = frozen(), 1e-3, np.array([0.0, duration])
+    truth = exact(scene, times, math.pi).phi[-1]
+    run = simulate(scene, duration, math.pi, rolling="equality", integrator=integrator, timestep=timestep, times=times)
+    return (run.phi[-1] - truth) / (euler_motion(scene, times, timestep, integrator, math.pi)[-1] - truth) - 1
 
 
 def _dissimilarity(make: Any) -> float:

@@ -11,6 +11,8 @@ from mjbeer.scene import Scene
 
 _DIFFERENCE = 1e-5
 """Step of the central differences [rad, or rad/s over the frequency scale]: their error is 1e-10 of the slope."""
+_SIGN = {"Euler": 1, "implicitfast": 1, "discrete": 1, "implicit": -1}
+"""Of what forces that go with the square of the rate do to the energy."""
 _NODES = 40
 """Of a quadrature over a swing, whose integrand is smooth: 1e-15 at 1 rad."""
 
@@ -76,19 +78,39 @@ def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 
     C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX); the error is that perturbation, carried along
     by the linearized motion. It holds where phi is a coordinate of the model, as in the reduced ones.
     """
-    form = scene.oscillator
-    rate = float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
 
     def slopes(_: float, state: np.ndarray) -> np.ndarray:
         q, v, dq, dv = state
-        a = float(form.acceleration(q, v))
-        e, f = _DIFFERENCE, _DIFFERENCE * rate
-        a_q = float(form.acceleration(q + e, v) - form.acceleration(q - e, v)) / (2 * e)
-        a_v = float(form.acceleration(q, v + f) - form.acceleration(q, v - f)) / (2 * f)
+        a, a_q, a_v = _acceleration(scene, q, v)
         return np.array([v, a, dv + a / 2, a_q * dq + a_v * dv - (a_q * v + a_v * a) / 2])
 
     span, start = (0.0, float(times[-1])), [phi0, phi_dot0, 0.0, 0.0]
     return solve_ivp(slopes, span, start, "DOP853", times, rtol=1e-8, atol=1e-8).y[2]
+
+
+def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: str, phi0: float) -> np.ndarray:
+    """phi [rad] at `times` [s] of the motion that semi-implicit Euler follows, up to h^2, from rest.
+
+    The perturbed equations of `euler_error`, in full: they hold where the error is as large as the motion. "implicit"
+    turns the sign of a_v a.
+    """
+    sign, half = _SIGN[integrator], timestep / 2
+
+    def slopes(_: float, state: np.ndarray) -> np.ndarray:
+        q, v = state
+        a, a_q, a_v = _acceleration(scene, q, v)
+        return np.array([v + half * a, a - half * (a_q * v + sign * a_v * a)])
+
+    return solve_ivp(slopes, (0.0, float(times[-1])), [phi0, 0.0], "DOP853", times, rtol=1e-8, atol=1e-8).y[0]
+
+
+def _acceleration(scene: Scene, q: float, v: float) -> tuple[float, float, float]:
+    """The exact acceleration, and what it changes by with angle and rate."""
+    form, rate = scene.oscillator, float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
+    e, f = _DIFFERENCE, _DIFFERENCE * rate
+    a_q = float(form.acceleration(q + e, v) - form.acceleration(q - e, v)) / (2 * e)
+    a_v = float(form.acceleration(q, v + f) - form.acceleration(q, v - f)) / (2 * f)
+    return float(form.acceleration(q, v)), a_q, a_v
 
 
 def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator: str) -> float | None:
@@ -99,7 +121,7 @@ def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator
     method symplectic. "implicit" treats the forces that go with v^2 implicitly, which turns the sign. None for methods
     of higher order. The swing is one of `amplitude` [rad], between turning points that lie symmetrically.
     """
-    sign = {"Euler": 1, "implicitfast": 1, "discrete": 1, "implicit": -1}.get(integrator)
+    sign = _SIGN.get(integrator)
     if sign is None:
         return None
     form, rest = scene.oscillator, scene.equilibrium()

@@ -1,6 +1,7 @@
 """What the stability study writes: its runs as CSV, its plots, and a summary with the tables."""
 
 import pathlib
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,8 @@ inaccurate** if they do not and the run says so, **unstable, detected** if it bl
 be none of those.
 """
 _FLOOR = 1e-16
-_COLOURS = dict(zip(("Euler", "RK4", "DOP853", "discrete", "implicit", "implicitfast"), COLOURS, strict=False))
+_SEMI_IMPLICIT, _HIGHER = "semi-implicit", ("RK4", "DOP853")
+_COLOURS = dict(zip((_SEMI_IMPLICIT, *_HIGHER), COLOURS, strict=False))
 _ENDURANCE = (
     "stability-endurance: energy drifts with the number of swings by laws that theory gives. It stays in bounds where "
     "semi-implicit Euler is symplectic; where each step loses a share, were it by rounded coefficients, it falls in "
@@ -65,17 +67,23 @@ def endurance(found: Stability, path: pathlib.Path) -> None:
     Raises:
       OutputError: if a file cannot be written.
     """
-    with chart(path, width=9, height=7) as (axes,):
-        for each in found.of("endurance"):
-            bounded, steady = each["law"] == "bounded", each["expected"] == "bounded" or "heavy" in each["name"]
-            size = np.maximum(np.abs(each["width" if bounded else "drift"]), _FLOOR)
-            label = f"{each['integrator']}, {each['steps']} steps a swing, {each['name']}: {each['law'] or 'no law'}"
-            line = "-" if steady else "--"
-            axes.plot(each["counts"], size, line, color=_COLOURS[each["integrator"]], label=label)
+    lines: dict[tuple[str, int, str], list[dict[str, Any]]] = {}
+    for each in found.of("endurance"):
+        kin = each["integrator"] if each["integrator"] in _HIGHER else _SEMI_IMPLICIT
+        lines.setdefault((kin, each["steps"], each["name"]), []).append(each)
+    styles = {kin: iter(("-", "--", ":")) for kin in _COLOURS}
+    with chart(path, width=9, height=6.5) as (axes,):
+        for (kin, steps, name), runs in lines.items():
+            shown = max(runs, key=lambda each: each["swings"])  # the others of its kin lie under it
+            law = " or ".join({each["law"] or "no law": None for each in runs})
+            size = np.maximum(np.abs(shown["width" if shown["law"] == "bounded" else "drift"]), _FLOOR)
+            style = next(styles[kin])
+            label = f"{', '.join(each['integrator'] for each in runs)}: {steps} steps a swing, {name} ({law})"
+            axes.plot(shown["counts"], size, style, color=_COLOURS[kin], label=label)
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(_FLOOR, 2)
-        axes.set_xlabel("swings of 1 rad")
-        axes.set_ylabel("change of the swing's energy, as a share of it")
+        axes.set_xlabel("number of swings of 1 rad")
+        axes.set_ylabel("energy of the swing gained or lost, as a share of it")
         axes.set_title("How much energy a swing gains or loses by being simulated")
-        axes.figure.legend(loc="outside lower center", fontsize=8, ncols=2)
+        axes.figure.legend(loc="outside lower center", fontsize=8)
