@@ -10,7 +10,6 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import TextIO
 
-ENVIRONMENT = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "COLUMNS")}
 _MAIN = "import sys, warnings; from mjbeer.cli import main; sys.exit(main())"
 SHORT = f"import pytest; from tests import stubs; stubs.benchmark(pytest.MonkeyPatch()); {_MAIN}"
 """With a benchmark of short ladders."""
@@ -21,7 +20,7 @@ _PATIENCE = 60
 def start(
     words: Sequence[str],
     code: str = _MAIN,
-    env: Mapping[str, str] = ENVIRONMENT,
+    env: Mapping[str, str] = os.environ,
     stdout: int | TextIO | None = subprocess.PIPE,
     stderr: int | TextIO = subprocess.PIPE,
     preexec_fn: Callable[[], None] | None = None,
@@ -42,7 +41,7 @@ def start(
 def run(
     words: Sequence[str],
     code: str = _MAIN,
-    env: Mapping[str, str] = ENVIRONMENT,
+    env: Mapping[str, str] = os.environ,
     stdout: int | TextIO | None = subprocess.PIPE,
     stderr: int | TextIO = subprocess.PIPE,
     preexec_fn: Callable[[], None] | None = None,

@@ -18,7 +18,6 @@ from mjbeer.cli import main
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
 # RK4 at 1 ms over 0.1 s: 2e-6 rad for the light hoop, whose load turns at 45 rad/s at the bottom; 1e-8 for others.
 RK4 = 1e-5
-ENVIRONMENT = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "COLUMNS")}
 
 
 def entry(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.CompletedProcess[str]:
@@ -26,7 +25,7 @@ def entry(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.Complete
     script = shutil.which("mjbeer", path=sysconfig.get_path("scripts"))
     assert script is not None
     command = [script, *arguments]
-    return subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, env=ENVIRONMENT, text=True, check=False)
+    return subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, text=True, check=False)
 
 
 @pytest.mark.parametrize("name", SCENES)

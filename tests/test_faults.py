@@ -119,6 +119,15 @@ def test_a_full_standard_error_is_no_fault(tmp_path: pathlib.Path) -> None:
     assert "phi at the end" in out
 
 
+@linux
+def test_a_study_goes_on_when_nobody_hears_of_its_progress(tmp_path: pathlib.Path) -> None:
+    words = ["benchmark", "frozen", "--quick", "--output", str(tmp_path)]
+    with open("/dev/full", "w") as full:
+        status, out, _ = run(words, SHORT, stderr=full)
+    assert (status, bool(out)) == (0, True)
+    assert (tmp_path / "summary.md").exists()
+
+
 def test_a_reader_of_tables_that_goes_away() -> None:
     reader, writer = os.pipe()
     os.close(reader)

@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import gl
 from mjbeer.exceptions import RenderingError
-from tests.processes import ENVIRONMENT, run
+from tests.processes import run
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a choice of backends")
 
@@ -124,7 +124,7 @@ def test_import_loads_no_opengl_and_sets_no_environment() -> None:
 @pytest.mark.parametrize("asked", ["banana", "osmesa"])
 def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
     """MuJoCo itself cannot be imported with the first, nor with the second where there is none."""
-    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=ENVIRONMENT | {"MUJOCO_GL": asked})
+    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=os.environ | {"MUJOCO_GL": asked})
     assert (status, err) == (0, "")
     assert "phi at the end" in out
 
@@ -134,7 +134,7 @@ def test_a_library_that_crashes_when_it_is_loaded(tmp_path: pathlib.Path) -> Non
     """The module that loads it stands for it; the video is not begun, and the message has the remedy."""
     (tmp_path / "OpenGL").mkdir()
     (tmp_path / "OpenGL" / "__init__.py").write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-    environment = ENVIRONMENT | {
+    environment = os.environ | {
         "PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")]), "MUJOCO_GL": "egl"
     }  # fmt: skip
     film = tmp_path / "new" / "film.mp4"

@@ -7,7 +7,7 @@ import stat
 
 import pytest
 
-from mjbeer import output
+from mjbeer import output, streams
 from mjbeer.exceptions import OutputError
 
 
@@ -141,7 +141,7 @@ def test_a_folder_that_may_not_be_written_to_is_an_output_error(
 
 
 def test_show_writes_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
-    output.show("a,b\n1,2\n")
+    streams.show("a,b\n1,2\n")
     assert capsys.readouterr() == ("a,b\n1,2\n", "")
 
 

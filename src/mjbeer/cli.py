@@ -1,7 +1,6 @@
 """The command line: mjbeer simulate | render | export | validate | benchmark | advise |
 stability | report | paper."""
 
-import contextlib
 import pathlib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,14 +9,14 @@ from typing import Annotated, Literal
 import tyro
 from rich.console import RenderableType
 
-from mjbeer import gl, interruption, output
+from mjbeer import gl, interruption, output, streams
 from mjbeer.arguments import AnyScene, CaseName, Rolling, Run, radians
 from mjbeer.cases import DEFAULT
 from mjbeer.exceptions import MjbeerError
 from mjbeer.exclusive import claimed
 
 _FAILED, _WRONG = 1, 2
-_out, _err = output.Teller(), output.Teller(stderr=True)
+_out, _err = streams.Teller(), streams.Teller(stderr=True)
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Simulate(Run):
         if file == self.output:
             _show(table.summary(trajectory))
         else:
-            output.show(table.csv(trajectory))
+            streams.show(table.csv(trajectory))
             _err.print(table.summary(trajectory))
         _warn(trajectory.warnings)
         return 0
@@ -118,7 +117,7 @@ class Validate:
 
         verdict = report.check(_err)
         if self.json:
-            output.show(table.validation_json(verdict.checks, verdict.findings))
+            streams.show(table.validation_json(verdict.checks, verdict.findings))
         else:
             _show(table.validation(verdict.checks), table.audit(verdict.findings))
         return 0 if verdict.passed else _FAILED
@@ -185,7 +184,7 @@ class Advise:
         """Do it; the exit status."""
         from mjbeer import advice
 
-        output.show(advice.advise(self.scene, self.tolerance, self.rolling, self.study) + "\n")
+        streams.show(advice.advise(self.scene, self.tolerance, self.rolling, self.study) + "\n")
         return 0
 
 
@@ -208,7 +207,7 @@ class Stability:
             found = stability.run(self.output, not self.long, _err)
             stability_report.write(found, self.output)
         if self.json:
-            output.show(found.json())
+            streams.show(found.json())
         else:
             _show(*(grid.rich() for grid in stability_report.tables(found)))
         for each in found.unexpected:
@@ -253,10 +252,11 @@ _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line: exit status 0, 1 (a check failed), 2 (an error), or 128 and the signal that ended it."""
-    output.open_closed()
+    streams.open_closed()
     with interruption.heeded():
         try:
-            command = parse(arguments)
+            with streams.printing():
+                command = parse(arguments)
             gl.keep_out()
             return command.run()
         except MjbeerError as error:
@@ -286,11 +286,10 @@ def _warn(warnings: tuple[str, ...]) -> None:
 
 
 def _show(*tables: RenderableType) -> None:
-    with output.printing():
+    with streams.printing():
         _out.print(*tables)
 
 
 def _say(text: str, style: str = "") -> None:
     """A line on standard error; names of files may have brackets in them, which are no markup."""
-    with contextlib.suppress(OSError):  # where nobody listens there is nothing more to say
-        _err.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
+    _err.print(text, style=style, highlight=False, markup=False, soft_wrap=True)

@@ -1,14 +1,10 @@
 """Output files that appear whole or not at all."""
 
-import errno
 import os
 import pathlib
 import secrets
-import sys
 from collections.abc import Generator
 from contextlib import contextmanager
-
-from rich.console import Console
 
 from mjbeer.exceptions import OutputError
 from mjbeer.interruption import undoing
@@ -100,50 +96,6 @@ def remove(path: str | os.PathLike[str]) -> None:
         pathlib.Path(path).unlink(missing_ok=True)
     except OSError as error:
         raise _cannot(path, error) from error
-
-
-@contextmanager
-def printing() -> Generator[None]:
-    """What is printed in the block is written to standard output, all of it before the block ends.
-
-    Raises:
-      OutputError: if it cannot be written, as into a pipe that nobody reads any more.
-    """
-    try:
-        yield
-        sys.stdout.flush()
-    except OSError as error:
-        # What is left in the buffer would fail once more, with a traceback, when Python ends.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
-
-
-def show(text: str) -> None:
-    """Write to standard output, all of it before this returns.
-
-    Raises:
-      OutputError: if it cannot be written.
-    """
-    with printing():
-        sys.stdout.write(text)
-
-
-def open_closed() -> None:
-    """Give a program that was started with closed streams ones that say so when written to.
-
-    The next file that is opened would take their place, and get what libraries print.
-    """
-    if sys.stdout is None:
-        sys.stdout = open(os.devnull, encoding="utf-8")  # noqa: SIM115
-    if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
-
-
-class Teller(Console):
-    """A console that has nobody reading it be an error like any other, where rich would end the program."""
-
-    def on_broken_pipe(self) -> None:
-        raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
 
 def _cannot(path: str | os.PathLike[str], error: OSError) -> OutputError:

@@ -1,0 +1,73 @@
+"""Standard output and standard error, where writing to them may fail."""
+
+import errno
+import os
+import sys
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+from rich.console import Console
+
+from mjbeer.exceptions import OutputError
+
+
+@contextmanager
+def printing() -> Generator[None]:
+    """What is printed in the block is written to standard output, all of it before the block ends.
+
+    Raises:
+      OutputError: if it cannot be written, as into a pipe that nobody reads any more.
+    """
+    try:
+        try:
+            yield
+        finally:  # --help prints, and ends the program
+            sys.stdout.flush()
+    except OSError as error:
+        _forget(sys.stdout)
+        raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
+
+
+def show(text: str) -> None:
+    """Write to standard output, all of it before this returns.
+
+    Raises:
+      OutputError: if it cannot be written.
+    """
+    with printing():
+        sys.stdout.write(text)
+
+
+def open_closed() -> None:
+    """Give a program that was started with closed streams ones that say so when written to.
+
+    The next file that is opened would take their place, and get what libraries print.
+    """
+    if sys.stdout is None:
+        sys.stdout = open(os.devnull, encoding="utf-8")  # noqa: SIM115
+    if sys.stderr is None:
+        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+
+
+class Teller(Console):
+    """A console that has nobody reading it be an error like any other, where rich would end the program.
+
+    It is none on standard error, where there is nothing more to say then.
+    """
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        try:
+            super().print(*objects, **options)
+        except OSError:
+            if not self.stderr:
+                raise
+            _forget(sys.stderr)
+
+    def on_broken_pipe(self) -> None:
+        raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
+
+
+def _forget(stream: TextIO) -> None:
+    """Let nobody have what is left in the buffer: it would fail once more, with a traceback, when Python ends."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
