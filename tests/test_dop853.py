@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjbeer import dop853_steps, exact, frozen, sliding
+from mjbeer import Can, Scene, dop853_steps, exact, frozen, pendulum, sliding
 from mjbeer.dop853 import Integrator, integrate
 from mjbeer.exceptions import DivergenceError
 from mjbeer.forces import accelerations
@@ -118,6 +118,24 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(name: str) -> None:
     # The actuator's force is added to the others in another order: one rounding of their sum.
     exactly = model.nu == 0
     assert slope[model.nv :] == pytest.approx(data.qacc, rel=0 if exactly else 1e-15, abs=0)
+
+
+@pytest.mark.parametrize("scene", [sliding(), sliding(can=Can.sheet_metal()), pendulum()])
+def test_an_evaluation_does_not_know_how_far_the_can_has_come(scene: Scene) -> None:
+    """At a distance of 1e10 m, where MuJoCo itself would lose six digits."""
+    model = build(scene)
+    integrator, slopes = Integrator(model), []
+    for place in (0.0, 1e10):
+        begin = start(model, scene, 0.7, 2.0)
+        begin[int(model.joint("slide").qposadr[0])] = place
+        slopes.append(np.empty_like(begin))
+        dop853_steps._slope(integrator._pointers, integrator._views, begin, slopes[-1])
+    assert (slopes[0] == slopes[1]).all()
+
+
+def test_a_slide_that_is_tied_to_others_matters() -> None:
+    model = build(pendulum(), "equality")
+    assert Integrator(model)._views[-1].all()
 
 
 def test_the_clock_is_put_back() -> None:

@@ -37,7 +37,7 @@ def test_a_trial_takes_all_its_numbers() -> None:
     numbers, changed = generator.random(NUMBERS).tolist(), set[int]()
     with pytest.raises(StopIteration):
         trial(numbers[:-1])
-    for _ in range(30):
+    for _ in range(60):
         numbers = generator.random(NUMBERS).tolist()
         for place in range(NUMBERS):
             other = [*numbers[:place], (numbers[place] + 0.37) % 1, *numbers[place + 1 :]]

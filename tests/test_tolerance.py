@@ -9,10 +9,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, catalogue_found, exact, frozen, pendulum, simulate, sliding
+from mjbeer import Can, Load, Scene, catalogue_found, exact, frozen, pendulum, simulate, sliding
 from mjbeer import tolerance as global_tolerance
 from mjbeer.exceptions import ToleranceError
 from mjbeer.measurement import relative_phi_error
+from mjbeer.outcome import ACCURATE, REFUSED
 from tests.scenes import scenes
 
 TOLERANCE = 1e-10
@@ -78,11 +79,16 @@ def test_single_precision_parameters_are_taken_as_doubles() -> None:
     assert simulate(scene, 0.1, np.float32(1.0)).phi.dtype == np.float64
 
 
-FOUND = [case.attempts[0].run for case in catalogue_found.cases() if "tolerance" in case.attempts[0].setting]
-assert len(FOUND) == 2
+FOUND = [
+    (case.name, attempt.run)
+    for case in catalogue_found.cases()
+    for attempt in case.attempts
+    if "tolerance" in attempt.setting and ACCURATE in attempt.expected and REFUSED not in attempt.expected
+]
+assert len(FOUND) == 3
 
 
-@pytest.mark.parametrize("run", FOUND, ids=["few large steps", "a swing that large steps miss alike"])
+@pytest.mark.parametrize("run", [run for _, run in FOUND], ids=[name for name, _ in FOUND])
 def test_what_the_random_search_found_keeps_to_its_tolerance(run: partial) -> None:
     made, tolerance = run(), run.keywords["tolerance"]
     error = relative_phi_error(made)
@@ -92,9 +98,44 @@ def test_what_the_random_search_found_keeps_to_its_tolerance(run: partial) -> No
 
 
 def test_two_runs_that_lose_the_same_are_no_answer() -> None:
-    """After some thousand seconds the rounding of the can's distance is as large as the arm that swings its beer."""
+    """An arm of 2e-11 m on a can of 4e-5 m: turning freely, it loses its energy in rounding, in all runs alike."""
+    can = Can(3.952809236986391e-05, 1.2e-4, 2.224974224031611e-10, 3.4764556680615425e-19)
+    scene = Scene(can, Load(7.003537797032818e-07, 1.5282483803207994e-11), 0.0, "sliding", 0.0)
+    times = 0.19061643736880904 * np.arange(0, 525, 3)
     with pytest.raises(ToleranceError, match="two runs agree, but energy or momentum drift like an error of"):
-        simulate(sliding(fill=1 - 1e-6), 2e4, 1.0, timestep=10.0, tolerance=1e-6)
+        simulate(
+            scene, times[-1], 1.45, -0.46, rolling="equality", timestep=times[1] / 3, tolerance=8.4e-5, times=times
+        )
+
+
+def test_no_arm_is_lost_in_a_long_way() -> None:
+    """A nearly full can swings every 4000 s, and rolls 3e8 m in 2e4 s, whose rounding is 700 times its arm."""
+    run = simulate(sliding(fill=1 - 1e-6), 2e4, 1.0, timestep=10.0, tolerance=1e-9)
+    assert relative_phi_error(run) < 1e-9
+    assert run.u[-1] > 1e8
+
+
+BESIDE = [
+    (scene, rolling, beside)
+    for scene, rolling in ((pendulum(), "reduced"), (frozen(), "equality"), (sliding(can=Can.sheet_metal()), "reduced"))
+    for beside in np.logspace(-9, -2, 15)
+]
+
+
+def test_beside_a_separatrix_a_tolerance_is_met_or_refused() -> None:
+    """Rounding grows a millionfold there. Judged by the distance of two runs alone, four of these were up to 1.9 times
+    as far off as they should be, and one in the catalogue 70 times."""
+    met = 0
+    for tolerance in (1e-6, 1e-8, 1e-10):
+        for scene, rolling, beside in BESIDE:
+            phi0, period = scene.separatrix()[1] - beside, 2 * math.pi / scene.frequency()
+            try:
+                run = simulate(scene, 6 * period, phi0, rolling=rolling, timestep=period / 300, tolerance=tolerance)
+            except ToleranceError:
+                continue
+            met += 1
+            assert relative_phi_error(run) <= tolerance, (scene, rolling, beside)
+    assert met > len(BESIDE)
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])

@@ -47,10 +47,10 @@ def _call(typing_context, function, model, data):
 @njit(cache=True)
 def _slope(pointers, views, state, out):
     functions, model, data = pointers
-    qpos, qvel, qacc = views
+    qpos, qvel, qacc, matters = views
     n = qpos.size
     for i in range(n):
-        qpos[i] = state[i]
+        qpos[i] = state[i] if matters[i] else 0.0
         qvel[i] = state[n + i]
     for function in functions:
         _call(function, model, data)

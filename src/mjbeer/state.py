@@ -7,7 +7,7 @@ import numpy as np
 
 from mjbeer.scene import Scene
 
-_START_DEPTH = 1e-9
+START_DEPTH = 1e-9
 """How deep a can starts in the incline, in radii. At depth 0 rounding decides whether it touches, and if it
 does not it falls freely for a step: 5 um at 1 ms, 1e5 times this depth."""
 
@@ -32,7 +32,7 @@ def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> 
     roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
     values = {
         "slide": (u, u_dot),
-        "lift": (-_START_DEPTH * scene.can.radius, 0.0),
+        "lift": (-START_DEPTH * scene.can.radius, 0.0),
         "roll": (roll, roll_dot),
         "swing": (phi0 - roll, phi_dot0 - roll_dot),
         "phi": (phi0, phi_dot0),

@@ -14,8 +14,9 @@ from mjbeer.state import read
 _FIRST = 0.07
 """Local tolerance of the first run per global tolerance. Over some ten periods local errors add up to 2-20 times
 themselves (measured on all scenes)."""
-_COARSEST = 1e-5
-"""Largest local tolerance: with larger steps a motion that spins up goes astray before the order shows."""
+_COARSEST = 1e-6
+"""Largest local tolerance. With larger steps a motion that spins up goes astray before the order shows, and two runs
+may miss alike: one of 2,000 was 7.5 times as far off as from the other."""
 _RATIO = 8.0
 """Local tolerance of one run over that of the next: 1.3 times the evaluations at order 8."""
 _SMALLEST = 1e-16
@@ -25,16 +26,15 @@ _CAUTION, _MORE_CAUTION = 1.5, 3.0
 is for pairs that may be near each other by chance: later ones, which start at the same place, and those of ..."""
 _SMOOTH = (1e-11, 1e-5)
 """... tolerances outside these, where rounding rules, or where steps are too large for the method's order."""
-_LOOSE, _MOST_CAUTION = 3e-4, 8.0
-"""A tolerance that the largest steps meet with ease, and the estimate for such. What they miss, they may miss alike: of
-2,000 random runs to 1e-3 rad one was 7.5 times as far off as from the other."""
 _PROGRESS = 0.75
 """The distance of two runs over that of the two before, above which the finer ones brought nothing."""
 _PATIENCE = 1
 """How often in a row they may: steps that are too large for a motion miss by anything."""
 _NUDGE = 4e-14
-"""How far from the start the first run starts, relative to the scales. Rounding adds some 1e-15 to a run; what a
-motion beside a separatrix makes of that is in the distance of the first two, forty times as large."""
+"""How far from the start the first run starts, relative to the scales. What a motion beside a separatrix makes of that
+is in the distance of the first two."""
+_OF_NUDGE = 3 / 40
+"""The estimate of what rounding does, over what the nudge does: rounding adds some 1e-15 to a run."""
 _EVALUATIONS = 5_000_000
 """Most evaluations that one run may take: some seconds. A smooth motion takes thousands."""
 
@@ -60,35 +60,55 @@ class Solver:
         """States at `times` [s] whose error in phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
         Each run keeps its steps' errors below an eighth of what the run before did, and the first one starts a little
-        beside the `start`. The estimate is a multiple of the distance of the last two.
+        beside the `start`. The estimate is a multiple of the distance of the last two, or of an eighth of the one
+        before: later ones may be near each other by chance. Nor do they show what the motion makes of rounding, which
+        is looked at apart where the first two were so far from each other that it may matter.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message says how close they came.
         """
-        local, before, stalled = min(_FIRST * tolerance, _COARSEST), np.inf, 0
-        local = max(local, _RATIO * _SMALLEST)
+        local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
         caution = _CAUTION if _SMOOTH[0] < tolerance < _SMOOTH[1] else _MORE_CAUTION
-        if tolerance > _LOOSE:
-            caution = _MOST_CAUTION
         coarse = self._run(start + _NUDGE * self._scale, times, local, tolerance)
+        fine = self._run(start, times, local / _RATIO, tolerance)
+        first = before = self._distance(coarse, fine)
+        if caution * first <= tolerance:
+            return Solution(fine, caution * first)
         while True:
             local /= _RATIO
-            if local < _SMALLEST:
+            if local < _RATIO * _SMALLEST:
                 raise ToleranceError(
                     f"tolerance {tolerance:g} rad is not reached: two runs at the limit of rounding differ by "
                     f"{before:.2g} rad"
                 )
-            fine = self._run(start, times, local, tolerance)
+            coarse, fine = fine, self._run(start, times, local / _RATIO, tolerance)
             apart = self._distance(coarse, fine)
-            if caution * apart <= tolerance:
-                return Solution(fine, caution * apart)
+            estimate = _MORE_CAUTION * max(apart, before / _RATIO)
+            if estimate <= tolerance:
+                rounding = _OF_NUDGE * first
+                if rounding > tolerance:
+                    rounding = self._of_rounding(fine, start, times, local / _RATIO, tolerance)
+                return Solution(fine, max(estimate, rounding))
             stalled = stalled + 1 if apart > _PROGRESS * before else 0
             if stalled > _PATIENCE:
                 raise ToleranceError(
                     f"tolerance {tolerance:g} rad is not reached: two runs differ by {before:.2g} rad, and finer "
                     f"ones by {apart:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
                 )
-            coarse, before, caution = fine, apart, _MORE_CAUTION
+            before = apart
+
+    def _of_rounding(
+        self, fine: np.ndarray, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
+    ) -> float:
+        """What the motion makes of rounding [rad], by runs that start a little beside the start, on either side: from
+        the top of a barrier all that start on one side fall alike."""
+        nudged = (self._run(start + side * _NUDGE * self._scale, times, local, tolerance) for side in (1, -1))
+        made = _OF_NUDGE * max(self._distance(each, fine) for each in nudged)
+        if made > tolerance:
+            raise ToleranceError(
+                f"tolerance {tolerance:g} rad is not reached: the motion makes {made:.2g} rad of a start's rounding"
+            )
+        return made
 
     def _run(self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float) -> np.ndarray:
         try:

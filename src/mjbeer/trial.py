@@ -9,13 +9,14 @@ import numpy as np
 
 from mjbeer.can import Can
 from mjbeer.exact import exact
+from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.load import Load
 from mjbeer.model import DOP853, INTEGRATORS, ROLLINGS
 from mjbeer.scene import ATTACHMENTS, GRAVITY, Scene
 from mjbeer.simulation import simulate
 from mjbeer.trajectory import Trajectory
 
-NUMBERS = 35
+NUMBERS = 36
 """How many numbers make a trial."""
 _LONGEST = 100.0
 """Turns and falls through the radius that a run may last: exact theory follows each of them."""
@@ -77,7 +78,7 @@ def trial(numbers: Sequence[float]) -> Trial:
     """The trial that `NUMBERS` numbers between 0 and 1 stand for.
 
     Sizes, masses, gravities and timesteps are spread over their decades; what is special (an empty can, the top, a
-    fill of one, a point load, no gravity, no incline) comes up as often as what is not.
+    fill of one, a point load, no gravity, no incline, a start beside the separatrix) comes up as often as what is not.
 
     Raises:
       ParameterError: if there is no such scene.
@@ -85,7 +86,8 @@ def trial(numbers: Sequence[float]) -> Trial:
     pick = _Numbers(numbers)
     scene = _scene(pick)
     slow = math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
-    phi0 = pick.one(0.0, math.pi, 1.0, pick.between(-4, 4), pick.decades(1e-9, 1))
+    beside = _top(scene) - pick.decades(1e-12, 1)
+    phi0 = pick.one(0.0, math.pi, 1.0, pick.between(-4, 4), pick.decades(1e-9, 1), beside)
     spin = pick.one(0.0, 0.0, pick.between(-3, 3), pick.decades(1e-3, 1e3))
     haste = max(1.0, abs(spin))
     timestep = slow / haste * pick.decades(1e-4, 3)
@@ -96,6 +98,14 @@ def trial(numbers: Sequence[float]) -> Trial:
         tolerance = None  # a stiff contact takes more steps to it than one would wait for
     friction = pick.one(1.0, 1.0, pick.decades(1e-3, 1e3))
     return Trial(scene, phi0, spin / slow, rolling, integrator, timestep, steps, tolerance, friction)
+
+
+def _top(scene: Scene) -> float:
+    """Where the largest swing ends [rad]; pi where nothing swings."""
+    try:
+        return scene.separatrix()[1]
+    except NoEquilibriumError:
+        return math.pi
 
 
 def _scene(pick: _Numbers) -> Scene:
