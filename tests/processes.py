@@ -8,7 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
-from typing import TextIO
+from typing import Any, TextIO
 
 _MAIN = "import sys, warnings; from mjbeer.cli import main; sys.exit(main())"
 SHORT = f"import pytest; from tests import stubs; stubs.benchmark(pytest.MonkeyPatch()); {_MAIN}"
@@ -38,16 +38,9 @@ def start(
     )
 
 
-def run(
-    words: Sequence[str],
-    code: str = _MAIN,
-    env: Mapping[str, str] = os.environ,
-    stdout: int | TextIO | None = subprocess.PIPE,
-    stderr: int | TextIO = subprocess.PIPE,
-    preexec_fn: Callable[[], None] | None = None,
-) -> tuple[int, str, str]:
-    """Exit status, standard output and standard error of what `start` starts."""
-    with start(words, code, env, stdout, stderr, preexec_fn) as process:
+def run(words: Sequence[str], *settings: Any, **streams: Any) -> tuple[int, str, str]:
+    """Exit status, standard output and standard error of what `start` starts with the same arguments."""
+    with start(words, *settings, **streams) as process:
         out, err = process.communicate(timeout=_PATIENCE)
     return process.returncode, out or "", err or ""
 

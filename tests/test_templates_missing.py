@@ -1,7 +1,6 @@
 """Templates that are missing, broken or tampered with: the error names the file and what is wrong with it."""
 
 import pathlib
-import shutil
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -37,15 +36,6 @@ NEEDED = [
     for element in elements(file)
     if element[1:] not in SPARE
 ]
-
-
-@pytest.fixture
-def copy(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
-    """A copy of the templates in the place of the templates."""
-    folder = tmp_path / "mjcf"
-    shutil.copytree(templates.folder(), folder)
-    monkeypatch.setattr(templates, "_FOLDERS", (folder,))
-    return folder
 
 
 def remove(path: pathlib.Path, parent_tag: str, tag: str, name: str) -> None:

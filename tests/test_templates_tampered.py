@@ -25,15 +25,6 @@ JOINT = ("damping", "armature", "stiffness", "frictionloss", "springref", "ref",
 ATTRIBUTE = re.compile(r'(?<=[\w]=")[^"]*(?=")')
 
 
-@pytest.fixture
-def copy(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
-    """A copy of the templates in the place of the templates."""
-    folder = tmp_path / "mjcf"
-    shutil.copytree(templates.folder(), folder)
-    monkeypatch.setattr(templates, "_FOLDERS", (folder,))
-    return folder
-
-
 def scene_of(file: str) -> str:
     return file if file in SCENES else "sliding"
 

@@ -109,7 +109,7 @@ def test_two_runs_that_lose_the_same_are_no_answer() -> None:
 
 
 def test_no_arm_is_lost_in_a_long_way() -> None:
-    """A nearly full can swings every 4000 s, and rolls 3e8 m in 2e4 s, whose rounding is 700 times its arm."""
+    """A nearly full can swings every 4000 s, and rolls 3e8 m in 2e4 s, whose rounding is 600 times its arm."""
     run = simulate(sliding(fill=1 - 1e-6), 2e4, 1.0, timestep=10.0, tolerance=1e-9)
     assert relative_phi_error(run) < 1e-9
     assert run.u[-1] > 1e8

@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator, Sequence
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from mjbeer import checks, output, settings, study
 from mjbeer.ablation import ablate
@@ -15,6 +14,7 @@ from mjbeer.exceptions import MjbeerError
 from mjbeer.peers import Peer, installed
 from mjbeer.point import Point
 from mjbeer.prepared import Prepared, measure, prepare
+from mjbeer.progress import counted
 from mjbeer.settings import TIMESTEP, Curve, aligned
 from mjbeer.study import Study
 from mjbeer.verdict import verdict
@@ -42,8 +42,7 @@ def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Consol
     found = _begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
     output.remove(folder / "summary.md")  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}")
-    with Progress(*columns, TimeElapsedColumn(), console=console, disable=not console.is_terminal) as progress:
+    with counted(console) as progress:
         ready: dict[int, Prepared] = {}
         ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
         task = progress.add_task("errors", total=len(ladders))

@@ -62,7 +62,7 @@ def cases() -> Iterator[Extreme]:
     go = partial(simulate, sliding(fill=1 - 1e-6), 2e4, 1.0)
     yield Extreme(
         "found",
-        "sliding, fill 1 - 1e-6, ten thousand seconds",
+        "sliding, fill 1 - 1e-6, twenty thousand seconds",
         "the arm b is lost in the rounding of a distance of 3e8 m, and two runs to a tolerance lost it alike",
         "a swing of 4000 s; only its energy tells that it is gone, unless each evaluation is made near the origin",
         (

@@ -1,5 +1,4 @@
-"""The command line: mjbeer simulate | render | export | validate | benchmark | advise |
-stability | report | paper."""
+"""The command line: what `mjbeer` does, a class a command."""
 
 import pathlib
 from collections.abc import Sequence

@@ -10,6 +10,7 @@ import mujoco
 
 from mjbeer import appearance
 from mjbeer.can import RADIUS
+from mjbeer.joints import places
 from mjbeer.model import specify
 from mjbeer.scene import Scene
 
@@ -43,8 +44,7 @@ def pose(
     is to be seen.
     """
     values = {"slide": u * scale(scene), "lift": 0.0, "roll": roll, "swing": phi - roll}
-    for index in range(model.njnt):
-        name = model.joint(index).name
+    for name in places(model):
         data.joint(name).qpos[:] = values[name]
     mujoco.mj_kinematics(model, data)
     mujoco.mj_camlight(model, data)

@@ -8,6 +8,7 @@ import numpy as np
 
 from mjbeer import dop853_steps
 from mjbeer.exceptions import DivergenceError
+from mjbeer.joints import places
 from mjbeer.library import address
 from mjbeer.quiet import quiet
 from mjbeer.untimed import untimed
@@ -88,8 +89,8 @@ def _matters(model: mujoco.MjModel, smooth: bool) -> np.ndarray:
     rounding a short arm is lost after a long way.
     """
     matters = np.ones(model.nq, np.bool_)
-    if smooth and "slide" in {model.joint(i).name for i in range(model.njnt)}:
-        matters[int(model.joint("slide").qposadr[0])] = False
+    if smooth and "slide" in (joints := places(model)):
+        matters[joints["slide"]] = False
     return matters
 
 

@@ -3,6 +3,7 @@
 import mujoco
 import numpy as np
 
+from mjbeer.joints import places
 from mjbeer.quiet import quiet
 
 
@@ -12,10 +13,9 @@ def settle(model: mujoco.MjModel, state: np.ndarray) -> np.ndarray:
     The force of a row is linear in its depth, so that two trials give the depth. A can that starts at another one
     falls or rises to it, which is a motion that the exact one does not have.
     """
-    names = [model.joint(i).name for i in range(model.njnt)]
-    if "lift" not in names:
+    if "lift" not in (joints := places(model)):
         return state
-    at, rate_at = int(model.joint("lift").qposadr[0]), int(model.joint("lift").dofadr[0])
+    at = joints["lift"]
     data, settled = mujoco.MjData(model), state.copy()
 
     def acceleration(lift: float) -> float:
@@ -23,7 +23,7 @@ def settle(model: mujoco.MjModel, state: np.ndarray) -> np.ndarray:
         data.qpos[at], data.qacc_warmstart[:] = lift, 0.0
         with quiet():
             mujoco.mj_forward(model, data)
-        return float(data.qacc[rate_at])
+        return float(data.qacc[at])
 
     trials = -1e-7, -2e-7
     first, second = (acceleration(each) for each in trials)

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from mjbeer import asymptotics, catalogue, endurance, output, search, stability_limits, stability_maps, study
 from mjbeer.exceptions import ParameterError
+from mjbeer.progress import counted
 from mjbeer.task import Task
 
 _FILE = "stability.json"
@@ -92,9 +92,8 @@ def run(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
             console.print(f"going on from {folder / _FILE}", highlight=False, markup=False, soft_wrap=True)
             found = before
     output.remove(folder / "summary.md")
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}")
     todo = tasks(quick)
-    with Progress(*columns, TimeElapsedColumn(), console=console, disable=not console.is_terminal) as progress:
+    with counted(console) as progress:
         bar = progress.add_task("stability", total=len(todo))
         for task in todo:
             progress.update(bar, description=f"{task.group}: {task.name}"[:72])

@@ -12,6 +12,7 @@ import numpy as np
 
 from mjbeer import dop853, linear_stability, small_motions, soft_rows, stepping
 from mjbeer.exceptions import DivergenceError
+from mjbeer.joints import places
 from mjbeer.linear_stability import ACCURACY, GROWTH
 from mjbeer.model import DOP853, build, specify
 from mjbeer.predictions import diagonal_excess
@@ -93,7 +94,7 @@ class Bench:
             return self._judge(states / unit, rest, start, timestep)
 
     def _step(self, rest: np.ndarray, timestep: float) -> np.ndarray:
-        plan, joints = self._plan, _joints(self._model)
+        plan, joints = self._plan, places(self._model)
         if plan.family in FREE:
             spring = Row(self._frequency**2, 0.0, 1.0)
             if plan.family == "spring" and plan.integrator == "discrete":  # implicit in it, as in a row
@@ -122,14 +123,14 @@ class Bench:
         model.opt.timestep = timestep
         rest = settle(model, np.zeros(model.nq + model.nv))
         start = np.zeros_like(rest)
-        for name, at in _joints(model).items():
+        for name, at in places(model).items():
             turn = self._scene.can.radius * (1 + _SEED) if name == "slide" else 1.0
             start[at] = _SEED / 2 * rest[at] if name == "lift" else _SWING * turn
         return rest, start
 
     def _judge(self, states: np.ndarray, rest: np.ndarray, start: np.ndarray, timestep: float) -> int:
         """The verdict on states relative to the rest. A contact must not lose half of its depth."""
-        model, joints = self._model, _joints(self._model)
+        model, joints = self._model, places(self._model)
         bounds = GROWTH * start[: model.nq]
         if "lift" in joints:
             bounds[joints["lift"]] = abs(rest[joints["lift"]]) / 2
@@ -195,8 +196,3 @@ def _row(plan: Plan, value: float, timestep: float) -> Row:
     elif plan.refsafe and plan.family == "contact":
         timeconst = soft_rows.resolved(value, plan.dampratio, IMPEDANCE, timestep)
     return soft_rows.spring(timeconst, plan.dampratio, IMPEDANCE)
-
-
-def _joints(model: mujoco.MjModel) -> dict[str, int]:
-    """Where each joint's coordinate is in the state."""
-    return {model.joint(i).name: int(model.joint(i).qposadr[0]) for i in range(model.njnt)}

@@ -41,7 +41,7 @@ def measure(case: str, rolling: str, integrator: str, settled: bool = True) -> d
     stable, unstable = _limit(swings.bounded, _FROM, _TO)
     predicted = linear_stability.stable_limit(integrator)
     found = {
-        **{"kind": "limit", "case": case, "rolling": rolling, "integrator": integrator, "settled": settled},
+        **{"case": case, "rolling": rolling, "integrator": integrator, "settled": settled},
         **{"frequency": CASES[case].scene.frequency(), "stable": stable, "stable_predicted": predicted},
         "stable_ratio": stable / predicted,
     }

@@ -72,7 +72,6 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
         })  # fmt: skip
     off = [_off(each["measured"], each["predicted"]) for each in boundaries]
     return {
-        "kind": "map",
         **{"name": plan.name, "family": plan.family, "integrator": plan.integrator, "refsafe": plan.refsafe},
         **{"dampratio": plan.dampratio, "written": plan.written},
         **{"timesteps": times, "values": stiffnesses, "measured": measured, "predicted": predicted},

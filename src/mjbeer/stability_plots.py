@@ -145,15 +145,7 @@ def _panel(axes: Axes, found: dict[str, Any]) -> None:
         [each["measured"] for each in seen], [each["value"] for each in seen], linestyle="none", marker="o",
         markersize=3.5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.7,
     )  # fmt: skip
-    axes.set_title(_title(found), fontsize=10.5)
-
-
-def _title(found: dict[str, Any]) -> str:
-    parts = [found["integrator"]]
-    parts += ["refsafe"] if found["refsafe"] else []
-    parts += [f"damping ratio {found['dampratio']:g}"] if found["dampratio"] != 1 else []
-    parts += [f"{found['written']} first"] if found["written"] != "exact" else []
-    return ", ".join(parts)
+    axes.set_title(found["name"].partition(", ")[2], fontsize=10.5)
 
 
 def _edges(centres: list[float]) -> np.ndarray:

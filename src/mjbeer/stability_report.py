@@ -8,6 +8,7 @@ import numpy as np
 from mjbeer import output, stability_limits, stability_maps, stability_plots, stability_tables
 from mjbeer.charts import COLOURS, chart
 from mjbeer.grid import Grid
+from mjbeer.linear_stability import RUNGE_KUTTA
 from mjbeer.stability import Stability
 
 _READ = """
@@ -17,8 +18,8 @@ inaccurate** if they do not and the run says so, **unstable, detected** if it bl
 be none of those.
 """
 _FLOOR = 1e-16
-_SEMI_IMPLICIT, _HIGHER = "semi-implicit", ("RK4", "DOP853")
-_COLOURS = dict(zip((_SEMI_IMPLICIT, *_HIGHER), COLOURS, strict=False))
+_SEMI_IMPLICIT = "semi-implicit"
+_COLOURS = dict(zip((_SEMI_IMPLICIT, *RUNGE_KUTTA), COLOURS, strict=False))
 _ENDURANCE = (
     "stability-endurance: energy drifts with the number of swings by laws that theory gives. It stays in bounds where "
     "semi-implicit Euler is symplectic; where each step loses a share, were it by rounded coefficients, it falls in "
@@ -69,7 +70,7 @@ def endurance(found: Stability, path: pathlib.Path) -> None:
     """
     lines: dict[tuple[str, int, str], list[dict[str, Any]]] = {}
     for each in found.of("endurance"):
-        kin = each["integrator"] if each["integrator"] in _HIGHER else _SEMI_IMPLICIT
+        kin = each["integrator"] if each["integrator"] in RUNGE_KUTTA else _SEMI_IMPLICIT
         lines.setdefault((kin, each["steps"], each["name"]), []).append(each)
     styles = {kin: iter(("-", "--", ":")) for kin in _COLOURS}
     with chart(path, width=9, height=6.5) as (axes,):

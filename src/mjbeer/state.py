@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from mjbeer.joints import places
 from mjbeer.scene import Scene
 
 START_DEPTH = 1e-9
@@ -37,21 +38,19 @@ def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> 
         "swing": (phi0 - roll, phi_dot0 - roll_dot),
         "phi": (phi0, phi_dot0),
     }
-    state = np.zeros(model.nq + model.nv)
+    state, joints = np.zeros(model.nq + model.nv), places(model)
     for name, (position, rate) in values.items():
-        if name in _joints(model):
-            at, rate_at = _columns(model, name)
-            state[at], state[rate_at] = position, rate
+        if name in joints:
+            state[joints[name]], state[model.nq + joints[name]] = position, rate
     return state
 
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray) -> Motion:
     """Coordinates from states of shape (samples, nq + nv)."""
-    joints = _joints(model)
+    joints = places(model)
 
     def column(name: str) -> tuple[np.ndarray, np.ndarray]:
-        at, rate_at = _columns(model, name)
-        return states[:, at].copy(), states[:, rate_at].copy()
+        return states[:, joints[name]].copy(), states[:, model.nq + joints[name]].copy()
 
     nothing = np.zeros(len(states)), np.zeros(len(states))
     if "phi" in joints:
@@ -64,12 +63,3 @@ def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray) -> Motion:
     roll, roll_dot = column("roll") if "roll" in joints else (u / radius, u_dot / radius)
     lift, lift_dot = column("lift") if "lift" in joints else nothing
     return Motion(u, phi, u_dot, phi_dot, roll, roll_dot, lift, lift_dot)
-
-
-def _joints(model: mujoco.MjModel) -> set[str]:
-    return {model.joint(i).name for i in range(model.njnt)}
-
-
-def _columns(model: mujoco.MjModel, name: str) -> tuple[int, int]:
-    joint = model.joint(name)
-    return int(joint.qposadr[0]), model.nq + int(joint.dofadr[0])

@@ -8,7 +8,6 @@ from typing import TypeVar
 import numpy as np
 
 from mjbeer.can import Can
-from mjbeer.exact import exact
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.load import Load
 from mjbeer.model import DOP853, INTEGRATORS, ROLLINGS
@@ -49,10 +48,6 @@ class Trial:
             self.scene, self.timestep * self.steps, self.phi0, self.phi_dot0, self.rolling, self.integrator,
             self.timestep, self.tolerance, self.times, self.friction,
         )  # fmt: skip
-
-    def truth(self) -> Trajectory:
-        """The exact motion."""
-        return exact(self.scene, self.times, self.phi0, self.phi_dot0)
 
 
 T = TypeVar("T")

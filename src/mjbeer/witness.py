@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from mjbeer.joints import places
 from mjbeer.model import DOP853, build
 from mjbeer.quantities import Quantities, letters
 from mjbeer.scene import Scene
@@ -83,7 +84,7 @@ def _ask(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, run: Trajecto
         "swing": (run.phi[i] - run.roll[i], run.phi_dot[i] - run.roll_dot[i]),
         "phi": (run.phi[i], run.phi_dot[i]),
     }
-    names = [model.joint(each).name for each in range(model.njnt)]
+    names = places(model)
     for name in names:
         data.joint(name).qpos[0], data.joint(name).qvel[0] = values[name]
     mujoco.mj_forward(model, data)
