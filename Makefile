@@ -19,16 +19,17 @@ test: $(STAMP) gl lint
 
 # Two thousand random runs, of which none may be wrong and silent: minutes.
 search: $(STAMP)
-	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest tests/test_search.py
+	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest tests/studies/stability/test_search.py
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/ty check src tests
+	$(BIN)/lint-imports
 
 # Drawing needs EGL or OSMesa from the system: says which line to run if neither is there.
 gl: $(STAMP)
-	@$(BIN)/python -m mjbeer.gl
+	@$(BIN)/python -m mjbeer.drawing.opengl
 
 $(STAMP): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mjbeer needs Python 3.11 or later, this is " + sys.version)'

@@ -6,7 +6,7 @@ import shutil
 
 import pytest
 
-from mjbeer import templates
+from mjbeer.model import templates
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED"):
     os.environ.pop(each, None)

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 
 import pytest
 
-from mjbeer import advice, audit, benchmark_tables, study, validation
-from mjbeer.claim import CORRECTED, LIMIT
-from mjbeer.cli import main
-from tests import stubs
+from mjbeer.cli.app import main
+from mjbeer.paper.audit import chapters
+from mjbeer.paper.audit.claim import CORRECTED, LIMIT
+from mjbeer.studies.benchmark import advice, points, tables
+from mjbeer.studies.validation import motions
+from tests.support import stubs
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 README = CHECKOUT / "README.md"
@@ -114,11 +116,11 @@ def test_links_and_paths_lead_somewhere() -> None:
 
 
 def test_run_times_of_the_readme_are_those_of_the_study_that_comes_with_mjbeer() -> None:
-    stored, text = study.load(advice.SHIPPED), README.read_text()
+    stored, text = points.load(advice.SHIPPED), README.read_text()
     for grid in (
-        benchmark_tables.cheapest(stored, "frozen"),
-        benchmark_tables.others(stored),
-        benchmark_tables.usual(stored),
+        tables.cheapest(stored, "frozen"),
+        tables.others(stored),
+        tables.usual(stored),
     ):
         assert grid.markdown().partition("\n\n")[2].strip() in text, grid.title
 
@@ -129,7 +131,7 @@ def test_the_table_of_the_readme_is_that_of_the_program() -> None:
         "| check | by | error | at most | what dominates the error |\n|---|---|---|---|---|\n"
     )
     table = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()]
-    rows = validation.rows()
+    rows = motions.rows()
     bounds = [f"{row.bound:.1e} {row.unit}".strip() for row in rows]
     assert start
     assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in table] == [
@@ -147,10 +149,10 @@ def test_the_misprints_of_the_physics_are_those_of_the_audit() -> None:
     """Row by row, with what they miss by; and the tests that are named exist."""
     _, _, after = PHYSICS.read_text().partition("| equation | printed | right | misses by | derived or shown in |\n")
     rows = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()[1:]]
-    claims = [each for each in audit.claims() if each.verdict == CORRECTED]
+    claims = [each for each in chapters.claims() if each.verdict == CORRECTED]
     told = sorted((row[0], float(row[3])) for row in rows)
     assert told == sorted((each.equation, float(each.misses_by or 0)) for each in claims)
-    tests = "".join(path.read_text() for path in (CHECKOUT / "tests").glob("test_*.py"))
+    tests = "".join(path.read_text() for path in (CHECKOUT / "tests").rglob("test_*.py"))
     assert not [row[4] for row in rows if f"def {row[4].strip('`')}(" not in tests]
 
 
@@ -167,5 +169,5 @@ def test_the_limits_of_the_physics_are_those_of_the_audit() -> None:
         for line in after.partition("\n\n")[0].splitlines()[1:]
         for each in line.split(" | ")[0].strip("| ").split(", ")
     }
-    limits = {each for claim in audit.claims() if claim.verdict == LIMIT for each in claim.equation.split(", ")}
+    limits = {each for claim in chapters.claims() if claim.verdict == LIMIT for each in claim.equation.split(", ")}
     assert named == limits

@@ -7,10 +7,10 @@ import pathlib
 
 import pytest
 
-from mjbeer.cli import main
+from mjbeer.cli.app import main
 from mjbeer.exceptions import MjbeerError
-from mjbeer.measurement import takeoff
-from tests import stubs
+from mjbeer.theory.measure import takeoff
+from tests.support import stubs
 
 FILMS = ("sliding", "frozen", "pendulum", "hoop")
 FILES = {"validation.json", "summary.md", "paper", *(f"{film}.{kind}" for film in FILMS for kind in ("mp4", "png"))}
@@ -133,7 +133,7 @@ def test_a_check_that_cannot_be_measured_ends_the_report(
         raise MjbeerError("no frequency")
 
     stubs.validate(monkeypatch, first=1e-5)
-    monkeypatch.setattr("mjbeer.row.Row.run", lambda _: fail())
+    monkeypatch.setattr("mjbeer.studies.check.Row.run", lambda _: fail())
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: no frequency\n")
     assert not os.listdir(tmp_path)

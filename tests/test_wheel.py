@@ -12,7 +12,8 @@ from email import message_from_string
 import numpy as np
 import pytest
 
-from mjbeer import frozen, hoop, pendulum, simulate, sliding, table
+from mjbeer import frozen, hoop, pendulum, simulate, sliding
+from mjbeer.cli import trajectory
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "src", "mjcf")
@@ -20,7 +21,7 @@ SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoo
 SIMULATE = """
 import json, pathlib, sys
 import mjbeer
-from mjbeer import templates
+from mjbeer.model import templates
 package = pathlib.Path(mjbeer.__file__).parent
 assert package == pathlib.Path(sys.argv[1]) / "mjbeer", package
 assert templates.folder() == package / "mjcf", templates.folder()
@@ -70,12 +71,12 @@ def run(installed: pathlib.Path, elsewhere: pathlib.Path, *command: str) -> str:
 def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
     templates = {each.relative_to(CHECKOUT) for each in (CHECKOUT / "mjcf").rglob("*") if each.is_file()}
-    modules = {each.relative_to(CHECKOUT / "src") for each in (CHECKOUT / "src" / "mjbeer").glob("*.py")}
+    modules = {each.relative_to(CHECKOUT / "src") for each in (CHECKOUT / "src" / "mjbeer").rglob("*.py")}
     assert {each.suffix for each in templates} == {".xml", ".obj"}
     assert len(modules) > 10
     expected = {f"mjbeer/{each.as_posix()}" for each in templates} | {each.as_posix() for each in modules}
     packaged = {name for name in names if name.startswith("mjbeer/")}
-    assert packaged == expected | {"mjbeer/py.typed", "mjbeer/data/study.json"}
+    assert packaged == expected | {"mjbeer/py.typed", "mjbeer/studies/benchmark/study.json"}
 
 
 def test_the_wheel_has_license_readme_and_entry_point(wheel: pathlib.Path) -> None:
@@ -83,7 +84,7 @@ def test_the_wheel_has_license_readme_and_entry_point(wheel: pathlib.Path) -> No
         (folder,) = {name.split("/")[0] for name in archive.namelist()} - {"mjbeer"}
         metadata = message_from_string(archive.read(f"{folder}/METADATA").decode())
         assert archive.read(f"{folder}/licenses/LICENSE") == (CHECKOUT / "LICENSE").read_bytes()
-        assert "mjbeer = mjbeer.cli:main" in archive.read(f"{folder}/entry_points.txt").decode()
+        assert "mjbeer = mjbeer.cli.app:main" in archive.read(f"{folder}/entry_points.txt").decode()
     assert metadata["Name"] == "mjbeer"
     assert metadata["License-Expression"] == "Apache-2.0"
     assert metadata.get_payload() == (CHECKOUT / "README.md").read_text()
@@ -97,7 +98,7 @@ def test_the_installed_wheel_builds_and_simulates(installed: pathlib.Path, tmp_p
 
 def test_the_installed_command_runs(installed: pathlib.Path, tmp_path: pathlib.Path) -> None:
     words = ("simulate", "frozen", "--phi0", "0", "--duration", "0.1", "--output", "-")
-    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == table.csv(
+    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == trajectory.csv(
         simulate(frozen(), 0.1, 0.0)
     )
     assert not os.listdir(tmp_path)

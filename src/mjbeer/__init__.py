@@ -7,17 +7,17 @@ SI units and radians throughout; the letters of the formulas are those of K. T. 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from mjbeer.can import Can
-from mjbeer.exact import exact
 from mjbeer.exceptions import MjbeerError
-from mjbeer.load import Load
-from mjbeer.scene import Scene, frozen, hoop, pendulum, sliding
-from mjbeer.trajectory import Trajectory
+from mjbeer.theory.can import Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.load import Load
+from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from mjbeer.model import build
-    from mjbeer.simulation import simulate
-    from mjbeer.video import render
+    from mjbeer.drawing.video import render
+    from mjbeer.model.build import build
+    from mjbeer.simulation.simulate import simulate
 
 __all__ = [
     "Can",
@@ -36,10 +36,18 @@ __all__ = [
 ]
 
 # Imported on first use, so that the exact theory is there without MuJoCo.
-_SIMULATION = {"build": "mjbeer.model", "simulate": "mjbeer.simulation", "render": "mjbeer.video"}
+_LAZY = {
+    "build": "mjbeer.model.build",
+    "simulate": "mjbeer.simulation.simulate",
+    "render": "mjbeer.drawing.video",
+}
 
 
 def __getattr__(name: str) -> object:
-    if name in _SIMULATION:
-        return getattr(import_module(_SIMULATION[name]), name)
+    if name in _LAZY:
+        return getattr(import_module(_LAZY[name]), name)
     raise AttributeError(f"module 'mjbeer' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

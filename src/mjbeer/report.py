@@ -6,19 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from rich.console import Console
-from rich.progress import Progress
 
-from mjbeer import audit, output, stories, table, validation
-from mjbeer.can import Can
-from mjbeer.claim import Finding
-from mjbeer.row import Check
-from mjbeer.scene import frozen, hoop, pendulum, sliding
-from mjbeer.simulation import simulate
-from mjbeer.trajectory import Trajectory
+from mjbeer.output import files
+from mjbeer.paper.stories import report
+from mjbeer.simulation.simulate import simulate
+from mjbeer.studies.validation import tables
+from mjbeer.studies.validation.run import Verdict, check
+from mjbeer.theory.can import Can
+from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
+from mjbeer.theory.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
-class _Film:
+class Film:
     """A scene of the gallery."""
 
     name: str
@@ -30,7 +30,7 @@ class _Film:
 
 
 _FILMS = (
-    _Film(
+    Film(
         "sliding",
         "Half a can of beer, let go at 60 degrees. The beer slides in its can without friction and swings; the can "
         "rolls away under it, hesitating with every swing. Half of real time.",
@@ -38,7 +38,7 @@ _FILMS = (
         0.6,
         lambda: simulate(sliding(can=Can.sheet_metal()), 2.0, math.radians(60), tolerance=1e-9),
     ),
-    _Film(
+    Film(
         "frozen",
         "The beer is frozen to the can, let go with the beer on top: it rolls down ever faster, in jerks. It ends "
         "just before the can would leave the incline. A quarter of real time.",
@@ -46,14 +46,14 @@ _FILMS = (
         0.25,
         lambda: simulate(frozen(), 0.82, math.pi, tolerance=1e-9),
     ),
-    _Film(
+    Film(
         "pendulum",
         "A hoop wheel with a pendulum on its axle, let go at 60 degrees. Half of real time.",
         0.5,
         0.6,
         lambda: simulate(pendulum(), 2.0, math.radians(60), tolerance=1e-9),
     ),
-    _Film(
+    Film(
         "hoop",
         "A light hoop with a heavy bar on its rim, pushed with the bar on top, on level ground. It rolls over once, "
         "and hops a radius high when the bar comes up: nothing holds it down but its weight. A tenth of real time.",
@@ -62,38 +62,6 @@ _FILMS = (
         lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
     ),
 )
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """All rows, measured."""
-
-    checks: list[Check]
-    """Those of the validation table."""
-    findings: list[Finding]
-    """Those of the audit of the paper."""
-
-    @property
-    def passed(self) -> bool:
-        """Whether all of them did."""
-        return all(each.passed for each in (*self.checks, *self.findings))
-
-
-def check(console: Console) -> Verdict:
-    """Run every row of the validation table and of the audit, with a progress bar on `console`."""
-    rows, claims = validation.rows(), audit.claims()
-    checks, findings = [], []
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("validating", total=len(rows) + len(claims))
-        for row in rows:
-            progress.update(task, description=f"{row.quantity} ({row.by})")
-            checks.append(row.run())
-            progress.advance(task)
-        for claim in claims:
-            progress.update(task, description=f"{claim.equation} {claim.quantity}")
-            findings.append(claim.run())
-            progress.advance(task)
-    return Verdict(checks, findings)
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
@@ -107,20 +75,20 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
       OutputError: if the folder cannot be written to.
       RenderingError: if nothing can be drawn on this machine.
     """
-    from mjbeer.video import render, save_frame
+    from mjbeer.drawing.video import render, save_frame
 
     verdict = check(console)
-    output.remove(folder / "summary.md")
-    output.write(folder / "validation.json", table.validation_json(verdict.checks, verdict.findings))
+    files.remove(folder / "summary.md")
+    files.write(folder / "validation.json", tables.validation_json(verdict.checks, verdict.findings))
     size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
         trajectory = film.trajectory()
         render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
         save_frame(trajectory, film.still, folder / f"{film.name}.png")
         console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
-    stories.write(folder / "paper", not quick, console)
+    report.write(folder / "paper", not quick, console)
     console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-    output.write(folder / "summary.md", _summary(verdict))
+    files.write(folder / "summary.md", _summary(verdict))
     return verdict
 
 
@@ -132,6 +100,6 @@ def _summary(verdict: Verdict) -> str:
     for film in _FILMS:
         lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
     lines += ["## The paper's stories", "", "A plot each: [paper/stories.md](paper/stories.md).", ""]
-    lines += ["## Validation against exact theory", "", table.validation_markdown(checks)]
-    lines += ["## The paper, equation by equation", "", table.audit_markdown(findings)]
+    lines += ["## Validation against exact theory", "", tables.validation_markdown(checks)]
+    lines += ["## The paper, equation by equation", "", tables.audit_markdown(findings)]
     return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""The command line; it imports everything else, and nothing imports it."""

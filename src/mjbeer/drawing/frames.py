@@ -1,0 +1,76 @@
+"""The pictures of a trajectory, one after the other."""
+
+import math
+from collections.abc import Generator
+
+import mujoco
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from mjbeer import require
+from mjbeer.drawing import display, guides
+from mjbeer.drawing.camera import View
+from mjbeer.drawing.canvas import Canvas
+from mjbeer.exceptions import ParameterError
+from mjbeer.model import templates
+from mjbeer.theory.trajectory import Trajectory
+
+CAMERAS = ("side", "quarter", "overview")
+"""From the can's open end; from above and downhill; and from afar, where the whole motion is in the picture."""
+_TITLES = {
+    "sliding": "beer sliding in a can",
+    "frozen": "beer frozen to a can",
+    "pendulum": "pendulum in a wheel",
+    "hoop": "weight on a hoop's rim",
+}
+_LARGEST = 4096
+"""Largest width and height [pixels]: what H.264 takes."""
+
+
+def draw(
+    trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str = "side", speed: float = 1.0
+) -> Generator[np.ndarray]:
+    """The pictures at some times [s], drawn when asked for, each of shape (height, width, 3), uint8.
+
+    `camera` is one of CAMERAS; a playback `speed` other than 1 is written into the picture.
+
+    Raises:
+      ParameterError: on a parameter that is not allowed.
+      RenderingError: if there is no OpenGL that works, when the first is drawn.
+    """
+    for name, pixels in (("width", width), ("height", height)):
+        if require.positive(name, pixels) % 1 != 0 or pixels > _LARGEST:
+            raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {pixels!r}")
+    require.choice("camera", camera, CAMERAS)
+    return _draw(trajectory, times, int(width), int(height), camera, speed)
+
+
+def _draw(
+    trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str, speed: float
+) -> Generator[np.ndarray]:
+    scene = trajectory.scene
+    model = display.display_model(scene, (trajectory.u.min(), trajectory.u.max()), width / height)
+    data = mujoco.MjData(model)
+    title = _TITLES[templates.name(scene)] + ("" if speed == 1 else f", {speed:g} x speed")
+    duration = trajectory.time[-1] - trajectory.time[0]
+    digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
+    with Canvas(model, width, height) as canvas:
+        for time, (u, phi, roll, lift) in zip(times, coordinates(trajectory, times), strict=True):
+            display.pose(model, data, scene, u, phi, roll, lift)
+            view, axis = View.of(model, data, camera, width, height), data.body("can").xpos
+            pixels = canvas.draw(data, camera, lambda picture: guides.draw(picture, scene, view, axis))  # noqa: B023
+            texts = title, f"t = {time:.{digits}f} s", f"phi = {guides.degrees(phi, '.1f')}"
+            yield guides.write(pixels, scene, view, axis, texts)
+
+
+def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
+    """u, phi, roll and lift at some times, shape (times, 4).
+
+    The samples' rates make the cubic between two of them: its error falls as the fourth power of their
+    distance, so that even 20 samples a second move smoothly.
+    """
+    samples = np.stack([trajectory.u, trajectory.phi, trajectory.roll, trajectory.lift], axis=1)
+    if len(samples) == 1:
+        return np.repeat(samples, len(times), axis=0)
+    rates = np.stack([trajectory.u_dot, trajectory.phi_dot, trajectory.roll_dot, trajectory.lift_dot], axis=1)
+    return CubicHermiteSpline(trajectory.time, samples, rates)(times)

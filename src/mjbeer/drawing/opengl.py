@@ -1,0 +1,125 @@
+"""Off-screen OpenGL: which backend works here, found out before anything of it is loaded.
+
+`python -m mjbeer.drawing.opengl` says whether one does: exit status 0, or 1 and what to install.
+"""
+
+import functools
+import os
+import subprocess
+import sys
+from typing import Protocol
+
+from mjbeer.exceptions import RenderingError
+
+BACKENDS = ("egl", "osmesa")
+"""In the order they are tried; the environment variable MUJOCO_GL may name one."""
+REMEDY = """\
+With EGL, which runs on a graphics card or without one (Debian and Ubuntu):
+    apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri
+or with OSMesa, where a release still has it:
+    apt-get update && apt-get install -y libosmesa6"""
+# A backend that fails leaves PyOpenGL bound to it, and a bad driver may crash: hence another process.
+_PROBE = """
+import sys, mujoco
+from mujoco.{0} import GLContext
+context = GLContext(16, 16)
+context.make_current()
+mujoco.MjrContext(mujoco.MjModel.from_xml_string("<mujoco/>"), 100).free()
+context.free()
+"""
+_NONE = "disable"
+"""The value of MUJOCO_GL with which MuJoCo loads no OpenGL when it is imported."""
+_PATIENCE = 60
+"""How long a backend may take to start [s]; it is a second or two."""
+
+
+class Context(Protocol):
+    """An OpenGL context of one of MuJoCo's backends."""
+
+    def make_current(self) -> None: ...
+
+    def free(self) -> None: ...
+
+
+def context(width: int, height: int) -> Context:
+    """A new off-screen OpenGL context, not yet current, for pictures of up to `width` by `height` pixels.
+
+    Raises:
+      RenderingError: if no backend works; the message says why not and what to install.
+    """
+    if sys.platform != "linux":
+        import mujoco
+
+        return mujoco.GLContext(width, height)
+    # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window system's by default.
+    if backend() == "egl":
+        from mujoco.egl import GLContext
+    else:
+        from mujoco.osmesa import GLContext
+    return GLContext(width, height)
+
+
+@functools.cache
+def backend() -> str:
+    """The backend that works here on Linux: "egl", else "osmesa".
+
+    Raises:
+      RenderingError: if neither does.
+    """
+    asked = os.environ.get("MUJOCO_GL", "").strip().lower()
+    tried = (asked,) if asked in BACKENDS else BACKENDS
+    reasons = []
+    for name in tried:
+        reason = _why_not(name)
+        if reason is None:
+            return name
+        reasons.append(f"{name}: {reason}")
+    because = "\n  ".join(reasons)
+    only = f" (MUJOCO_GL={asked} rules out others)" if len(tried) == 1 else ""
+    raise RenderingError(f"no off-screen OpenGL{only}:\n  {because}\n{REMEDY}")
+
+
+def keep_out() -> None:
+    """Import MuJoCo without the OpenGL that MUJOCO_GL names, which it would load at once, and fail where it cannot.
+
+    What draws nothing needs none; what does asks for a `context`.
+    """
+    asked = os.environ.get("MUJOCO_GL")
+    if sys.platform != "linux" or asked is None:
+        return
+    os.environ["MUJOCO_GL"] = _NONE
+    try:
+        import mujoco  # noqa: F401
+    finally:
+        os.environ["MUJOCO_GL"] = asked
+
+
+def _why_not(name: str) -> str | None:
+    """None if a backend works, or the last line of what went wrong."""
+    command, environment = [sys.executable, "-c", _PROBE.format(name)], os.environ | {"MUJOCO_GL": _NONE}
+    try:
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PATIENCE, check=False)
+    except subprocess.TimeoutExpired:
+        return f"did not start within {_PATIENCE} s"
+    if done.returncode == 0:
+        return None
+    if done.returncode < 0:
+        return f"crashed with signal {-done.returncode}"
+    return (done.stderr.strip().splitlines() or ["failed without a message"])[-1]
+
+
+def main() -> int:
+    """Exit status for a check before a build: 0 and silence, or 1 and the remedy on standard error."""
+    try:
+        if sys.platform == "linux":
+            backend()
+        else:
+            context(16, 16).free()
+    except RenderingError as error:
+        print(error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""A scene as a MuJoCo model; it imports `theory` and `output`."""

@@ -1,0 +1,1 @@
+"""McDonald's paper; it imports all but `studies`, `report` and `cli`."""

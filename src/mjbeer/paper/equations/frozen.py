@@ -1,0 +1,90 @@
+"""Appendix A of the paper: beer frozen to a massless can. Equations (50)-(55), printed and right.
+
+Each returns its terms, as in `paper_sliding`. The load has I_axis = m a^2/2, as a half can has; its b is free.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from mjbeer.paper.letters import Letters, Quantities, Terms
+from mjbeer.theory.oscillator import Oscillator
+
+
+def eq_50(q: Quantities) -> tuple[Terms, ...]:
+    """u = a phi, and s = a phi - b sin(phi)."""
+    return (q.u, -q.a * q.phi), (q.s, -q.a * q.phi, q.b * q.sin_phi)
+
+
+def kinetic_51(q: Quantities) -> Terms:
+    """T of eq. (51) [J]."""
+    return q.m / 2 * 1.5 * q.a**2 * q.phi_dot**2, -q.m * q.a * q.b * q.cos_phi * q.phi_dot**2
+
+
+def potential_51(q: Quantities) -> Terms:
+    """V of eq. (51) [J]."""
+    return -q.m * q.g * q.a * q.phi * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta
+
+
+def eq_52(q: Quantities) -> Terms:
+    """(3a^2/2 - 2ab cos phi) phi_ddot + a b sin phi phi_dot^2 = g (a sin(alpha) - b sin(alpha + phi))."""
+    return (
+        1.5 * q.a**2 * q.phi_ddot,
+        -2 * q.a * q.b * q.cos_phi * q.phi_ddot,
+        q.a * q.b * q.sin_phi * q.phi_dot**2,
+        -q.g * q.a * q.sin_alpha,
+        q.g * q.b * q.sin_theta,
+    )
+
+
+def footnote_8(q: Quantities) -> Terms:
+    """The equation as the footnote gives it to a computer, whose "3(0.5)" is half of a b = 3 cm^2; lengths in cm."""
+    centi = 100
+    a, b, g = centi * q.a, centi * q.b, centi * q.g
+    return (
+        1.5 * a**2 * q.phi_ddot,
+        -2 * a * b * q.cos_phi * q.phi_ddot,
+        a * b / 2 * q.sin_phi * q.phi_dot**2,
+        -g * a * q.sin_alpha,
+        g * b * q.sin_theta,
+    )
+
+
+def eq_53(q: Quantities) -> Terms:
+    """sin(alpha + phi_0) = (a/b) sin(alpha)."""
+    return q.sin_theta, -q.a / q.b * q.sin_alpha
+
+
+def cosine_54(sin_phi: Any, swing: Any) -> Any:
+    """How much cos(phi) changes over a `swing` epsilon cos(wt) [rad], to first order."""
+    return -swing * sin_phi
+
+
+def sine_54(cos_theta: Any, swing: Any) -> Any:
+    """How much sin(alpha + phi) changes over a `swing` [rad], to first order; corrected."""
+    return swing * cos_theta
+
+
+def printed_54(cos_theta: Any, swing: Any) -> Any:
+    """The same with a minus."""
+    return -swing * cos_theta
+
+
+def eq_55(c: Letters, cos_phi: Any, cos_theta: Any) -> Any:
+    """omega^2 = g b cos(alpha + phi_0) / (3a^2/2 - 2ab cos(phi_0)) [1/s^2]; corrected."""
+    return c.g * c.b * cos_theta / (1.5 * c.a**2 - 2 * c.a * c.b * cos_phi)
+
+
+def printed_55(c: Letters, cos_phi: Any, cos_theta: Any) -> Any:
+    """The same with a b cos(phi_0) in the denominator."""
+    return c.g * c.b * cos_theta / (1.5 * c.a**2 - c.a * c.b * cos_phi)
+
+
+def long_run(form: Oscillator) -> float:
+    """Mean phi_ddot [rad/s^2] of a long roll-down, the slope over (mean of sqrt(J) over a turn)^2.
+
+    From J phi_dot^2/2 = slope phi + what does not grow: sqrt(phi) takes the time that sqrt(J/(2 slope)) says. The
+    trapezoid rule converges geometrically for a smooth periodic integrand.
+    """
+    turn = 2 * np.pi * np.arange(64) / 64
+    return form.slope / float(np.mean(np.sqrt(form.inertia(turn)))) ** 2

@@ -1,0 +1,54 @@
+"""The paper's stories: named scenarios with a plot each, and films of what moves."""
+
+import pathlib
+
+from rich.console import Console
+from rich.progress import Progress
+
+from mjbeer.output import files
+from mjbeer.paper.stories import frozen, hopping, massive_can, sliding
+from mjbeer.paper.stories.story import Story
+
+_CHAPTERS = (sliding, massive_can, frozen, hopping)
+_SIZE = (640, 360, 20)
+"""Width and height [pixels] and frames per second of a film: small, for there are ten of them."""
+
+
+def stories() -> list[Story]:
+    """All of them, in the paper's order."""
+    return [story for chapter in _CHAPTERS for story in chapter.stories()]
+
+
+def write(folder: pathlib.Path, films: bool, console: Console) -> None:
+    """Write a plot of each story (SVG and PNG), its film if asked for (MP4), and stories.md into a folder.
+
+    Every file appears whole or not at all; stories.md comes last, and that of an earlier run goes first.
+
+    Raises:
+      OutputError: if the folder cannot be written to.
+      RenderingError: if films are asked for and nothing can be drawn on this machine.
+    """
+    from mjbeer.drawing.video import render
+
+    files.remove(folder / "stories.md")
+    told = stories()
+    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("drawing", total=len(told))
+        for story in told:
+            progress.update(task, description=story.name)
+            story.draw(folder / story.name)
+            if films and story.film is not None:
+                file = folder / f"{story.name}.mp4"
+                render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
+            progress.advance(task)
+    files.write(folder / "stories.md", _summary(told, films))
+
+
+def _summary(told: list[Story], films: bool) -> str:
+    lines = ["# The paper's stories", ""]
+    for story in told:
+        picture = f"![{story.name}]({story.name}.svg)"
+        filmed = films and story.film is not None
+        lines += [f"## {story.name}", "", picture, "", story.caption, ""]
+        lines += [f"[Film]({story.name}.mp4)", ""] if filmed else []
+    return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""What is measured about the models; all studies share the files here, and do not know each other."""

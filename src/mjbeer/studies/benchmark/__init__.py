@@ -1,0 +1,1 @@
+"""`mjbeer benchmark` and `mjbeer advise`: error against run time."""

@@ -1,0 +1,80 @@
+"""The equations of motion of a scene as one writes them by hand, for solvers of ordinary differential equations.
+
+A frozen load has the state (phi, phi_dot), and u = a phi; a sliding one (u, phi, u_dot, phi_dot). With
+p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and M_e = m + m_can + I_can/a^2,
+
+    frozen:   phi_ddot = (slope + p cos(phi) - (q + chord/4 phi_dot^2) sin(phi))
+                         / (base + chord/2 - chord/2 cos(phi)),                               eq. (52)
+    sliding:  phi_ddot = (p cos(phi) - (q + swing phi_dot^2 cos(phi)) sin(phi)) / (base + swing sin^2(phi)),
+              u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),                  eqs. (46), (47)
+
+with A of footnote 4. Each needs one sine and one cosine.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mjbeer.theory.scene import Scene
+
+RightHandSide = Callable[[float, Sequence[float]], tuple[float, ...]]
+
+
+def right_hand_side(
+    scene: Scene, sin: Callable[[Any], Any] = math.sin, cos: Callable[[Any], Any] = math.cos
+) -> RightHandSide:
+    """The rates of change f(t, state) of a scene's state [rad, m, and per s].
+
+    It reads the state as plain floats: given NumPy's scalars, it takes four times as long. With the `sin` and `cos` of
+    another kind of number it computes with that kind: symbols give symbols.
+    """
+    return _frozen(scene, sin, cos) if scene.attachment == "frozen" else _sliding(scene, sin, cos)
+
+
+def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
+    """The state when a motion starts at `phi0` [rad] and `phi_dot0` [rad/s], with the axis where `Scene.start` has it.
+
+    One entry a variable, in the order of `right_hand_side`.
+    """
+    if scene.attachment == "frozen":
+        return phi0, phi_dot0
+    u, u_dot = scene.start(phi0, phi_dot0)
+    return u, phi0, u_dot, phi_dot0
+
+
+def coordinates(scene: Scene, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """phi [rad] and u [m] of states, one row a sample."""
+    if scene.attachment == "frozen":
+        return states[:, 0], scene.can.radius * states[:, 0]
+    return states[:, 1], states[:, 0]
+
+
+def _frozen(scene: Scene, sin: Callable[[Any], Any], cos: Callable[[Any], Any]) -> RightHandSide:
+    form = scene.oscillator
+    slope, p, q = form.slope, form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
+    half, quarter, middle = form.chord / 2, form.chord / 4, form.base + form.chord / 2
+
+    def rates(_: float, state: Sequence[float]) -> tuple[float, ...]:
+        phi, phi_dot = state
+        s, c = sin(phi), cos(phi)
+        return phi_dot, (slope + p * c - (q + quarter * (phi_dot * phi_dot)) * s) / (middle - half * c)
+
+    return rates
+
+
+def _sliding(scene: Scene, sin: Callable[[Any], Any], cos: Callable[[Any], Any]) -> RightHandSide:
+    form, can, load = scene.oscillator, scene.can, scene.load
+    p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
+    base, swing = form.base, form.swing
+    steady = scene.acceleration()
+    share = load.mass * load.offset / (scene.mass + can.inertia / can.radius**2)
+
+    def rates(_: float, state: Sequence[float]) -> tuple[float, ...]:
+        _u, phi, u_dot, phi_dot = state
+        s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
+        phi_ddot = (p * c - (q + swing * square * c) * s) / (base + swing * (s * s))
+        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
+
+    return rates

@@ -1,0 +1,165 @@
+"""EXUDYN: a multibody engine with a joint that rolls without slipping (https://github.com/jgerstmayr/EXUDYN).
+
+The can is a plane rigid body with ObjectJointRollingDisc to the ground, x down the incline and y away from it, and
+gravity tilted; a sliding load is a second body on a revolute joint, a frozen one part of the can.
+
+The integrator is EXUDYN's TrapezoidalIndex2: the implicit trapezoidal rule with constraints on velocities. Its error
+falls as the square of the timestep all the way down the ladder, and the joint does not limit it: over 2 s a can slips
+by 1e-12 of its radius and does not lift at all. Generalized-alpha is the same at a spectral radius of 1, and 1 % worse
+at its default of 0.9; modified Newton iterations cost as much or more; and with the reference point of the load at its
+centre of mass instead of on the axis, errors double.
+"""
+
+from collections.abc import Generator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
+from mjbeer.studies.benchmark.peers.peer import Motion, Peer, Run
+from mjbeer.theory.scene import Scene
+
+# What Newton's iteration leaves is then 1 % of the rule's own error at the finest timestep. EXUDYN's defaults, 1e-8 and
+# 1e-10, spoil the order below 0.1 ms; 1e-12 and 1e-14 take an iteration more for that last 1 %.
+_RELATIVE, _ABSOLUTE = 1e-10, 1e-12
+_COARSEST, _RUNGS = 0.016, 10
+_ROUNDING = 1e-9  # of a time, in units of the step
+
+
+def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Run:
+    import exudyn
+
+    system, sensors = _model(scene, phi0, phi_dot0)
+    settings = _settings(times, knob)
+
+    def run() -> Motion:
+        try:
+            with _silence():
+                system.SolveDynamic(settings)
+        except exudyn.SolverError as error:
+            raise DivergenceError(f"EXUDYN: {error} at {system.sys['dynamicSolver'].it.currentTime:g} s") from error
+        # Columns of a sensor: time, x, y and the angle, which is positive uphill.
+        axis, turned = (system.GetSensorStoredData(sensor) for sensor in sensors)
+        return -turned[:, 3], axis[:, 1]
+
+    return run
+
+
+def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, Any]]:
+    """The assembled system, and the sensors of the can's and the load's coordinates.
+
+    Raises:
+      UnsupportedError: on a sliding load in a can without mass.
+    """
+    import exudyn
+    from exudyn.itemInterface import (
+        LoadMassProportional,
+        MarkerBodyMass,
+        MarkerBodyRigid,
+        NodeRigidBody2D,
+        ObjectGround,
+        ObjectJointRevolute2D,
+        ObjectJointRollingDisc,
+        ObjectRigidBody2D,
+        SensorNode,
+    )
+
+    can, load = scene.can, scene.load
+    if scene.attachment == "sliding" and can.mass == 0:
+        raise UnsupportedError(
+            "EXUDYN moves bodies with mass only: a massless can with a sliding load is none; give the can a mass"
+        )
+    system = exudyn.SystemContainer().AddSystem()
+    u0, u_dot0 = scene.start(phi0, phi_dot0)
+    radius, slope, normal = can.radius, np.sin(scene.incline), np.cos(scene.incline)
+
+    def body(angle: float, rate: float, mass: float, inertia: float, offset: float) -> tuple[Any, Any]:
+        """A body whose reference point is on the axis, its centre of mass `offset` below; inertia about the axis."""
+        node = system.AddNode(
+            NodeRigidBody2D(
+                referenceCoordinates=[0, radius, 0],
+                initialCoordinates=[u0, 0, -angle],
+                initialVelocities=[u_dot0, 0, -rate],
+            )
+        )
+        number = system.AddObject(
+            ObjectRigidBody2D(nodeNumber=node, mass=mass, inertia=inertia, centerOfMass=[0, -offset])
+        )
+        system.AddLoad(
+            LoadMassProportional(
+                markerNumber=system.AddMarker(MarkerBodyMass(bodyNumber=number)),
+                loadVector=[scene.gravity * slope, -scene.gravity * normal, 0],
+            )
+        )
+        coordinates = exudyn.OutputVariableType.Coordinates
+        sensor = SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=coordinates)
+        return system.AddMarker(MarkerBodyRigid(bodyNumber=number)), system.AddSensor(sensor)
+
+    axial = load.inertia + load.mass * load.offset**2
+    if scene.attachment == "frozen":
+        rolling, sensor = body(phi0, phi_dot0, scene.mass, can.inertia + axial, scene.centre_of_mass)
+        sensors = sensor, sensor
+    else:
+        rolling, first = body(u0 / radius, u_dot0 / radius, can.mass, can.inertia, 0.0)
+        hanging, second = body(phi0, phi_dot0, load.mass, axial, load.offset)
+        system.AddObject(ObjectJointRevolute2D(markerNumbers=[rolling, hanging]))
+        sensors = first, second
+    ground = system.AddMarker(MarkerBodyRigid(bodyNumber=system.AddObject(ObjectGround())))
+    system.AddObject(
+        ObjectJointRollingDisc(
+            markerNumbers=[ground, rolling],
+            constrainedAxes=[0, 1, 1],  # a plane body cannot move sideways as it is
+            discRadius=radius,
+            discAxis=[0, 0, 1],
+            planeNormal=[0, 1, 0],
+        )
+    )
+    system.Assemble()
+    return system, sensors
+
+
+def _settings(times: np.ndarray, timestep: float) -> Any:
+    """Settings of the solver that store a sample at every one of the times.
+
+    Raises:
+      ParameterError: unless these are evenly spaced, by a whole number of timesteps.
+    """
+    import exudyn
+
+    samples = len(times) - 1
+    spacing = float(times[-1]) / samples
+    steps = round(spacing / timestep)
+    even = np.abs(times - spacing * np.arange(samples + 1)).max() <= _ROUNDING * timestep
+    if not even or abs(spacing / timestep - steps) > _ROUNDING * steps:
+        raise ParameterError(
+            f"EXUDYN stores samples of fixed steps: times must be a whole number of timesteps apart; they are about "
+            f"{spacing:g} s apart, and the timestep is {timestep:g} s"
+        )
+    settings = exudyn.SimulationSettings()
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = spacing
+    integration = settings.timeIntegration
+    integration.solverType = exudyn.DynamicSolverType.TrapezoidalIndex2
+    integration.endTime = float(times[-1])
+    integration.numberOfSteps = steps * samples
+    integration.adaptiveStep = False
+    integration.newton.useModifiedNewton = False
+    integration.newton.relativeTolerance = _RELATIVE
+    integration.newton.absoluteTolerance = _ABSOLUTE
+    return settings
+
+
+@contextmanager
+def _silence() -> Generator[None]:
+    """Keep EXUDYN's reports of a failure off the terminal: they are raised."""
+    from exudyn import config
+
+    before, config.printToConsole = config.printToConsole, False
+    try:
+        yield
+    finally:
+        config.printToConsole = before
+
+
+PEER = Peer("EXUDYN", "timestep", "s", tuple(_COARSEST / 2**rung for rung in range(_RUNGS)), _set_up)

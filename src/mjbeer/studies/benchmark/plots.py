@@ -1,0 +1,117 @@
+"""The work-precision diagram: one panel a scene, error over run time."""
+
+import pathlib
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from mjbeer.model.setting import ROLLINGS
+from mjbeer.model.usual import USUAL
+from mjbeer.output.plots import COLOURS, chart
+from mjbeer.predictions.semi_implicit_euler import euler_error
+from mjbeer.studies.benchmark import frontier
+from mjbeer.studies.benchmark.curves import TOLERANCE, Curve
+from mjbeer.studies.benchmark.points import Point, Study
+from mjbeer.studies.benchmark.tables import setting
+from mjbeer.studies.cases import CASES
+
+_METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2}
+"""Colours of the integrators."""
+_LINES = {"reduced": ("-", "o"), "equality": ("--", "s"), "contact": (":", "^")}
+_USUAL = {"equality, slide first": "X", "equality, hinge first": "P", "contact, defaults": "*"}
+_PEERS = "#777777"
+_FLOOR = 1e-15
+
+
+def draw(study: Study, path: pathlib.Path) -> None:
+    """Write `path` with .svg and with .png.
+
+    Raises:
+      OutputError: if a file cannot be written.
+    """
+    cases = study.cases
+    columns = min(2, len(cases))
+    rows = -(-len(cases) // columns)
+    with chart(path, rows, columns, 7.5 * columns, 6.2 * rows + 1.4) as panels:
+        for axes, case in zip(panels, cases, strict=False):
+            _panel(axes, study, case)
+        for axes in panels[len(cases) :]:
+            axes.set_visible(False)
+        handles = {
+            label: line for axes in panels for line, label in zip(*axes.get_legend_handles_labels(), strict=True)
+        }
+        figure = panels[0].figure
+        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=10)
+
+
+def _panel(axes: Axes, study: Study, case: str) -> None:
+    points = study.of(case)
+    for curve in dict.fromkeys(each.curve for each in points):
+        found = [each for each in points if each.curve == curve]
+        times, errors = [1e3 * each.time for each in found], [max(each.error, _FLOOR) for each in found]
+        if curve.way in USUAL:
+            style: dict[str, Any] = {
+                "linestyle": "none",
+                "marker": _USUAL[curve.way],
+                "markersize": 13,
+                "color": "#000000",
+            }
+            axes.plot(times, errors, label=f"as usually written, 2 ms: {curve.way}", zorder=4, **style)
+        elif curve.way in ROLLINGS:
+            _line(axes, curve, times, errors)
+        else:
+            axes.plot(times, errors, "-", color=_PEERS, linewidth=1, marker=".", markersize=4, label="other tools")
+            axes.annotate(
+                curve.way, (times[-1], errors[-1]), (3, -9), textcoords="offset points", color="#555555", fontsize=8
+            )
+    _front(axes, points)
+    _prediction(axes, case, points)
+    axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 2, 20), title=f"{case}: {CASES[case].story}")
+    axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of phi and u/a [rad]")
+    axes.title.set_fontsize(11)
+
+
+def _line(axes: Axes, curve: Curve, times: list[float], errors: list[float]) -> None:
+    line, marker = _LINES[curve.way]
+    colour = COLOURS[_METHODS[curve.method]]
+    asked = curve.knob == TOLERANCE
+    face = "white" if asked else colour
+    label = f"{curve.method}{' to a tolerance' if asked else ''}, {curve.way}"
+    style: dict[str, Any] = {
+        "linestyle": line,
+        "marker": marker,
+        "markersize": 4,
+        "linewidth": 1.1,
+        "markerfacecolor": face,
+    }
+    axes.plot(times, errors, color=colour, label=label, **style)
+
+
+def _front(axes: Axes, points: list[Point]) -> None:
+    """The settings of mjbeer's that no other beats, the cheapest for each second decade by name."""
+    best = frontier.front(frontier.ours(points))
+    times, errors = [1e3 * each.time for each in best], [max(each.error, _FLOOR) for each in best]
+    axes.plot(
+        times, errors, color=COLOURS[2], linewidth=7, alpha=0.25, solid_capstyle="round", label="the best", zorder=1
+    )
+    named = {}
+    for level in frontier.LEVELS:
+        point = frontier.cheapest(best, level)
+        if point is not None:
+            named[id(point)] = point
+    for point in named.values():
+        where = (1e3 * point.time, max(point.error, _FLOOR))
+        name = setting(point) + ("" if point.way == "reduced" else f", {point.way}")
+        axes.annotate(name, where, (-7, -3), textcoords="offset points", ha="right", fontsize=8)
+
+
+def _prediction(axes: Axes, case: str, points: list[Point]) -> None:
+    """What backward error analysis says of semi-implicit Euler, drawn over its points' run times."""
+    euler = [each for each in points if each.way == "reduced" and each.method == "Euler"]
+    if not euler:
+        return
+    model = CASES[case]
+    slope = float(abs(euler_error(model.scene, model.times, model.phi0)).max())
+    times = [1e3 * each.time for each in euler]
+    style: dict[str, Any] = {"color": "#000000", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 5}
+    axes.plot(times, [slope * each.value for each in euler], label="Euler as theory predicts", **style)

@@ -1,0 +1,33 @@
+"""What the benchmark writes: the points as CSV, the diagram, and a summary with the tables."""
+
+import pathlib
+
+from mjbeer.output import files
+from mjbeer.studies.benchmark import plots, predicted, tables
+from mjbeer.studies.benchmark.points import Study
+
+_READ = """
+Run time is that of one warm call that returns 65 samples of 2.048 s of motion, in one thread: the least of the
+repeats. Building models and compiling is in a column of its own (points.csv). Errors are against exact theory; `of
+the model` is the error of the same model integrated to 1e-13 a step, which by itself leaves 1e-12 or so, and `of the
+integrator` the distance of the run from that.
+"""
+
+
+def write(study: Study, folder: pathlib.Path) -> None:
+    """Write points.csv, work_precision.svg and .png, and last summary.md.
+
+    Raises:
+      OutputError: if a file cannot be written.
+    """
+    files.write(folder / "points.csv", study.csv())
+    plots.draw(study, folder / "work_precision")
+    grids = [*tables.tables(study), predicted.grid()]
+    versions = ", ".join(f"{name} {number}" for name, number in study.machine["versions"].items())
+    lines = [
+        "# mjbeer: error against run time", "",
+        f"{study.machine['processor']}, {study.machine['system']}, Python {study.machine['python']}; {versions}.",
+        _READ, "![Work-precision diagram](work_precision.svg)", "",
+        *(grid.markdown() for grid in grids),
+    ]  # fmt: skip
+    files.write(folder / "summary.md", "\n".join(lines))

@@ -1,0 +1,133 @@
+"""The tables of a study: cheapest settings, comparisons, verdicts, predictions, stages of a step."""
+
+import math
+
+from mjbeer.model.setting import DOP853, ROLLINGS
+from mjbeer.model.usual import USUAL
+from mjbeer.output.table import Grid
+from mjbeer.studies.benchmark import frontier
+from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned
+from mjbeer.studies.benchmark.points import Point, Study
+from mjbeer.studies.convergence import Verdict, verdict
+
+COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
+"""The errors [rad] at which others are compared with the best setting."""
+
+
+def tables(study: Study) -> list[Grid]:
+    """All of them."""
+    found = [cheapest(study, case) for case in study.cases]
+    found += [others(study), tolerances(study), usual(study)]
+    found += [verdicts(study, case) for case in study.cases]
+    return [*found, stages(study)]
+
+
+def setting(point: Point) -> str:
+    """A setting in a few words."""
+    knob = f"{point.value:g}" if point.knob == TOLERANCE else milliseconds(point.value)
+    return f"{point.method} {'to ' if point.knob == TOLERANCE else ''}{knob}".strip()
+
+
+def milliseconds(time: float) -> str:
+    """A time [s] as text, in milliseconds."""
+    return f"{1e3 * time:.3g} ms"
+
+
+def cheapest(study: Study, case: str) -> Grid:
+    """For each error and way of rolling, the cheapest setting, and the front of them all."""
+    points = study.of(case)
+    ways = [way for way in ROLLINGS if any(each.way == way for each in points)]
+    rows = []
+    for level in frontier.LEVELS:
+        cells = [f"{level:.0e} rad"]
+        for way in ways:
+            point = frontier.cheapest((each for each in points if each.way == way), level)
+            cells.append("not reached" if point is None else f"{setting(point)}: {milliseconds(point.time)}")
+        rows.append(tuple(cells))
+    return Grid(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
+
+
+def others(study: Study) -> Grid:
+    """Run time of others over that of the best reduced setting, at equal error."""
+    names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
+    rows = []
+    for case in study.cases:
+        points = study.of(case)
+        mine = [each for each in points if each.way == "reduced"]
+        curves = {"MuJoCo RK4": [each for each in mine if each.method == "RK4"]}
+        curves |= {name: [each for each in points if each.way == name] for name in names[1:]}
+        for level in COMPARED:
+            best = frontier.time_for(mine, level)
+            ratios = [frontier.time_for(curves[name], level) / best for name in names]
+            rows.append((f"{case}, {level:.0e} rad", milliseconds(best), *(_ratio(each) for each in ratios)))
+    columns = ("error", "best reduced", *names)
+    return Grid("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
+
+
+def tolerances(study: Study) -> Grid:
+    """What it costs not to know the timestep."""
+    rows = []
+    for case in study.cases:
+        for digits in range(3, 13):
+            fixed, asked = frontier.fixed_and_global(study.of(case), 10.0**-digits)
+            if fixed and asked:
+                row = (f"{case}, 1e-{digits}", milliseconds(fixed.time), milliseconds(asked.time))
+                rows.append((*row, f"{asked.time / fixed.time:.2f}", f"{asked.error:.1e}"))
+    columns = ("tolerance [rad]", "fixed timestep", "to the tolerance", "ratio", "its error [rad]")
+    return Grid("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
+
+
+def usual(study: Study) -> Grid:
+    """Models as people usually write them, and their tuned twins in the same time."""
+    rows = []
+    for case in study.cases:
+        points = study.of(case)
+        for written in USUAL:
+            gain = frontier.gain_over_usual(points, written)
+            if gain is None:
+                continue
+            point = next(each for each in points if each.way == written)
+            share = "" if point.effective_impedance is None else f"{point.effective_impedance:.3g}"
+            cells = f"{point.error:.1e}", milliseconds(point.time), share, f"{gain:.1e}"
+            rows.append((f"{case}: {written}", *cells))
+    columns = ("as usually written, Euler, 2 ms", "error [rad]", "run time", "share of the force", "tuned is better by")
+    return Grid("Models as usually written, and their tuned twins at equal run time", columns, rows)
+
+
+def verdicts(study: Study, case: str) -> Grid:
+    """What each ladder of timesteps shows, and where its error comes from at the finest rung that can tell."""
+    rows = []
+    for curve in dict.fromkeys(each.curve for each in study.points if each.case == case):
+        points = [each for each in study.of(case) if each.curve == curve]
+        if not points or curve.knob != TIMESTEP or curve.way in USUAL:
+            continue
+        told = [each for each in points if each.model_error is not None]
+        last = told[-1] if told else points[-1]
+        split = [f"{milliseconds(last.value)}: {last.error:.1e}"]
+        split += ["" if each is None else f"{each:.1e}" for each in (last.model_error, last.integrator_error)]
+        rows.append((curve.label, str(verdict_of(points)), *split))
+    columns = ("curve", "verdict", "at a rung: error [rad]", "of the model", "of the integrator")
+    return Grid(f"{case}: verdicts", columns, rows)
+
+
+def verdict_of(points: list[Point]) -> Verdict:
+    """The verdict on a curve, from the rungs that need no interpolation."""
+    even = [each for each in points if each.method != DOP853 or aligned(each.value)]
+    return verdict([each.value for each in even], [each.error for each in even])
+
+
+def stages(study: Study) -> Grid:
+    """What the stages of a step cost a scene that does not need them."""
+    names = list(dict.fromkeys(name for row in study.ablation for name in row if name not in ("case", "integrator")))
+    rows = []
+    for row in study.ablation:
+        cells = [f"{1e6 * row['step']:.2f} us"] + [
+            f"{row[name]:.2f}" if name in row else "needed" for name in names if name != "step"
+        ]
+        rows.append((f"{row['case']}, {row['integrator']}", *cells))
+    columns = ("reduced model", "a step", *(f"with {name}" for name in names if name != "step"))
+    return Grid("Time of a step with one stage more over that of a step without", columns, rows)
+
+
+def _ratio(value: float) -> str:
+    return "-" if not math.isfinite(value) else f"{value:.2g}"

@@ -1,0 +1,1 @@
+"""`mjbeer stability`: stiff and extreme scenes, and where stability ends."""

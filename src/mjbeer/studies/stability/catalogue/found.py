@@ -1,0 +1,110 @@
+"""What the random search found, and what was mended for it."""
+
+import math
+from collections.abc import Iterator
+from functools import partial
+
+from mjbeer.model.setting import DOP853
+from mjbeer.simulation.simulate import simulate
+from mjbeer.studies.stability.catalogue.case import Attempt, Extreme
+from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED
+from mjbeer.theory.can import Can
+from mjbeer.theory.load import Load
+from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+
+
+def cases() -> Iterator[Extreme]:
+    """The cases."""
+    slow = math.sqrt(0.033 / 2.8e-6)
+    yield Extreme(
+        "found",
+        "contact in a gravity of 2.8e-6 m/s^2",
+        "MuJoCo's solver stops where its cost falls by less than 1e-8 m^2/s^4: in weak gravity, before it begins. "
+        "Nothing rolled, and neither slip nor lift told",
+        "the same motion, in units of sqrt(a/g); the tolerance has to go with the square of gravity",
+        tuple(
+            Attempt(
+                f"contact, RK4, {name}",
+                partial(simulate, make(gravity=2.8e-6), 30 * slow, 1.0, 0.0, "contact", "RK4", slow / 100),
+                (ACCURATE,),
+            )
+            for name, make in (("pendulum", pendulum), ("frozen", frozen))
+        ),
+    )
+    yield Extreme(
+        "found",
+        "a motion of a few large steps, to a tolerance",
+        "two runs with the same steps agree, whatever their error: it was 1e-8 rad, and estimated as 3e-13",
+        "steps go with the tolerance, the first one too",
+        (
+            Attempt(
+                "reduced, to a tolerance of 0.0001",
+                partial(
+                    simulate, _shallow(), 4.7e-3, 1.0, rolling="reduced", timestep=8.43e-6, tolerance=1e-4
+                ),
+                (ACCURATE,),
+            ),
+        ),
+    )  # fmt: skip
+    yield Extreme(
+        "found",
+        "a swing through 2 rad, to a loose tolerance",
+        "two runs with large steps missed a motion alike: they were 1.4e-4 rad apart, and 1.1e-3 rad off",
+        "no order shows in steps so large; smaller ones are taken",
+        (
+            Attempt(
+                "reduced, to a tolerance of 0.001",
+                partial(simulate, _astray(), 5.04, 1.762099488321489, -10.949445992431022, tolerance=1e-3),
+                (ACCURATE,),
+            ),
+        ),
+    )
+    go = partial(simulate, sliding(fill=1 - 1e-6), 2e4, 1.0)
+    yield Extreme(
+        "found",
+        "sliding, fill 1 - 1e-6, twenty thousand seconds",
+        "the arm b is lost in the rounding of a distance of 3e8 m, and two runs to a tolerance lost it alike",
+        "a swing of 4000 s; only its energy tells that it is gone, unless each evaluation is made near the origin",
+        (
+            Attempt("reduced, RK4, 1 s", partial(go, timestep=1.0), (INACCURATE,)),
+            Attempt("reduced, to a tolerance of 1e-06", partial(go, timestep=10.0, tolerance=1e-6), (ACCURATE,), 1e-6),
+        ),
+    )
+    yield from _beside_a_separatrix()
+
+
+def _beside_a_separatrix() -> Iterator[Extreme]:
+    scene, beside = pendulum(), 1.9179754510771998e-4
+    go = partial(simulate, scene, 1.8888099925141655, scene.separatrix()[1] - beside, timestep=9.52342486122195e-4)
+    yield Extreme(
+        "found",
+        "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance",
+        "a rounding grows a millionfold: two runs were 3e-9 rad from each other by chance, and 7e-7 off",
+        "the two before were not that near; and what a start 4e-14 aside does is a bound of what rounding does",
+        (Attempt("reduced, to a tolerance of 1e-08", partial(go, tolerance=1e-8), (ACCURATE, REFUSED), 1e-8),),
+    )
+    can = Can(2.232597258875798, 6.697791776627394, 394.26174331092784, 1965.1939220659342)
+    level = Scene(
+        can, Load(144122.9903690899, 0.9475437058226647, 229790.58734976512), 1.7453292519943295e-10, "frozen"
+    )
+    start, timestep = 3.1415926530014993, 0.006320380984655366
+    far = partial(simulate, level, 4187 * timestep, start, 0.0, "contact", DOP853, timestep, friction=479.9389762024384)
+    yield Extreme(
+        "found",
+        "frozen, 6e-10 rad beside the top, in contact",
+        "what the can's settling does is as large as the distance from the top, and a run at half the timestep settled "
+        "alike: it was 0.011 rad off, and 0.0016 by its own estimate",
+        "no contact is known so well; a second run that starts 1e-9 rad aside tells",
+        (Attempt("contact, DOP853, 6 ms", far, (INACCURATE,)),),
+    )
+
+
+def _shallow() -> Scene:
+    can = Can(6.263714345860458e-05, 1.9e-4, 0.00023028930756246934, 9.035197730376284e-13)
+    load = Load(1.1852666317467886e-06, 1.0168321325164374e-05, 2.0064495523860784e-15)
+    return Scene(can, load, 0.4162788034423696, "frozen")
+
+
+def _astray() -> Scene:
+    can = Can(0.025006609705965473, 0.075, 79385.39201711072, 49.64210918385945)
+    return Scene(can, Load(41429.27842882292, 0.01647772919452516), 0.1789453673759448, "sliding")

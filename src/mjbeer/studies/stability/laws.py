@@ -1,0 +1,136 @@
+"""Laws that a motion obeys towards an extreme, measured on MuJoCo's motions."""
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from mjbeer.model.setting import DOP853
+from mjbeer.predictions.semi_implicit_euler import euler_motion
+from mjbeer.simulation.simulate import simulate
+from mjbeer.studies.check import Row
+from mjbeer.studies.convergence import observed_order
+from mjbeer.studies.study import Task
+from mjbeer.theory.can import Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+
+_BESIDE_FOLD = np.array([1e-6, 1e-7, 1e-8])
+_BESIDE_SEPARATRIX = np.array([1e-4, 1e-6, 1e-8, 1e-10])
+_SIZES = (1e-6, 1e-3, 100.0)
+_GRAVITIES = (1e-6, 1e6)
+
+
+def tasks() -> list[Task]:
+    """One a law."""
+    return [Task("laws", f"{row.quantity} ({row.by})", lambda row=row: _measured(row)) for row in rows()]
+
+
+def _measured(row: Row) -> dict[str, Any]:
+    check = row.run()
+    return dataclasses.asdict(check) | {"as_expected": check.passed}
+
+
+def rows() -> Iterator[Row]:
+    """The laws."""
+    yield Row(
+        "frequency over distance from the fold: exponent less 1/4",
+        "frozen, reduced, DOP853",
+        1e-3,
+        "",
+        "the next term, the root of the largest distance, 1e-6",
+        lambda: _fold_exponent() - 0.25,
+    )
+    scenes = {"sliding, metal can": sliding(can=Can.sheet_metal()), "frozen": frozen(), "pendulum": pendulum()}
+    for name, scene in scenes.items():
+        yield Row(
+            "fall from beside the separatrix over the logarithm of the distance: slope",
+            f"{name}, reduced, DOP853",
+            1e-5,
+            "relative",
+            "4e-16 rad of rounding at the top, where the smallest distance is 1e-10 rad",
+            lambda scene=scene: _fall_slope(scene) / fall_slope(scene) - 1,
+        )
+    for integrator, duration in (("Euler", 8.0), ("implicit", 2.4)):
+        yield Row(
+            f"rolling down for {duration} s, by how much the timestep falsifies the turn",
+            f"frozen, equality, {integrator}, 1 ms",
+            1e-3,
+            "relative",
+            "second order in the timestep",
+            lambda integrator=integrator, duration=duration: _falsified(integrator, duration),
+        )
+    for make, name in ((sliding, "sliding"), (frozen, "frozen")):
+        yield Row(
+            "similarity: phi over t sqrt(g/a), cans of 1 um to 100 m, 1e-6 to 1e6 m/s^2",
+            f"{name}, metal can, reduced, DOP853",
+            1e-10,
+            "rad",
+            "rounding of what the scaled scene is made of",
+            lambda make=make: _dissimilarity(make),
+        )
+        yield Row(
+            "full can, let go at 1 rad: how far it comes in 10 s",
+            f"{name if make is sliding else 'frozen, on the level'}, reduced, RK4, 1 ms",
+            0.0,
+            "rad",
+            "b = 0, and so is the torque",
+            lambda make=make: _unmoved(make),
+        )
+
+
+def fall_slope(scene: Scene) -> float:
+    """dt/d(ln distance) of the time to fall from beside an unstable equilibrium [s]: -1/lambda, lambda^2 = -V''/J.
+
+    Off it the distance grows as cosh(lambda t). A period has four such times where both ends of the swing are unstable
+    equilibria, as on level ground and for any sliding load, and two for a frozen load on an incline.
+    """
+    form = scene.oscillator
+    return -math.sqrt(float(form.inertia(form.barrier())) / form.stiffness())
+
+
+def _fold_exponent() -> float:
+    fold, found = math.sin(frozen().largest_incline()), []
+    for beside in _BESIDE_FOLD:
+        scene = frozen(math.asin(fold * (1 - beside)))
+        amplitude = 1e-3 * math.sqrt(beside)  # small beside the width of the well, which goes as the root as well
+        period = scene.period(amplitude)
+        run = simulate(scene, 2.2 * period, scene.equilibrium() + amplitude, integrator=DOP853, timestep=period / 50)
+        found.append(run.frequency())
+    return observed_order(_BESIDE_FOLD, np.array(found))
+
+
+def _fall_slope(scene: Scene) -> float:
+    top, bottom, times = scene.separatrix()[1], scene.equilibrium(), []
+    for beside in _BESIDE_SEPARATRIX:
+        period = scene.period(top - beside - bottom)
+        run = simulate(scene, period / 2, top - beside, integrator=DOP853, timestep=period / 1000)
+        times.append(CubicHermiteSpline(run.time, run.phi, run.phi_dot).solve(bottom, extrapolate=False)[0])
+    return float(np.polyfit(np.log(_BESIDE_SEPARATRIX), times, 1)[0])
+
+
+def _falsified(integrator: str, duration: float) -> float:
+    scene, timestep, times = frozen(), 1e-3, np.array([0.0, duration])
+    truth = exact(scene, times, math.pi).phi[-1]
+    run = simulate(scene, duration, math.pi, rolling="equality", integrator=integrator, timestep=timestep, times=times)
+    return (run.phi[-1] - truth) / (euler_motion(scene, times, timestep, integrator, math.pi)[-1] - truth) - 1
+
+
+def _dissimilarity(make: Any) -> float:
+    def phi(radius: float, gravity: float) -> np.ndarray:
+        # The default can: 33 mm, 120 mm, and 0.1 mm of sheet.
+        can = Can.sheet_metal(radius, radius * 0.12 / 0.033, radius * 1e-4 / 0.033)
+        slow = math.sqrt(radius / gravity)
+        return simulate(make(can=can, gravity=gravity), 40 * slow, 1.0, integrator=DOP853, timestep=slow / 8).phi
+
+    usual = phi(0.033, 9.81)
+    others = [*(phi(size, 9.81) for size in _SIZES), *(phi(0.033, gravity) for gravity in _GRAVITIES)]
+    return max(float(np.abs(usual - other).max()) for other in others)
+
+
+def _unmoved(make: Any) -> float:
+    scene = make(fill=1.0) if make is sliding else make(0.0, fill=1.0)
+    return float(np.abs(simulate(scene, 10.0, 1.0).phi - 1.0).max())

@@ -1,0 +1,73 @@
+"""How a run ended, judged by exact theory, and whether it said so itself."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mjbeer.exceptions import DivergenceError, MjbeerError
+from mjbeer.theory.diagnostics import ERROR, kinetic_energy
+from mjbeer.theory.exact import exact
+from mjbeer.theory.measure import farthest
+from mjbeer.theory.trajectory import Trajectory
+
+ACCURATE = "stable and accurate"
+INACCURATE = "stable, inaccurate"
+UNSTABLE = "unstable, detected"
+REFUSED = "refused"
+SILENT = "wrong and silent"
+VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT)
+"""Every way in which a run can end. The last one must not occur."""
+_GAIN = 10.0
+"""Kinetic energy over the most that the motion can have, from which on a run that goes on is unstable."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended."""
+
+    verdict: str
+    """One of `VERDICTS`."""
+    error: float | None
+    """Largest error of phi and u/a against exact theory [rad], relative beyond 1 rad; None if there is no run."""
+    admitted: float | None
+    """What the run itself says it may be off [rad]: its estimate, its slip and its lift in radii."""
+    says: str
+    """The run's warnings, or the error that the user sees; empty if the run is trusted."""
+
+
+def judge(run: Callable[[], Trajectory]) -> Outcome:
+    """Make a run and judge it.
+
+    Accurate is an error of phi and u/a of at most `diagnostics.ERROR`, which is also what a trusted run claims.
+
+    Raises:
+      NoLibrationError: if the start lies on the separatrix, where there is no exact motion to judge by.
+    """
+    try:
+        made = run()
+    except DivergenceError as error:
+        return Outcome(UNSTABLE, None, None, str(error))
+    except MjbeerError as error:
+        return Outcome(REFUSED, None, None, str(error))
+    truth = exact(made.scene, made.time, float(made.phi[0]), float(made.phi_dot[0]))
+    radius = made.scene.can.radius
+    error = max(farthest(made.phi, truth.phi), farthest(made.u / radius, truth.u / radius))
+    if made.trusted:
+        verdict = ACCURATE if error <= ERROR else SILENT
+    elif _explodes(made, truth):
+        verdict = UNSTABLE
+    else:
+        verdict = ACCURATE if error <= ERROR else INACCURATE
+    admitted = (made.error_estimate or 0.0) + float(np.abs(made.slip).max() + np.abs(made.lift).max()) / radius
+    return Outcome(verdict, _known(error), _known(admitted), "; ".join(made.warnings))
+
+
+def _explodes(run: Trajectory, truth: Trajectory) -> bool:
+    most = float(kinetic_energy(truth).max()) + 2 * run.scene.oscillator.depth
+    return not float(kinetic_energy(run).max()) <= _GAIN * most
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None

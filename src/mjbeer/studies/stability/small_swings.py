@@ -1,0 +1,106 @@
+"""Small swings of a scene about its equilibrium: runs, their energy and error, and the accuracy that theory expects."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mjbeer.exceptions import DivergenceError
+from mjbeer.model import state
+from mjbeer.model.build import build
+from mjbeer.model.setting import DOP853
+from mjbeer.model.state import settle
+from mjbeer.predictions import linear_stability
+from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS
+from mjbeer.simulation import dop853, stepping
+from mjbeer.theory.coordinates import Motion
+from mjbeer.theory.exact import exact
+from mjbeer.theory.oscillator import Oscillator
+from mjbeer.theory.scene import Scene
+
+STABLE_AMPLITUDE = 1e-4
+"""Of the swing that has to stay bounded [rad]: grown a hundredfold, its frequency is off by 1e-5 or less."""
+ACCURATE_AMPLITUDE = 1e-3
+"""Of the swing that has to stay accurate [rad]: what is nonlinear is in the exact motion as well."""
+_FREE_FALL = 1e-2
+"""How far from free fall the part of a step may be that a stage without contact adds, as a share of it; with contact
+it is a thousandth of it."""
+
+
+@dataclass(frozen=True)
+class Swings:
+    """Swings of one scene, rolled and integrated in one way; timesteps are given as omega h."""
+
+    scene: Scene
+    rolling: str
+    integrator: str
+    settled: bool = True
+    """Whether a can in contact starts at the depth at which it is carried, or 1e-9 radii deep, as in `simulate`."""
+
+    def bounded(self, swing: float) -> bool:
+        """Whether the energy stays below `GROWTH` squared times that of the start, over `PERIODS` periods."""
+        form, rest = self.scene.oscillator, self.scene.equilibrium()
+        try:
+            motion = self._run(swing, STABLE_AMPLITUDE, math.floor(PERIODS * 2 * math.pi / swing))
+        except DivergenceError:
+            return False
+        above = form.inertia(motion.phi) * motion.phi_dot**2 / 2 - form.drop(motion.phi, rest)
+        return bool((above < GROWTH**2 * above[0]).all())
+
+    def accurate(self, swing: float) -> bool:
+        """Whether the error stays below `ACCURACY` over `ACCURATE_PERIODS` periods."""
+        steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
+        try:
+            motion = self._run(swing, ACCURATE_AMPLITUDE, steps)
+        except DivergenceError:
+            return False
+        omega = self.scene.frequency()
+        times = np.arange(steps + 1) * swing / omega
+        truth = exact(self.scene, times, self.scene.equilibrium() + ACCURATE_AMPLITUDE)
+        off = np.hypot(motion.phi - truth.phi, (motion.phi_dot - truth.phi_dot) / omega)
+        return bool(off.max() < ACCURACY * ACCURATE_AMPLITUDE)
+
+    def accurate_limit(self) -> float:
+        """The largest omega h of an accurate swing, as theory has it.
+
+        A contact is soft, the softer the longer the timestep to which it is tuned: the can sinks in by delta, in
+        proportion to h^2, and rolls as one of the radius a - delta/2, whose equilibrium and frequency are a little
+        different. delta is read from the model at rest.
+        """
+        if self.rolling != "contact":
+            return linear_stability.accurate_limit(self.integrator)
+        omega, rest = self.scene.frequency(), self.scene.equilibrium()
+        model = build(self.scene, self.rolling, integrator=self.integrator, timestep=1 / omega)
+        lying = settle(model, state.start(model, self.scene, rest, 0.0))
+        depth = -float(state.read(model, self.scene, lying[None]).lift[0])
+
+        def excess(swing: float) -> float:
+            form = self._sunk(depth * swing**2)
+            drift = (form.equilibrium() - rest) / ACCURATE_AMPLITUDE
+            return linear_stability.error(self.integrator, swing, drift, form.frequency() / omega) - ACCURACY
+
+        return linear_stability.first(excess, 5e-3, linear_stability.stable_limit(self.integrator))
+
+    def loses_a_stage(self, swing: float) -> bool:
+        """Whether the last of RK4's four stages has no contact in the first step: it falls freely, at a sixth."""
+        timestep = swing / self.scene.frequency()
+        motion = self._run(swing, STABLE_AMPLITUDE, 1)
+        falls = -self.scene.gravity * math.cos(self.scene.incline) * timestep / 6
+        return bool(abs(motion.lift_dot[1] / falls - 1) < _FREE_FALL)
+
+    def _run(self, swing: float, amplitude: float, steps: int) -> Motion:
+        scene, timestep = self.scene, swing / self.scene.frequency()
+        model = build(scene, self.rolling, integrator=self.integrator, timestep=timestep)
+        start = state.start(model, scene, scene.equilibrium() + amplitude, 0.0)
+        start = settle(model, start) if self.settled else start
+        samples = np.arange(steps + 1)
+        if self.integrator == DOP853:
+            return state.read(model, scene, dop853.integrate(model, start, samples * timestep, timestep))
+        return state.read(model, scene, stepping.step(model, start[None], samples)[0])
+
+    def _sunk(self, depth: float) -> Oscillator:
+        """The oscillator of a can that has sunk in by a depth [m]."""
+        scene = self.scene
+        reduce = Oscillator.sliding if scene.attachment == "sliding" else Oscillator.frozen
+        can = replace(scene.can, radius=scene.can.radius - depth / 2)
+        return reduce(can, scene.load, scene.incline, scene.gravity)

@@ -1,0 +1,1 @@
+"""`mjbeer validate`: every model against exact theory, and the audit of the paper."""

@@ -1,0 +1,117 @@
+"""Rows of the validation table on what is at the limit: orders, hops, repeatability, meshes."""
+
+import math
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from mjbeer.model import mesh
+from mjbeer.model.build import build
+from mjbeer.model.setting import DOP853, INTEGRATORS
+from mjbeer.model.state import start
+from mjbeer.paper.scenarios import TOP, fall_from_top
+from mjbeer.simulation import stepping
+from mjbeer.simulation.simulate import simulate
+from mjbeer.studies.check import Row
+from mjbeer.studies.convergence import order
+from mjbeer.theory.can import LENGTH, RADIUS, Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.load import BEER, Load
+from mjbeer.theory.measure import takeoff
+from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+
+ORDERS = {"RK4": (4, 0.2), DOP853: (8, 0.5)} | {each: (1, 0.1) for each in INTEGRATORS if each != "RK4"}
+"""Order of each integrator, and how far the observed slope may be from it."""
+FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
+_GRIP = 1e6
+"""Friction coefficient that stands for "does not slip"."""
+
+
+def rows() -> Iterator[Row]:
+    """The rows."""
+    yield from _orders()
+    yield from _hops()
+    yield from _others()
+
+
+def _orders() -> Iterator[Row]:
+    for integrator, (expected, margin) in ORDERS.items():
+        yield Row(
+            f"observed order less {expected}", f"frozen, reduced, {integrator}", margin, "", "higher orders' terms",
+            lambda integrator=integrator, expected=expected: order(frozen(), integrator) - expected,
+        )  # fmt: skip
+
+
+def _hops() -> Iterator[Row]:
+    light, hops, rolls = hoop(hoop_mass=2e-4), hoop(hoop_mass=0.2 / 20), hoop(hoop_mass=0.2 / 10)
+    yield Row(
+        "lift-off angle at M/m = 1e-3 (Littlewood: 90 degrees)", "hoop, contact, RK4, 20 us", 0.5, "degrees",
+        "penetration of the contact, which unloads late", lambda: _lift_off(light),
+    )  # fmt: skip
+    yield Row(
+        "hops missing at M/m = 1/20", "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
+        lambda: float(takeoff(fall_from_top(hops, 1e-4, _GRIP)) is None),
+    )  # fmt: skip
+    yield Row(
+        "hops too many at M/m = 1/10 (above 1/13)", "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
+        lambda: float(takeoff(fall_from_top(rolls, 1e-4, _GRIP)) is not None),
+    )  # fmt: skip
+
+
+def _others() -> Iterator[Row]:
+    yield Row(
+        "values that differ between two runs", "every scene, rolling and integrator", 0, "", "bit for bit", _repeats
+    )
+    for name, index in (("mass", 0), ("centre of mass", 1), ("inertia", 2)):
+        yield Row(
+            f"{name} of the beer's mesh, eqs. (33)-(37)", "fills 0.05 to 0.95", 1e-3, "relative",
+            "the polygon: falls as 1/resolution^2", lambda index=index: max(mesh_errors(fill)[index] for fill in FILLS),
+        )  # fmt: skip
+
+
+def _lift_off(scene: Scene) -> float:
+    seen = takeoff(fall_from_top(scene, 2e-5, _GRIP))
+    return math.degrees(seen) - math.degrees(_theory_lift_off(scene)) if seen is not None else math.nan
+
+
+def _theory_lift_off(scene: Scene) -> float:
+    """Angle from the top [rad] at which N = 0 for a fall from the top: 90 degrees as M/m -> 0."""
+    fall = exact(scene, np.linspace(0, 1, 100_001), TOP)
+    return math.pi - float(np.interp(fall.rolls_until(), fall.time, fall.phi))
+
+
+def _repeats() -> int:
+    """How many values of the states differ between a run alone, its repetition, and one of two threads."""
+    differ = 0
+    for scene in (sliding(), sliding(can=Can.sheet_metal()), frozen(), pendulum(), hoop()):
+        for rolling in ("reduced", "equality", "contact"):
+            if rolling != "reduced" and scene.attachment == "sliding" and scene.can.mass == 0:
+                continue
+            for integrator in INTEGRATORS:
+                model = build(scene, rolling, integrator=integrator)
+                state = np.stack([start(model, scene, phi0, 0.0) for phi0 in (0.5, 1.0)])
+                runs = [stepping.step(model, state, np.arange(201), threads) for threads in (1, 1, 2)]
+                differ += sum(int(np.count_nonzero(run != runs[0])) for run in runs[1:])
+            once, again = (simulate(scene, 0.2, 1.0, rolling=rolling, integrator=DOP853).phi for _ in range(2))
+            differ += int(np.count_nonzero(once != again))
+    once, again = (simulate(frozen(), 2, math.pi, tolerance=1e-9).phi for _ in range(2))
+    return differ + int(np.count_nonzero(once != again))
+
+
+def mesh_errors(fill: float, resolution: int = mesh.RESOLUTION) -> tuple[float, float, float]:
+    """Relative error of mass, centre of mass and axial inertia of MuJoCo's compiled mesh of the beer."""
+    vertices, faces = mesh.beer(fill, RADIUS, LENGTH, resolution)
+    spec = mujoco.MjSpec()
+    exactly = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
+    spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=exactly)
+    spec.worldbody.add_body(name="beer").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=BEER)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    load, body = Load.segment(fill=fill), model.body("beer")
+    axes = data.body("beer").ximat.reshape(3, 3)
+    inertia = (axes @ np.diag(body.inertia) @ axes.T)[1, 1]
+    depth = -data.body("beer").xipos[2]
+    return tuple(abs(a / b - 1) for a, b in ((body.mass[0], load.mass), (depth, load.offset), (inertia, load.inertia)))

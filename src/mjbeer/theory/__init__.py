@@ -1,0 +1,1 @@
+"""What a can does, exactly; it imports NumPy, SciPy, `require` and `exceptions`, and no simulator."""

@@ -1,0 +1,67 @@
+"""The load: what the can carries, the "beer" of the paper or a point mass."""
+
+from dataclasses import dataclass
+
+from mjbeer import require
+from mjbeer.exceptions import ParameterError
+from mjbeer.theory.can import LENGTH, RADIUS
+from mjbeer.theory.segment import segment
+
+BEER = 1000.0
+"""Density of beer [kg/m^3]: water's, rounded; beer is within 1 % of it."""
+
+
+@dataclass(frozen=True)
+class Load:
+    """A load, seen as what its motion depends on.
+
+    Raises:
+      ParameterError: on a mass that is not positive, a negative or non-finite offset or
+        inertia, or a fill outside (0, 1].
+    """
+
+    mass: float
+    """Mass m [kg], eq. (34)."""
+    offset: float
+    """Distance b of the centre of mass from the can's axis [m], eqs. (7) and (35)."""
+    inertia: float = 0.0
+    """Moment of inertia I_cm about the centre of mass [kg m^2], eqs. (9) and (37)."""
+    fill: float | None = None
+    """Filling height over diameter, h/2a of eq. (32), if the load is a circular segment. It decides
+    only how the load is drawn: without it the load is a ball at its centre of mass."""
+
+    def __post_init__(self) -> None:
+        require.positive("load mass", self.mass, "kg")
+        require.non_negative("load offset", self.offset, "m")
+        require.non_negative("load inertia", self.inertia, "kg m^2")
+        require.store_floats(self, "mass", "offset", "inertia")
+        if self.fill is not None:
+            _fill(self.fill)
+            require.store_floats(self, "fill")
+
+    @classmethod
+    def segment(
+        cls, radius: float = RADIUS, length: float = LENGTH, fill: float = 0.5, density: float = BEER
+    ) -> "Load":
+        """Beer of `density` [kg/m^3] in a can of `radius` and `length` [m]: eqs. (32)-(37).
+
+        `fill` is h/2a of eq. (32), 0 < fill <= 1.
+        """
+        require.positive("load radius", radius, "m")
+        require.positive("load length", length, "m")
+        require.positive("load density", density, "kg/m^3")
+        shape = segment(_fill(fill))
+        mass = density * length * radius**2 * shape.area
+        return cls(mass, radius * shape.offset, mass * radius**2 * shape.inertia, fill)
+
+    @classmethod
+    def point(cls, mass: float, offset: float) -> "Load":
+        """A point of `mass` [kg] at `offset` [m] from the axis (appendices A.4 and B)."""
+        return cls(mass, offset, 0.0)
+
+
+def _fill(fill: float) -> float:
+    require.number("fill", fill)
+    if not 0 < fill <= 1:
+        raise ParameterError(f"fill (height of the beer over the can's diameter) must be in (0, 1], got {fill!r}")
+    return fill

@@ -1,0 +1,157 @@
+"""Disks, folders and streams that do not take what is written: one line that says so, exit status 2, no half file."""
+
+import os
+import pathlib
+import stat
+import subprocess
+import sys
+
+import pytest
+
+from mjbeer.cli.app import main
+from mjbeer.studies.benchmark import points
+from tests.support.processes import SHORT, little_disk, run
+
+FROZEN = ("frozen", "--duration", "0.5")
+VIDEO = (*FROZEN, "--width", "320", "--height", "180")
+linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (("simulate", *FROZEN), "motion.csv"),
+        (("render", *VIDEO), "film.mp4"),
+    ],
+)
+def test_a_full_disk_leaves_the_old_file(words: tuple[str, ...], name: str, tmp_path: pathlib.Path) -> None:
+    target = tmp_path / name
+    target.write_text("old")
+    status, _, err = run([*words, "--output", str(target)], preexec_fn=little_disk)
+    assert (status, err) == (2, f"mjbeer: cannot write {target}: File too large\n")
+    assert target.read_text() == "old"
+    assert os.listdir(tmp_path) == [name]
+
+
+def test_a_full_disk_ends_the_stories_at_the_first_plot(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "stories.md").write_text("old")
+    status, _, err = run(["paper", "--output", str(tmp_path)], preexec_fn=little_disk)
+    assert status == 2
+    assert err.startswith(f"mjbeer: cannot write {tmp_path / 'trivial.svg'}: File too large")
+    assert not os.listdir(tmp_path)  # nor a summary of plots that are not there
+
+
+def test_a_study_that_cannot_be_saved_again_stays_as_it_was(tmp_path: pathlib.Path) -> None:
+    """The first ladders have been saved when the disk is full."""
+    status, _, err = run(["benchmark", "frozen", "--output", str(tmp_path)], SHORT, preexec_fn=little_disk)
+    assert status == 2
+    assert err.endswith(f"mjbeer: cannot write {tmp_path / 'study.json'}: File too large\n")
+    assert len({each.curve for each in points.load(tmp_path / "study.json").points}) >= 1
+    assert os.listdir(tmp_path) == ["study.json"]
+
+
+@pytest.mark.parametrize("words", [("simulate", *FROZEN), ("export", "frozen"), ("render", *VIDEO)])
+def test_what_cannot_be_written_is_known_before_the_run(
+    words: tuple[str, ...],
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """A folder of that name, a file in the folder's place, a read-only file and folder. For root none is read-only."""
+    monkeypatch.setattr("mjbeer.output.files.os.access", lambda path, _: bool(os.stat(path).st_mode & stat.S_IWUSR))
+    if words[0] != "export":
+        monkeypatch.setattr("mjbeer.cli.arguments.Run.simulate", lambda _: pytest.fail("it was simulated"))
+    suffix = {"simulate": ".csv", "export": ".xml", "render": ".mp4"}[words[0]]
+    (tmp_path / f"folder{suffix}").mkdir()
+    (tmp_path / f"file{suffix}").touch(mode=0o444)
+    (tmp_path / "closed").mkdir(mode=0o555)
+    for name, reason in {
+        f"folder{suffix}": "it is a folder",
+        f"file{suffix}": "it is read-only",
+        f"file{suffix}/x/new{suffix}": f"{tmp_path}/file{suffix} is not a folder",
+        f"closed/x/new{suffix}": f"the folder {tmp_path}/closed is read-only",
+    }.items():
+        assert main([*words, "--output", str(tmp_path / name)]) == 2
+        assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / name}: {reason}\n"
+    assert not os.listdir(tmp_path / "closed")
+
+
+@pytest.mark.parametrize("command", ["report", "benchmark", "paper"])
+def test_a_folder_that_cannot_be_written_to_is_known_before_the_work(
+    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("mjbeer.output.files.os.access", lambda path, _: bool(os.stat(path).st_mode & stat.S_IWUSR))
+    closed = tmp_path / "closed"
+    closed.mkdir(mode=0o555)
+    for folder in (closed, closed / "new"):
+        assert main([command, "--output", str(folder)]) == 2
+        assert capsys.readouterr().err == f"mjbeer: cannot write {folder}: the folder {closed} is read-only\n"
+    assert not os.listdir(closed)
+
+
+def test_a_link_to_nothing_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "link.csv").symlink_to("far/motion.csv")
+    assert main(["simulate", "frozen", "--duration", "0.01", "--output", str(tmp_path / "link.csv")]) == 0
+    assert (tmp_path / "link.csv").is_symlink()
+    assert os.listdir(tmp_path / "far") == ["motion.csv"]
+
+
+@linux
+@pytest.mark.parametrize("words", [("simulate", *FROZEN), ("--help",)])
+def test_a_full_standard_output(words: tuple[str, ...]) -> None:
+    with open("/dev/full", "w") as full:
+        status, _, err = run(words, stdout=full)
+    assert status == 2
+    assert err.count("\n") == 1
+    assert "No space left on device" in err
+
+
+def test_a_closed_standard_output() -> None:
+    status, _, err = run(["simulate", *FROZEN], stdout=None, preexec_fn=lambda: os.close(1))
+    assert (status, err) == (2, "mjbeer: cannot write to standard output: not writable\n")
+
+
+@linux
+def test_a_full_standard_error_is_no_fault(tmp_path: pathlib.Path) -> None:
+    with open("/dev/full", "w") as full:
+        status, out, _ = run(["simulate", *FROZEN, "--output", str(tmp_path / "motion.csv")], stderr=full)
+    assert status == 0
+    assert "phi at the end" in out
+
+
+@linux
+def test_a_study_goes_on_when_nobody_hears_of_its_progress(tmp_path: pathlib.Path) -> None:
+    words = ["benchmark", "frozen", "--quick", "--output", str(tmp_path)]
+    with open("/dev/full", "w") as full:
+        status, out, _ = run(words, SHORT, stderr=full)
+    assert (status, bool(out)) == (0, True)
+    assert (tmp_path / "summary.md").exists()
+
+
+def test_a_reader_of_tables_that_goes_away() -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        status, _, err = run(["simulate", *FROZEN], stdout=writer)
+    finally:
+        os.close(writer)
+    assert (status, err) == (2, "mjbeer: cannot write to standard output: Broken pipe\n")
+
+
+def test_two_commands_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
+    """Each appears whole: what is there at the end is the one or the other."""
+    alone = []
+    for angle in ("20", "50"):
+        assert main(["simulate", *FROZEN, "--phi0", angle, "--output", str(tmp_path / "alone.csv")]) == 0
+        alone.append((tmp_path / "alone.csv").read_text())
+    (tmp_path / "alone.csv").unlink()
+    code = "import sys; from mjbeer.cli.app import main; [main() for _ in range(3)]"
+    words = ("simulate", *FROZEN, "--output", str(tmp_path / "same.csv"), "--phi0")
+    both = [subprocess.Popen([sys.executable, "-c", code, *words, angle], stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL) for angle in ("20", "50")]  # fmt: skip
+    seen = set()
+    while any(each.poll() is None for each in both):
+        if (tmp_path / "same.csv").exists():
+            seen.add((tmp_path / "same.csv").read_text())
+    assert seen == set(alone)
+    assert os.listdir(tmp_path) == ["same.csv"]

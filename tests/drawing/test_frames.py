@@ -1,0 +1,141 @@
+"""The pictures show what theory says: where beer, can and mark are, at any size and from every camera."""
+
+import math
+import weakref
+from collections.abc import Callable, Sequence
+
+import mujoco
+import numpy as np
+import pytest
+
+from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, sliding
+from mjbeer.drawing import display, frames, video
+from mjbeer.drawing.camera import View
+from mjbeer.drawing.canvas import Canvas
+from mjbeer.drawing.display import display_model
+from mjbeer.theory.can import RADIUS
+from mjbeer.theory.segment import segment
+
+
+def motion(incline: float = 0.2) -> Trajectory:
+    return exact(frozen(incline), np.linspace(0, 0.5, 51), 1.0)
+
+
+class Seen:
+    """A picture of a scene at rest somewhere, and where things are in it."""
+
+    def __init__(self, pixels: np.ndarray, scene: Scene, pose: tuple[float, float, float]) -> None:
+        self.pixels = pixels.astype(int)
+        model = display_model(scene)
+        data = mujoco.MjData(model)
+        display.pose(model, data, scene, *pose, 0.0)
+        self.view = View.of(model, data, "side", pixels.shape[1], pixels.shape[0])
+        self.end = data.body("can").xpos - [0, scene.can.length / scene.can.radius * RADIUS / 2, 0]
+
+    def at(self, x: float, z: float, tilt: float) -> np.ndarray:
+        """Colour on the can's open end, at x and z in radii on axes that are turned by `tilt` [rad]."""
+        turned = x * math.cos(tilt) + z * math.sin(tilt), z * math.cos(tilt) - x * math.sin(tilt)
+        column, row = self.view.pixel(self.end + RADIUS * np.array([turned[0], 0, turned[1]]))
+        return self.pixels[int(row), int(column)]
+
+
+def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Seen]:
+    """Pictures of a scene with the load at some angles phi and the can at some angles of roll [rad]."""
+    times, rest = np.arange(len(phis), dtype=float), np.zeros(len(phis))
+    u = scene.can.radius * np.array(rolls)
+    still = Trajectory(
+        scene, "exact", "exact", None, times, u, np.array(phis), rest, rest, np.array(rolls), rest, rest, rest
+    )
+    drawn = frames.draw(still, times, 640, 360)
+    return [Seen(*each) for each in zip(drawn, [scene] * len(phis), zip(u, phis, rolls, strict=True), strict=True)]
+
+
+@pytest.mark.parametrize("fill", [0.25, 0.5, 0.8])
+def test_the_end_shows_a_circular_segment_of_beer(fill: float) -> None:
+    """Points on the can's open end: the beer's colour under the chord of eq. (32), another one over it.
+
+    The end of the beer is flat, so all of it has one colour; its surface, which one sees over the chord, is
+    lit otherwise.
+    """
+    scene = sliding(0.3, fill=fill)
+    phis = np.array([0.0, 1.0, 3.0, -2.0])
+    chord = 2 * fill - 1
+    turn = 0.1 if fill <= 0.5 else 3.0  # the mark where it hides least of what is looked at
+    mark = 0.8 * np.array([math.sin(turn), math.cos(turn)])
+    for phi, seen in zip(phis, look(scene, phis, phis + turn), strict=True):
+        tilt = phi + scene.incline
+        beer = seen.at(0, -segment(fill).offset, tilt)
+        assert beer[0] > 1.2 * beer[1] > 1.8 * beer[2]  # amber
+        there = {True: 0, False: 0}
+        for x, z in np.random.default_rng(1).uniform(-0.95, 0.95, (500, 2)):
+            near_mark = np.hypot(x - mark[0], z - mark[1]) < 0.4
+            if np.hypot(x, z) < 0.95 and abs(z - chord) > 0.05 and not near_mark:
+                same = np.abs(seen.at(x, z, tilt) - beer).max() <= 6
+                assert same == (z < chord), (phi, x, z)
+                there[same] += 1
+        assert min(there.values()) > 20
+
+
+@pytest.mark.parametrize("make", [sliding, frozen, hoop])
+def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
+    scene = make(0.3)
+    rolls = np.linspace(0, 2 * np.pi, 9)[:-1]
+    for roll, seen in zip(rolls, look(scene, rolls if make is frozen else np.ones(8), rolls), strict=True):
+        marks = [seen.at(0, side * 0.85, roll + scene.incline) for side in (1, -1)]
+        reds = [each[0] > 3 * each[1] and each[0] > 3 * each[2] for each in marks]
+        assert reds == [True, False], roll
+
+
+@pytest.mark.parametrize("camera", frames.CAMERAS)
+@pytest.mark.parametrize("incline", [-60.0, 0.0, 80.0])
+def test_the_wall_fills_the_picture(camera: str, incline: float) -> None:
+    """Behind it nothing is drawn, which would be black."""
+    picture = video.frame(motion(math.radians(incline)), 0.5, 300, 100, camera)
+    assert not (picture.max(axis=2) < 8).any()
+
+
+@pytest.mark.parametrize("radius", [1e-6, 100.0])
+def test_size_does_not_show(radius: float) -> None:
+    """A can of 1 um looks as one of 100 m does, but for the time: the roots of its lengths."""
+    shown = []
+    for size in (RADIUS, radius):
+        scene = frozen(can=Can.massless(size, 4 * size))
+        moved = exact(scene, np.linspace(0, 10 * math.sqrt(size / 9.81), 41), 2.0)
+        shown.append(video.frame(moved, moved.time[30], 320, 180, "quarter")[40:].astype(int))
+    assert np.abs(shown[0] - shown[1]).mean() < 0.05
+
+
+def test_motion_between_samples_is_of_fourth_order() -> None:
+    """Half the distance between samples, a sixteenth of the error: the cubic's order."""
+    times = np.linspace(0, 1, 1001)
+    true = exact(frozen(), times, 2.0)
+    errors = []
+    for samples in (101, 201):
+        coarse = exact(frozen(), np.linspace(0, 1, samples), 2.0)
+        errors.append(np.abs(frames.coordinates(coarse, times)[:, 1] - true.phi).max())
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
+
+
+def test_one_sample_is_a_still() -> None:
+    still = exact(frozen(), np.array([0.0]), 1.0)
+    assert frames.coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
+
+
+def test_drawn_frames_are_never_all_held() -> None:
+    made: list[weakref.ref] = []
+    for picture in frames.draw(motion(), np.linspace(0, 0.4, 5), 64, 36):
+        made.append(weakref.ref(picture))
+        assert sum(each() is not None for each in made) <= 2
+
+
+def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    closed = []
+    real = Canvas.close
+    monkeypatch.setattr(Canvas, "close", lambda canvas: (closed.append(canvas), real(canvas)))
+    drawing = frames.draw(motion(), np.linspace(0, 0.4, 5), 64, 36)
+    next(drawing)
+    assert closed == []
+    drawing.close()
+    assert len(closed) == 1
+    video.frame(motion(), 0.1, 64, 36)
+    assert len(closed) == 2

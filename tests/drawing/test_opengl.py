@@ -1,0 +1,158 @@
+"""Which off-screen OpenGL is used, and what is said if there is none."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+from mjbeer.drawing import opengl
+from mjbeer.exceptions import RenderingError
+from tests.support.processes import run
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a choice of backends")
+
+
+@pytest.fixture(autouse=True)
+def _forget(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.delenv("MUJOCO_GL", raising=False)
+    opengl.backend.cache_clear()
+    yield
+    opengl.backend.cache_clear()
+
+
+def _failing(monkeypatch: pytest.MonkeyPatch, *broken: str) -> list[str]:
+    """Let some backends fail; the list of those that are tried."""
+    tried = []
+
+    def why_not(name: str) -> str | None:
+        tried.append(name)
+        return f"no {name} today" if name in broken else None
+
+    monkeypatch.setattr(opengl, "_why_not", why_not)
+    return tried
+
+
+def test_egl_is_tried_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = _failing(monkeypatch)
+    assert opengl.backend() == "egl"
+    assert tried == ["egl"]
+
+
+def test_osmesa_is_tried_if_egl_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = _failing(monkeypatch, "egl")
+    assert opengl.backend() == "osmesa"
+    assert tried == ["egl", "osmesa"]
+
+
+def test_the_answer_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried = _failing(monkeypatch)
+    assert opengl.backend() == opengl.backend()
+    assert tried == ["egl"]
+
+
+def test_neither_works_names_both_reasons_and_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
+    _failing(monkeypatch, "egl", "osmesa")
+    with pytest.raises(RenderingError) as caught:
+        opengl.backend()
+    message = str(caught.value)
+    assert "egl: no egl today" in message
+    assert "osmesa: no osmesa today" in message
+    assert "apt-get install -y libegl1 libopengl0 libgl1-mesa-dri" in message
+    assert "apt-get install -y libosmesa6" in message
+
+
+@pytest.mark.parametrize("asked", ["osmesa", "EGL "])
+def test_mujoco_gl_decides(asked: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MUJOCO_GL", asked)
+    name = asked.strip().lower()
+    tried = _failing(monkeypatch, name)
+    with pytest.raises(RenderingError, match=f"MUJOCO_GL={name} rules out others"):
+        opengl.backend()
+    assert tried == [name]
+
+
+def test_a_window_system_in_mujoco_gl_does_not_decide(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MUJOCO_GL", "glfw")
+    _failing(monkeypatch, "egl")
+    assert opengl.backend() == "osmesa"
+
+
+def test_the_reason_is_what_the_backend_says_last() -> None:
+    assert opengl._why_not("nosuch") == "ModuleNotFoundError: No module named 'mujoco.nosuch'"
+
+
+def test_a_crash_is_survived(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(opengl, "_PROBE", "import os; os.abort()  # {0}")
+    assert opengl._why_not("egl") == "crashed with signal 6"
+
+
+def test_a_hang_is_survived(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(opengl, "_PROBE", "import time; time.sleep(60)  # {0}")
+    monkeypatch.setattr(opengl, "_PATIENCE", 0.2)
+    assert opengl._why_not("egl") == "did not start within 0.2 s"
+
+
+@linux
+def test_check_fails_with_the_remedy(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    _failing(monkeypatch, "egl", "osmesa")
+    assert opengl.main() == 1
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert opengl.REMEDY in said.err
+
+
+@linux
+def test_check_passes_quietly_and_needs_little() -> None:
+    code = (
+        "import sys; from mjbeer.drawing import opengl; "
+        "print(opengl.main(), *{'numba', 'mediapy', 'OpenGL'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["0"]
+    assert done.stderr == ""
+
+
+def test_import_loads_no_opengl_and_sets_no_environment() -> None:
+    code = (
+        "import os, sys; before = dict(os.environ); import mjbeer.drawing.opengl, mjbeer.drawing.video; "
+        "assert dict(os.environ) == before; print(*{'OpenGL', 'mediapy'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
+
+
+@linux
+@pytest.mark.parametrize("asked", ["banana", "osmesa"])
+def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
+    """MuJoCo itself cannot be imported with the first, nor with the second where there is none."""
+    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=os.environ | {"MUJOCO_GL": asked})
+    assert (status, err) == (0, "")
+    assert "phi at the end" in out
+
+
+@linux
+def test_a_library_that_crashes_when_it_is_loaded(tmp_path: pathlib.Path) -> None:
+    """The module that loads it stands for it; the video is not begun, and the message has the remedy."""
+    (tmp_path / "OpenGL").mkdir()
+    (tmp_path / "OpenGL" / "__init__.py").write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")]), "MUJOCO_GL": "egl"
+    }  # fmt: skip
+    film = tmp_path / "new" / "film.mp4"
+    status, _, err = run(["render", "frozen", "--duration", "0.1", "--output", str(film)], env=environment)
+    assert status == 2
+    assert err.startswith(
+        "mjbeer: no off-screen OpenGL (MUJOCO_GL=egl rules out others):\n  egl: crashed with signal 11"
+    )
+    assert opengl.REMEDY in err
+    assert not list(film.parent.glob("*"))
+
+
+def test_context_is_drawn_with() -> None:
+    context = opengl.context(16, 16)
+    context.make_current()
+    context.free()
+    if sys.platform == "linux":
+        assert os.environ["PYOPENGL_PLATFORM"] == opengl.backend()

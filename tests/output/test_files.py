@@ -1,0 +1,155 @@
+"""Files appear whole or not at all, whatever goes wrong in between."""
+
+import errno
+import os
+import pathlib
+import stat
+
+import pytest
+
+from mjbeer.exceptions import OutputError
+from mjbeer.output import files, terminal
+
+
+def test_a_file_is_written_into_new_folders(tmp_path: pathlib.Path) -> None:
+    target = tmp_path / "a" / "b" / "motion.csv"
+    files.write(target, "φ\n")
+    assert target.read_bytes() == "φ\n".encode()
+    assert os.listdir(target.parent) == ["motion.csv"]
+
+
+def test_the_temporary_file_is_a_neighbour_with_the_same_suffix(tmp_path: pathlib.Path) -> None:
+    # Only within a file system is a rename atomic; ffmpeg takes the format from the suffix.
+    with files.whole(tmp_path / "film.mp4") as temporary:
+        assert temporary.parent == tmp_path
+        assert temporary.suffix == ".mp4"
+        assert not (tmp_path / "film.mp4").exists()
+        temporary.write_text("new")
+    assert os.listdir(tmp_path) == ["film.mp4"]
+
+
+@pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
+def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path, error: BaseException) -> None:
+    target = tmp_path / "film.mp4"
+    target.write_text("old")
+
+    def fail() -> None:
+        with files.whole(target) as temporary:
+            temporary.write_text("ne")
+            raise error
+
+    with pytest.raises(type(error)) as caught:
+        fail()
+    assert caught.value is error
+    assert target.read_text() == "old"
+    assert os.listdir(tmp_path) == ["film.mp4"]
+
+
+def test_a_full_disk_is_an_output_error(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(path: pathlib.Path, text: str, **_: object) -> int:
+        path.write_bytes(text.encode()[:3])
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    target = tmp_path / "motion.csv"
+    target.write_text("old")
+    with monkeypatch.context() as patched:
+        patched.setattr(pathlib.Path, "write_text", full)
+        with pytest.raises(OutputError) as caught:
+            files.write(target, "new and longer")
+    assert str(caught.value) == f"cannot write {target}: No space left on device"
+    assert target.read_text() == "old"
+    assert os.listdir(tmp_path) == ["motion.csv"]
+
+
+def test_what_has_its_name_is_on_the_disk(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And a disk that turns out to be full only then, as over a network, is one of the faults."""
+    target = tmp_path / "motion.csv"
+    target.write_text("old")
+    seen = []
+
+    def sync(file: int) -> None:
+        seen.append((os.fstat(file).st_size, target.read_text()))
+        if len(seen) > 1:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", sync)
+    files.write(target, "new")
+    assert target.read_text() == "new"
+    with pytest.raises(OutputError, match="No space left on device"):
+        files.write(target, "newer")
+    assert seen == [(3, "old"), (5, "new")]
+    assert os.listdir(tmp_path) == ["motion.csv"]
+    assert target.read_text() == "new"
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077, 0o000])
+def test_permissions_are_those_of_any_new_file(tmp_path: pathlib.Path, mask: int) -> None:
+    before = os.umask(mask)
+    try:
+        files.write(tmp_path / "motion.csv", "")
+    finally:
+        assert os.umask(before) == mask
+    assert stat.S_IMODE((tmp_path / "motion.csv").stat().st_mode) == 0o666 & ~mask
+
+
+def test_a_folder_is_no_file(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "out").mkdir()
+    with pytest.raises(OutputError) as caught:
+        files.write(tmp_path / "out", "")
+    assert str(caught.value) == f"cannot write {tmp_path / 'out'}: it is a folder"
+    assert os.listdir(tmp_path) == ["out"]
+
+
+def test_a_device_is_not_replaced_by_a_file(tmp_path: pathlib.Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with pytest.raises(OutputError, match="pipe: it is not a regular file"):
+        files.write(pipe, "")
+    assert pipe.is_fifo()
+
+
+def test_a_link_stays_and_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:
+    link, target = tmp_path / "link.csv", tmp_path / "far" / "motion.csv"
+    target.parent.mkdir()
+    target.write_text("old")
+    link.symlink_to(target)
+    files.write(link, "new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+
+
+def test_a_file_in_the_way_of_a_folder_is_an_output_error(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").touch()
+    for path in (tmp_path / "file" / "motion.csv", tmp_path / "file" / "deeper" / "motion.csv"):
+        with pytest.raises(OutputError) as caught:
+            files.write(path, "")
+        assert str(caught.value) == f"cannot write {path}: {tmp_path / 'file'} is not a folder"
+    assert os.listdir(tmp_path) == ["file"]
+
+
+def test_a_folder_that_may_not_be_written_to_is_an_output_error(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # To the superuser no folder is closed, so the system's answer is imitated.
+    def refuse(path: pathlib.Path, *_: object, **__: object) -> None:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+
+    monkeypatch.setattr(pathlib.Path, "touch", refuse)
+    with pytest.raises(OutputError) as caught:
+        files.write(tmp_path / "motion.csv", "")
+    assert str(caught.value) == f"cannot write {tmp_path / 'motion.csv'}: Permission denied"
+
+
+def test_show_writes_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.write("a,b\n1,2\n")
+    assert capsys.readouterr() == ("a,b\n1,2\n", "")
+
+
+def test_removing_what_is_there_and_what_is_not(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").touch()
+    files.remove(tmp_path / "file")
+    files.remove(tmp_path / "file")
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="cannot write"):
+        files.remove(tmp_path / "file" / "within")

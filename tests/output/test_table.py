@@ -1,0 +1,155 @@
+"""Tables: a trajectory as CSV, and the validation table for the terminal, Markdown and JSON."""
+
+import io
+import json
+import math
+from importlib.metadata import version
+
+import numpy as np
+import pytest
+from rich.console import Console
+from rich.table import Table
+
+from mjbeer import Scene, exact, frozen, hoop, simulate
+from mjbeer.cli import trajectory
+from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
+from mjbeer.studies.check import Check
+from mjbeer.studies.validation import tables
+from tests.support.scenes import SCENES
+
+PASSED = Check("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
+FAILED = Check("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
+UNKNOWN = Check("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
+
+RIGHT = Finding("(16)", "motion of phi", CONFIRMED, "MuJoCo", 5e-15, None, 1e-12, None, "rounding")
+MISPRINT = Finding("(49)", "motion of phi", CORRECTED, "MuJoCo", 0.0589, 4e-10, 2e-8, 0.059, "drift")
+NO_MISPRINT = Finding("(50)", "rolling", CORRECTED, "MuJoCo", 1e-9, math.nan, 2e-8, 0.059, "drift")
+
+
+def shown(content: Table) -> str:
+    text = io.StringIO()
+    Console(file=text, width=200).print(content)
+    return text.getvalue()
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_csv_gives_every_number_back_to_the_last_bit(scene: Scene) -> None:
+    run = simulate(scene, 0.05, 1.0, 2.0)
+    header, *_ = trajectory.csv(run).splitlines()
+    rows = np.loadtxt(io.StringIO(trajectory.csv(run)), delimiter=",", skiprows=1)
+    columns = {
+        "time [s]": run.time,
+        "u [m]": run.u,
+        "phi [rad]": run.phi,
+        "u_dot [m/s]": run.u_dot,
+        "phi_dot [rad/s]": run.phi_dot,
+        "roll [rad]": run.roll,
+        "lift [m]": run.lift,
+        "slip [m]": run.slip,
+        "energy [J]": run.energy,
+        "normal force needed [N]": run.forces.normal,
+        "friction force needed [N]": run.forces.friction,
+    }
+    assert header.split(",") == list(columns)
+    assert rows.shape == (51, len(columns))
+    for column, values in zip(rows.T, columns.values(), strict=True):
+        assert np.array_equal(column, values)
+
+
+def test_the_summary_says_what_a_run_says_about_itself() -> None:
+    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
+    text = " ".join(shown(trajectory.summary(run)).split())
+    assert "rolling, integrator contact, RK4" in text
+    assert "samples 501 to t = 0.5 s" in text
+    assert f"phi at the end {math.degrees(run.phi[-1]):.9g} degrees" in text
+    assert f"u at the end {run.u[-1]:.9g} m" in text
+    assert f"energy drift {run.energy_drift:.2e}" in text
+    assert f"{run.lift.min() / 0.033:.2e}, {run.lift.max() / 0.033:.2e} radii" in text
+    assert f"friction coefficient needed {run.forces.needed.max():.4g}" in text
+    assert "can roll without slipping to the end" in text
+    assert f"estimated error of phi and u/a {run.error_estimate:.2e} rad" in text
+
+
+def test_the_summary_has_the_estimated_error_of_a_tolerance() -> None:
+    run = simulate(frozen(), 0.5, 1.0, tolerance=1e-9)
+    assert f"estimated error of phi and u/a {run.error_estimate:.2e} rad" in " ".join(
+        shown(trajectory.summary(run)).split()
+    )
+
+
+def test_the_summary_says_when_the_incline_would_have_to_pull() -> None:
+    fall = exact(hoop(), np.linspace(0, 0.5, 1001), 3.0)
+    assert f"until t = {fall.rolls_until():.6g} s (then N < 0)" in shown(trajectory.summary(fall))
+
+
+def test_the_terminal_table_has_a_verdict_for_every_row() -> None:
+    lines = shown(tables.validation([PASSED, FAILED, UNKNOWN])).splitlines()
+    (passed,) = (line for line in lines if PASSED.quantity in line)
+    (failed,) = (line for line in lines if FAILED.quantity in line)
+    (unknown,) = (line for line in lines if UNKNOWN.quantity in line)
+    assert all(each in passed for each in ("frozen, reduced", "1.5e-09", "1.0e-07 rad", "pass"))
+    assert all(each in failed for each in ("hoop, contact", "2.0e+00", "0.0e+00", "FAIL"))
+    assert all(each in unknown for each in ("nan", "5.0e-01 degrees", "FAIL"))
+
+
+def test_markdown() -> None:
+    assert tables.validation_markdown([PASSED, FAILED]) == (
+        "| check | by | error | at most | what dominates the error |\n"
+        "|---|---|---|---|---|\n"
+        "| phi over 2 s | frozen, reduced | 1.5e-09 | 1.0e-07 rad | RK4 |\n"
+        "| hops | hoop, contact | 2.0e+00 **FAIL** | 0.0e+00 | it hops or not |\n"
+    )
+
+
+def test_json_has_versions_verdict_and_rows() -> None:
+    content = json.loads(tables.validation_json([PASSED, FAILED], []))
+    assert content["versions"] == {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
+    assert content["passed"] is False
+    assert content["checks"] == [
+        {
+            "quantity": "phi over 2 s", "by": "frozen, reduced", "error": 1.5e-9, "bound": 1e-7, "unit": "rad",
+            "reason": "RK4", "passed": True,
+        },
+        {
+            "quantity": "hops", "by": "hoop, contact", "error": 2.0, "bound": 0.0, "unit": "",
+            "reason": "it hops or not", "passed": False,
+        },
+    ]  # fmt: skip
+    assert json.loads(tables.validation_json([PASSED], []))["passed"] is True
+
+
+def test_json_of_an_error_that_is_no_number_is_still_json() -> None:
+    # Python would write NaN, which no other reader of JSON takes.
+    text = tables.validation_json([UNKNOWN], [])
+    (row,) = json.loads(text, parse_constant=pytest.fail)["checks"]
+    assert row["error"] is None
+    assert row["passed"] is False
+
+
+def test_the_audit_for_the_terminal() -> None:
+    lines = shown(tables.audit([RIGHT, MISPRINT, NO_MISPRINT])).splitlines()
+    right, misprint, none = (next(line for line in lines if each in line) for each in ("(16)", "(49)", "(50)"))
+    assert all(each in right for each in ("confirmed", "MuJoCo", "5.0e-15", "1.0e-12", "pass"))
+    assert all(each in misprint for each in ("confirmed after correction", "0.059", "4.0e-10", "2.0e-08", "pass"))
+    assert all(each in none for each in ("1e-09", "nan", "FAIL"))
+
+
+def test_the_audit_as_markdown() -> None:
+    assert tables.audit_markdown([RIGHT, NO_MISPRINT]) == (
+        "| equation | quantity | verdict | witness | error, printed | error, right | at most | what dominates |\n"
+        "|---|---|---|---|---|---|---|---|\n"
+        "| (16) | motion of phi | confirmed | MuJoCo | 5.0e-15 |  | 1.0e-12 | rounding |\n"
+        "| (50) | rolling | confirmed after correction | MuJoCo | 1e-09 | nan | 2.0e-08 **FAIL** | drift |\n"
+    )
+
+
+def test_json_has_the_audit_and_a_misprint_decides() -> None:
+    content = json.loads(tables.validation_json([PASSED], [RIGHT, NO_MISPRINT]), parse_constant=pytest.fail)
+    assert content["passed"] is False
+    right, none = content["audit"]
+    assert right == {
+        "equation": "(16)", "quantity": "motion of phi", "verdict": "confirmed", "witness": "MuJoCo", "printed": 5e-15,
+        "right": None, "bound": 1e-12, "misses_by": None, "reason": "rounding", "passed": True,
+    }  # fmt: skip
+    assert (none["right"], none["passed"]) == (None, False)
+    assert json.loads(tables.validation_json([PASSED], [RIGHT, MISPRINT]))["passed"] is True

@@ -1,0 +1,131 @@
+"""The hoop with a weight on its rim: closed forms against the theory of forces, contact runs against Coulomb's law.
+
+Coulomb's law is integrated here by SciPy, phase by phase: rolling until |F| = mu N, then slipping until the rim grips.
+g = r = 1, hoop m = I = 1, weight M = 3, mu = 0.2 is the setting in which W. F. D. Theron and
+M. F. Maritz, "The amazing variety of motions of a loaded hoop" (2008), can be compared with.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from mjbeer import hoop, simulate
+from mjbeer.paper.equations import hopping
+from mjbeer.theory.forces import rolling_forces
+
+MU, WEIGHT, HOOP = 0.2, 3.0, 1.0
+SCENE = hoop(hoop_mass=HOOP, load_mass=WEIGHT, radius=1.0, length=1.0, gravity=1.0)
+START = math.pi
+# A contact is soft over a time constant of one timestep, 5e-4 s, in which the rim goes as many radians.
+SOFT = 1e-3
+
+
+def accelerations(phi: float, rate: float, push: float) -> np.ndarray:
+    """u_ddot, phi_ddot and N with F = `push` N, from Newton's laws for the whole and Lagrange's for phi."""
+    sin, cos = math.sin(phi), math.cos(phi)
+    matrix = np.array([
+        [HOOP + WEIGHT, -WEIGHT * cos, push],
+        [-WEIGHT * cos, HOOP + WEIGHT, -push],
+        [0.0, -WEIGHT * sin, 1.0],
+    ])  # fmt: skip
+    right = [-WEIGHT * sin * rate**2, -WEIGHT * sin, HOOP + WEIGHT + WEIGHT * cos * rate**2]
+    return np.linalg.solve(matrix, right)
+
+
+def rolls(_: float, state: np.ndarray) -> list[float]:
+    _, phi, _, rate = state
+    turning = float(SCENE.oscillator.acceleration(phi, rate))
+    return [rate, rate, turning, turning]
+
+
+def grip(_: float, state: np.ndarray) -> float:
+    forces = rolling_forces(SCENE, state[1], state[3])
+    return float(MU * forces.normal - abs(forces.friction))
+
+
+@dataclass
+class Until:
+    """When a margin falls through 0."""
+
+    margin: Callable[[float, np.ndarray], float]
+    terminal: bool = True
+    direction: float = -1
+
+    def __call__(self, time: float, state: np.ndarray) -> float:
+        return self.margin(time, state)
+
+
+@dataclass
+class Phase:
+    end: float
+    state: np.ndarray
+    solution: Callable[[np.ndarray], np.ndarray]
+
+
+def phases(phi_dot0: float) -> tuple[Phase, Phase]:
+    """The hoop rolls from having its weight on top until |F| = mu N, then slips until its rim grips again; states
+    are u, phi, u_dot, phi_dot."""
+    rolling = phase(rolls, 0.0, np.array([START, START, phi_dot0, phi_dot0]), grip)
+    needed = float(rolling_forces(SCENE, rolling.state[1], rolling.state[3]).friction)
+    push = MU * math.copysign(1.0, needed)
+    return rolling, phase(slipping(push), rolling.end, rolling.state, gripping(push))
+
+
+def phase(slopes: Callable, begin: float, state: np.ndarray, event: Callable) -> Phase:
+    run = solve_ivp(slopes, (begin, begin + 5), state, events=Until(event), dense_output=True, rtol=1e-10, atol=1e-12)
+    assert len(run.t_events[0]) == 1
+    return Phase(float(run.t[-1]), run.y[:, -1], run.sol)
+
+
+def slipping(push: float) -> Callable[[float, np.ndarray], list[float]]:
+    def slopes(_: float, state: np.ndarray) -> list[float]:
+        u_ddot, phi_ddot, _ = accelerations(state[1], state[3], push)
+        return [state[2], state[3], u_ddot, phi_ddot]
+
+    return slopes
+
+
+def gripping(push: float) -> Callable[[float, np.ndarray], float]:
+    """How fast the rim slides against the friction; less 1e-9 to leave the start of the slip."""
+    return lambda _, state: math.copysign(1.0, push) * (state[2] - state[3]) + 1e-9
+
+
+@pytest.mark.parametrize("phi_dot0", [-0.2, -0.3, -0.5])
+def test_contact_rolls_slips_and_grips_as_coulomb_says(phi_dot0: float) -> None:
+    """u and phi through rolling and slipping; the two are some hundredths apart in the end, N is never 0."""
+    rolling, slip = phases(phi_dot0)
+    run = simulate(SCENE, slip.end, START, phi_dot0, rolling="contact", timestep=5e-4, friction=MU)
+    inside = run.time <= slip.end
+    times = run.time[inside]
+    truth = np.where(times <= rolling.end, rolling.solution(times), slip.solution(times))
+    assert np.abs(run.u[inside] - truth[0]).max() < SOFT
+    assert np.abs(run.phi[inside] - truth[1]).max() < SOFT
+    assert abs(truth[0, -1] - truth[1, -1]) > 20 * SOFT
+    assert min(accelerations(phi, rate, MU)[2] for _, phi, _, rate in truth.T[times > rolling.end]) > 0
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 0.05, 0.3])
+@pytest.mark.parametrize("phi", [3.0, 2.0, 1.0])
+def test_closed_forms_are_the_theory_of_forces(ratio: float, phi: float) -> None:
+    scene = hoop(hoop_mass=ratio, load_mass=1.0, gravity=1.0, radius=1.0, length=1.0)
+    rate = math.sqrt(hopping.rate(ratio, phi))
+    forces = rolling_forces(scene, phi, rate)
+    assert hopping.normal(ratio, phi) == pytest.approx(float(forces.normal), rel=1e-12, abs=1e-14)
+    assert hopping.friction(ratio, phi) == pytest.approx(float(forces.friction), rel=1e-12, abs=1e-14)
+    turning = float(scene.oscillator.acceleration(phi, rate))
+    assert hopping.acceleration(ratio, phi) == pytest.approx(turning, rel=1e-12)
+
+
+def test_no_lift_off_above_a_thirteenth() -> None:
+    assert math.isnan(hopping.lift_off(0.08))
+    assert hopping.lift_off(0.0769) > hopping.lift_off(0.05) > math.pi / 2
+
+
+def test_it_slips_before_it_lifts_off_at_any_friction() -> None:
+    angles = [hopping.slip(0.05, mu) for mu in (0.2, 0.8, 5.0, 100.0)]
+    assert angles == sorted(angles)
+    assert angles[-1] < hopping.lift_off(0.05)

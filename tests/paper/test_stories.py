@@ -1,0 +1,111 @@
+"""The paper's stories: their files, and what they show."""
+
+import math
+import os
+import pathlib
+import shutil
+
+import numpy as np
+import pytest
+
+from mjbeer import exact
+from mjbeer.cli.app import main
+from mjbeer.output import plots
+from mjbeer.paper.scenarios import footnote_scene
+from mjbeer.paper.stories import report
+from mjbeer.paper.stories.frozen import _held, _printed
+from mjbeer.theory.measure import takeoff
+from tests.support import stubs
+
+STORIES = {story.name: story for story in report.stories()}
+CHECKOUT = pathlib.Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("name", STORIES)
+def test_a_story_has_a_plot_with_named_axes(name: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each says what is drawn along both axes, and what its lines are where there is more than one."""
+    seen = []
+    original = plots.Figure.savefig
+
+    def keep(figure: plots.Figure, *args: object, **kwargs: object) -> None:
+        seen.append(figure)
+        original(figure, *args, **kwargs)
+
+    monkeypatch.setattr(plots.Figure, "savefig", keep)
+    STORIES[name].draw(tmp_path / name)
+    assert sorted(os.listdir(tmp_path)) == [f"{name}.png", f"{name}.svg"]
+    assert (tmp_path / f"{name}.svg").stat().st_size < 100_000
+    panels = seen[0].axes
+    assert all(axes.get_ylabel() and axes.get_title() for axes in panels)
+    assert panels[-1].get_xlabel()
+    assert sum(axes.get_legend() is not None for axes in panels) or all(len(axes.lines) < 4 for axes in panels)
+
+
+def test_the_figures_of_the_documents_are_those_of_the_stories() -> None:
+    kept = {each.stem for each in (CHECKOUT / "docs" / "figures").glob("*.svg")}
+    assert {each for each in kept if not each.startswith("stability-")} == set(STORIES)
+    assert max(each.stat().st_size for each in (CHECKOUT / "docs" / "figures").iterdir()) < 200_000
+
+
+FILMS = {name: story.film for name, story in STORIES.items() if story.film is not None}
+
+
+@pytest.mark.parametrize("name", FILMS)
+def test_films_show_what_they_say(name: str) -> None:
+    """Those of contact leave the incline or slip; every other can be trusted."""
+    run = FILMS[name].trajectory()
+    assert 0.25 <= run.time[-1] <= 3
+    assert 2 <= run.time[-1] / FILMS[name].speed <= 12
+    if run.rolling != "contact":
+        assert run.trusted, run.warnings
+    elif name == "friction":
+        assert np.abs(run.slip).max() > run.scene.can.radius
+    else:
+        assert takeoff(run) is not None
+
+
+def test_footnote_7_holds_just_above_and_slides_just_below() -> None:
+    above, below = _held(1.02), _held(0.98)
+    radius = above.scene.can.radius
+    assert np.abs(above.u - above.u[0]).max() < 1e-5 * radius
+    assert abs(below.u[-1] - below.u[0]) > 0.1 * radius
+
+
+def test_footnote_8_as_printed_is_another_motion() -> None:
+    times = np.linspace(0, 3, 301)
+    truth = exact(footnote_scene(), times, 0.0).phi
+    assert np.abs(_printed(times, 0.0) - truth).max() > math.radians(4)
+
+
+def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+    calls = stubs.draw(monkeypatch)
+    folder = tmp_path / "new" / "stories"
+    assert main(["paper", "--output", str(folder)]) == 0
+    assert set(os.listdir(folder)) == {"told.svg", "stories.md"}
+    assert not calls
+    assert "[Film]" not in (folder / "stories.md").read_text()
+    assert main(["paper", "--films", "--output", str(folder)]) == 0
+    assert set(os.listdir(folder)) == {"told.svg", "told.mp4", "stories.md"}
+    text = (folder / "stories.md").read_text()
+    assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story.", "[Film](told.mp4)"))
+    assert capsys.readouterr().err.endswith(f"the stories are in {folder / 'stories.md'}\n")
+
+
+def test_a_film_that_fails_leaves_no_summary(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    stubs.draw(monkeypatch, fail_at="told.mp4")
+    (tmp_path / "stories.md").write_text("of an earlier run")
+    assert main(["paper", "--films", "--output", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.endswith("mjbeer: cannot draw told.mp4\n")
+    assert set(os.listdir(tmp_path)) == {"told.svg"}
+
+
+def test_a_folder_that_cannot_be_written_to(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    stubs.draw(monkeypatch)
+    (tmp_path / "paper").touch()
+    assert main(["paper", "--output", str(tmp_path / "paper")]) == 2
+    assert "mjbeer: cannot write" in capsys.readouterr().err
+    shutil.rmtree(tmp_path)

@@ -1,0 +1,158 @@
+"""Linear theory against mpmath and closed forms; no MuJoCo."""
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import DOP853
+
+from mjbeer.predictions import linear_stability, soft_constraint
+from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, error, motion, polynomial, spectral_radius
+
+EPS = np.finfo(float).eps
+FEW = 20 * EPS
+"""Rounding of sums of up to twelve terms."""
+STAGES = {
+    "RK4": ([[], [0.5], [0, 0.5], [0, 0, 1]], [1 / 6, 1 / 3, 1 / 3, 1 / 6]),
+    "DOP853": ([list(DOP853.A[i, :i]) for i in range(12)], list(DOP853.B)),
+}
+
+
+def by_stages(integrator: str, z: complex) -> mpmath.mpc:
+    """One step of y' = z y from 1, stage after stage, with 50 digits."""
+    inner, weights = STAGES[integrator]
+
+    def weighted(row: list[float], slopes: list[mpmath.mpc]) -> mpmath.mpc:
+        return sum((mpmath.mpf(a) * k for a, k in zip(row, slopes, strict=True)), mpmath.mpc(0))
+
+    with mpmath.workdps(50):
+        slopes: list[mpmath.mpc] = []
+        for row in inner:
+            slopes.append(mpmath.mpmathify(z) * (1 + weighted(row, slopes)))
+        return 1 + weighted(weights, slopes)
+
+
+@pytest.mark.parametrize("integrator", RUNGE_KUTTA)
+@pytest.mark.parametrize("z", [0.3j, 2.5j, -1.0, -2.7, -0.4 + 1.1j])
+def test_the_polynomial_is_a_step_of_the_method(integrator: str, z: complex) -> None:
+    size = sum(abs(c * z**k) for k, c in enumerate(polynomial(integrator)))
+    value = np.polyval(polynomial(integrator)[::-1], z)
+    assert abs(complex(by_stages(integrator, z)) - value) <= FEW * size
+
+
+@pytest.mark.parametrize(("integrator", "order"), [("RK4", 4), ("DOP853", 8)])
+def test_the_polynomial_is_the_exponential_up_to_the_order_and_no_further(integrator: str, order: int) -> None:
+    of_exponential = [c * math.factorial(k) for k, c in enumerate(polynomial(integrator))] + [0.0]
+    assert of_exponential[: order + 1] == pytest.approx([1.0] * (order + 1), rel=1e-13)  # the tableau has 16 digits
+    assert abs(of_exponential[order + 1] - 1) > 1e-3
+
+
+@pytest.mark.parametrize("integrator", RUNGE_KUTTA)
+@pytest.mark.parametrize(("stiffness", "damping"), [(0.5, 0.0), (2.0, 0.3), (0.7, 4.0)])
+def test_eigenvalues_of_a_step_are_those_of_the_polynomial(integrator: str, stiffness: float, damping: float) -> None:
+    roots = np.roots([1, damping, stiffness])
+    wanted = np.sort_complex(np.polyval(polynomial(integrator)[::-1], roots))
+    found = np.sort_complex(np.linalg.eigvals(amplification(integrator, stiffness, damping)).astype(complex))
+    assert found == pytest.approx(wanted, rel=1e-12)
+
+
+def test_semi_implicit_euler_is_velocity_first() -> None:
+    stiffness, damping = 0.7, 0.3
+    q, v = 1.3, -0.4
+    new = v - stiffness * q - damping * v
+    assert amplification("Euler", stiffness, damping) @ [q, v] == pytest.approx([q + new, new], rel=FEW)
+
+
+def test_several_coordinates_are_stepped_as_each_alone() -> None:
+    both = amplification("RK4", np.diag([0.2, 0.9]), np.diag([0.1, 0.0]))
+    for place, (stiffness, damping) in enumerate([(0.2, 0.1), (0.9, 0.0)]):
+        mine = both[np.ix_([place, place + 2], [place, place + 2])]
+        assert mine == pytest.approx(amplification("RK4", stiffness, damping), rel=FEW, abs=FEW)
+
+
+@pytest.mark.parametrize(("integrator", "limit"), [("Euler", 2.0), ("discrete", 2.0), ("RK4", 2 * math.sqrt(2))])
+def test_limits_on_the_imaginary_axis(integrator: str, limit: float) -> None:
+    """Bounded just below, not just above; an eigenvalue that is almost double is known to the root of rounding."""
+    assert spectral_radius(amplification(integrator, (limit * (1 - 1e-6)) ** 2)) <= 1 + 4 * EPS
+    assert spectral_radius(amplification(integrator, (limit * (1 + 1e-6)) ** 2)) > 1 + 1e-6
+    assert linear_stability.stable_limit(integrator) == pytest.approx(limit, rel=2e-3)
+
+
+def test_the_limit_of_dop853_is_where_its_stages_say() -> None:
+    def excess(swing: mpmath.mpf) -> mpmath.mpf:
+        return abs(by_stages("DOP853", mpmath.mpc(0, swing))) - 1
+
+    limit = float(mpmath.findroot(excess, (5.9, 6.0), solver="anderson"))
+    assert linear_stability.stable_limit("DOP853") == pytest.approx(limit, rel=3e-3)
+
+
+@pytest.mark.parametrize("integrator", RUNGE_KUTTA)
+def test_friction_rows_end_where_the_real_axis_does(integrator: str) -> None:
+    guess = {"RK4": (2.7, 2.8), "DOP853": (6.3, 6.5)}[integrator]
+    limit = mpmath.findroot(lambda x: abs(by_stages(integrator, -x)) - 1, guess, solver="anderson")
+    assert soft_constraint.stable_slip(integrator) == pytest.approx(float(limit) / 2, rel=1e-8)
+
+
+@pytest.mark.parametrize("dampratio", [0.1, 0.354, 1.0, 3.0])
+def test_the_limit_of_a_row_under_euler_is_the_closed_form(dampratio: float) -> None:
+    wanted = 2 * dampratio * (math.sqrt(dampratio**2 + 1) - dampratio)
+    assert soft_constraint.stable_ratio("Euler", dampratio) == pytest.approx(wanted, rel=1e-7)
+
+
+def test_refsafe_saves_damping_ratios_from_the_root_of_an_eighth_on() -> None:
+    assert soft_constraint.stable_ratio("Euler", math.sqrt(1 / 8)) == pytest.approx(0.5, rel=1e-7)
+    assert soft_constraint.safe(1e-4, 1e-3) == 2e-3
+    assert soft_constraint.safe(1e-2, 1e-3) == 1e-2
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
+def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str) -> None:
+    hard, soft = (soft_constraint.spring(1e-3, 1.0, each) for each in (0.9999, 0.5))
+    limit = soft_constraint.stable_timestep(integrator, hard)
+    assert soft_constraint.stable_timestep(integrator, soft) == pytest.approx(limit, rel=1e-7)
+    assert soft_constraint.stable_timestep(integrator, soft, excess=10.0) > 2 * limit
+
+
+@pytest.mark.parametrize("timestep", [1e-4, 1e-2, 1.0])
+def test_discrete_bears_every_row(timestep: float) -> None:
+    for row in (
+        soft_constraint.spring(1e-5, 1.0, 0.9),
+        soft_constraint.spring(1e-5, 0.1, 0.9999),
+        soft_constraint.direct(1e10, 0, 0.9),
+    ):
+        assert soft_constraint.radius("discrete", row, timestep) <= 1 + 1e-12
+    assert soft_constraint.stable_ratio("discrete") == math.inf
+
+
+def test_a_row_at_the_end_of_the_step_is_the_implicit_equation() -> None:
+    """With all of its force it is backward Euler."""
+    row, h = soft_constraint.spring(3e-3, 0.6, 1.0), 1e-2
+    implicit = soft_constraint.Row(row.stiffness, row.damping, 1.0).at_end_of_step(h)
+    r, v = 0.3, -2.0
+    matrix = np.array([[1.0, -h], [h * row.stiffness, 1 + h * row.damping]])
+    new = np.linalg.solve(matrix, [r, v])
+    acceleration = -implicit.damping * v - implicit.stiffness * r
+    assert (v + h * acceleration, r + h * (v + h * acceleration)) == pytest.approx((new[1], new[0]), rel=1e-13)
+
+
+def test_errors_of_short_steps() -> None:
+    """Half of omega h for semi-implicit Euler; phase and damping together for RK4, over ten periods."""
+    swing = 1e-3
+    assert error("Euler", swing) == pytest.approx(swing / 2, rel=2e-2)  # (omega h)^2/24 of phase a radian comes second
+    swing, angle = 0.1, 20 * math.pi
+    wanted = angle * math.hypot(swing**4 / 120, swing**5 / 144)
+    assert error("RK4", swing) == pytest.approx(wanted, rel=1e-2)  # the next order, (omega h)^2
+
+
+def test_motion_is_the_power_of_the_matrix() -> None:
+    matrix = amplification("RK4", 0.3, 0.1)
+    states = motion(matrix, np.array([1.0, 0.5]), 37)
+    assert states.shape == (38, 2)
+    for n in (0, 1, 17, 37):
+        assert states[n] == pytest.approx(np.linalg.matrix_power(matrix, n) @ [1.0, 0.5], rel=1e-12)
+
+
+def test_what_is_exceeded_from_the_start_is_an_error() -> None:
+    with pytest.raises(ValueError, match="already"):
+        linear_stability.first(lambda x: x, 1.0, 2.0)

@@ -1,0 +1,202 @@
+"""simulate: samples, errors, repeatability, divergence, and the diagnostics a run carries."""
+
+import math
+import re
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import mujoco
+import numpy as np
+import pytest
+
+from mjbeer import Can, Scene, Trajectory, build, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, UnsupportedError
+from mjbeer.model.setting import INTEGRATORS
+from mjbeer.simulation.simulate import follow
+from mjbeer.theory.exact import relative_phi_error
+from mjbeer.theory.measure import farthest
+from tests.support.scenes import SCENES
+
+ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_run_starts_where_theory_starts(name: str) -> None:
+    run = simulate(SCENES[name], 0.1, 0.8, 3.0)
+    truth = exact(SCENES[name], np.array([0.0]), 0.8, 3.0)
+    for each in ("u", "phi", "u_dot", "phi_dot", "roll", "roll_dot"):
+        assert getattr(run, each)[0] == pytest.approx(getattr(truth, each)[0], rel=4e-16)
+
+
+def test_every_array_has_a_row_a_sample() -> None:
+    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
+    assert {getattr(run, each).shape for each in ARRAYS} == {(501,)}
+    assert run.time[-1] == 0.5
+
+
+def test_a_run_ends_on_the_first_step_at_or_after_its_duration() -> None:
+    assert simulate(frozen(), 0.0104, 1.0).time[-1] == pytest.approx(0.011)
+
+
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
+    times = np.array([0.0, 0.007, 0.1, 0.25])
+    whole = simulate(frozen(), 0.25, 1.0, integrator=integrator)
+    some = simulate(frozen(), 0.25, 1.0, integrator=integrator, times=times)
+    assert np.array_equal(some.phi, whole.phi[[0, 7, 100, 250]])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
+        ({"duration": math.inf}, "duration must be a finite number"),
+        ({"duration": 1e6, "timestep": 1e-12}, "too many timesteps of 1e-12 s: at most 1e.08, or say with times="),
+        ({"duration": 1e300, "timestep": 1e-300}, "too many timesteps"),
+        ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
+        ({"phi0": "1"}, "phi0 must be a finite number"),
+        ({"phi_dot0": math.inf}, "phi_dot0 must be a finite number"),
+        ({"phi_dot0": 1e200}, r"phi_dot0 must be at most 1e\+100 in size, got 1e\+200"),
+        ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
+        ({"integrator": "rk4"}, "integrator must be one of 'Euler'.*'DOP853'; got 'rk4'"),
+        ({"times": [0.0, 0.5]}, "between 0 and the duration 0.1 s"),
+        ({"times": [0.01, 0.01]}, "increasing"),
+        ({"times": []}, "increasing"),
+        ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at .*0.0105.* s; integrator="DOP853"'),
+    ],
+)
+def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        simulate(frozen(), **({"duration": 0.1, "phi0": 1.0} | arguments))
+
+
+def test_a_massless_can_needs_reduced() -> None:
+    with pytest.raises(UnsupportedError, match='only in rolling="reduced"'):
+        simulate(sliding(), 1, 1.0, rolling="contact")
+
+
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+def test_divergence_is_an_error_with_time_and_cause(integrator: str, capfd: pytest.CaptureFixture[str]) -> None:
+    """Steps of half a second on a swing of 0.1 s; MuJoCo's own log stays silent."""
+    with pytest.raises(DivergenceError, match=r"diverged at t = [\d.e+]+ s: .+"):
+        simulate(hoop(), 500, 1.0, integrator=integrator, timestep=0.5)
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
+@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+def test_a_run_repeats_to_the_bit_alone_and_beside_another(rolling: str, integrator: str) -> None:
+    def run(_: int) -> np.ndarray:
+        found = simulate(SCENES["frozen, metal can"], 0.3, 1.0, rolling=rolling, integrator=integrator)
+        return np.stack([getattr(found, each) for each in ARRAYS])
+
+    first = run(0)
+    with ThreadPoolExecutor(2) as pool:
+        assert all(np.array_equal(first, each) for each in [run(0), *pool.map(run, range(2))])
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_good_run_is_trusted(name: str) -> None:
+    run = simulate(SCENES[name], 1, 0.5)
+    assert run.trusted, run.warnings
+    assert run.warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("run", "reason"),
+    [
+        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "energy or momentum drift"),
+        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "as a run at half the timestep shows"),
+        (lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02), "the can slips by"),
+        (lambda: simulate(hoop(), 0.5, 3.0, rolling="contact", timestep=1e-4, friction=1e3), "parts from the incline"),
+        (lambda: simulate(frozen(), 2, math.pi), r"from t = 0\.83.* s the incline would have to pull"),
+    ],
+)
+def test_a_run_that_is_not_to_be_relied_on_says_so(run: Callable[[], Trajectory], reason: str) -> None:
+    trajectory = run()
+    assert not trajectory.trusted
+    assert any(re.search(reason, each) for each in trajectory.warnings), trajectory.warnings
+
+
+def test_slip_of_a_sliding_contact_is_coulomb_s() -> None:
+    """Footnote 7: below mu = tan(alpha) the frozen can slides away from its equilibrium, above it stays."""
+    scene = frozen()
+    mu = math.tan(scene.incline)
+    above = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=1.02 * mu)
+    below = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=0.98 * mu)
+    assert np.abs(above.slip).max() < 1e-6 * scene.can.radius
+    assert np.abs(below.slip).max() > 1e-2 * scene.can.radius
+
+
+def test_rolls_until_is_where_theory_says() -> None:
+    run = simulate(frozen(), 1, math.pi, tolerance=1e-9)
+    truth = exact(frozen(), np.linspace(0, 1, 100_001), math.pi)
+    # Both interpolate linearly between samples, here 1 ms apart: (1 ms)^2 times N's second derivative.
+    assert run.rolls_until() == pytest.approx(truth.rolls_until(), abs=1e-4)
+    assert run.rolls_until(friction=0.3) < run.rolls_until()
+
+
+def test_frequency_needs_three_turning_points() -> None:
+    with pytest.raises(MjbeerError, match="the motion turns 1 times"):
+        simulate(frozen(), 0.5, math.pi).frequency()
+
+
+def test_measured_frequency_is_that_of_the_exact_period() -> None:
+    scene = frozen(can=Can.sheet_metal())
+    amplitude = 0.4
+    run = simulate(scene, 4, scene.equilibrium() + amplitude, tolerance=1e-12)
+    # Turning points are interpolated to fourth order in the 1 ms between samples: (omega h)^4 = 2e-8 of h.
+    assert run.frequency() * scene.period(amplitude) == pytest.approx(2 * math.pi, rel=1e-12)
+
+
+@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
+def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(rolling: str, integrator: str) -> None:
+    """2.5 times the distance is 2.5 (1 - 2^-p) times the error: 1.25 to 2.5 times, with the order p settled."""
+    scene, steps = SCENES["frozen, metal can"], {"Euler": 1e-4, "RK4": 4e-3, "DOP853": 3e-2}
+    run = simulate(scene, 1.2, 1.0, rolling=rolling, integrator=integrator, timestep=steps[integrator])
+    truth = exact(scene, run.time, 1.0)
+    error = max(farthest(run.phi, truth.phi), farthest(run.u / scene.can.radius, truth.u / scene.can.radius))
+    assert run.error_estimate is not None
+    assert 1.2 * error < run.error_estimate < 2.6 * error
+
+
+def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    built: list[float] = []
+
+    def count(*arguments: Any, **settings: Any) -> mujoco.MjModel:
+        built.append(settings["timestep"])
+        return build(*arguments, **settings)
+
+    monkeypatch.setattr("mjbeer.simulation.simulate.build", count)
+    run = simulate(frozen(), 0.1, 1.0)
+    assert built == [1e-3]
+    assert run.trusted
+    assert run.error_estimate == run.error_estimate
+    assert built == [1e-3, 5e-4]
+
+
+def test_a_second_run_that_diverges_is_an_infinite_error() -> None:
+    def make(integrator: str, timestep: float) -> mujoco.MjModel:
+        model = build(frozen(), integrator=integrator, timestep=timestep)
+        if timestep < 1e-3:
+            model.opt.gravity[:] = 1e300
+        return model
+
+    run = follow(make, frozen(), 0.1, 1.0)
+    assert run.error_estimate == math.inf
+    assert run.warnings == ("a run at half the timestep diverges: take a much smaller timestep or a better integrator",)
+
+
+@pytest.mark.parametrize("gravity", [1e-5, 1e-3, 1.0, 1e6])
+@pytest.mark.parametrize("scene", [frozen, pendulum])
+def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: float) -> None:
+    """In units of sqrt(a/g) the motion is that on Earth; MuJoCo's solver has an acceleration in its tolerance.
+
+    Its error is the contact's softness, 2e-7 rad; left at its default, the solver makes it 5e-2 rad at 1e-5 m/s^2.
+    """
+    slow = math.sqrt(9.81 / gravity)
+    run = simulate(scene(gravity=gravity), 2 * slow, 1.0, rolling="contact", timestep=1e-3 * slow)
+    assert relative_phi_error(run) < 5e-7
+    assert np.abs(run.slip).max() < 1e-6 * run.scene.can.radius

@@ -1,0 +1,40 @@
+"""The diagram of a stored study has what its legend says, and the ablation what its table says."""
+
+import pathlib
+import re
+
+import pytest
+
+from mjbeer.studies.benchmark import ablation, advice, plots, points
+from mjbeer.studies.cases import CASES
+
+
+def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path) -> None:
+    stored = points.load(advice.SHIPPED)
+    plots.draw(stored, tmp_path / "diagram")
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "diagram.svg").read_text())
+    for case in stored.cases:
+        assert f"{case}: {CASES[case].story}" in texts
+    for label in ("RK4, contact", "DOP853 to a tolerance, reduced", "the best", "Euler as theory predicts", "heyoka"):
+        assert label in texts
+    assert any(text.startswith("DOP853 ") and text.endswith(" ms") for text in texts)
+
+
+def test_every_stage_has_a_ratio(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ablation, "_STEPS", 10)
+    rows = ablation.ablate()
+    assert {(row["case"], row["integrator"]) for row in rows} == {
+        (case, integrator) for case in ("sliding", "frozen", "pendulum") for integrator in ("Euler", "RK4")
+    }
+    for row in rows:
+        assert {"contact", "constraint", "sensor", "clock", "visuals", "everything"} <= set(row)
+        assert ("actuation" in row) == (row["case"] != "frozen")  # whose constant torque is an actuator
+
+
+@pytest.mark.parametrize("stage", ["nothing", "visuals", "everything", "contact"])
+def test_stages_change_no_motion(stage: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is timed is the same motion."""
+    monkeypatch.setattr(ablation, "_STEPS", 200)
+    loops = ablation._loops("pendulum", "RK4")
+    states = [loops[each]()[0][0, -1, 1:5] for each in ("nothing", stage)]
+    assert states[0] == pytest.approx(states[1], rel=1e-9)

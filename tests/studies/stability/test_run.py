@@ -1,0 +1,141 @@
+"""The stability study: kept task by task, gone on with, judged, and written."""
+
+import json
+import pathlib
+
+import pytest
+from rich.console import Console
+
+from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.studies.stability import report, run, tables
+from mjbeer.studies.study import Task
+from tests.support import stubs
+
+QUIET = Console(quiet=True)
+
+
+def run_of(setting: str, verdict: str, as_expected: bool = True, error: float | None = 1e-9) -> dict:
+    return {
+        "setting": setting, "verdict": verdict, "error": error, "admitted": error, "says": "", "expected": [verdict],
+        "as_expected": as_expected,
+    }  # fmt: skip
+
+
+def case(*runs: dict) -> dict:
+    return {"kind": "stiff", "name": "a case", "why": "because", "theory": "an oscillation", "runs": list(runs)}
+
+
+def study(**results: dict) -> run.Stability:
+    return run.Stability({"quick": True}, {}, {group: {"a": each} for group, each in results.items()})
+
+
+@pytest.fixture
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """A study of three tasks, of which the second is interrupted the first time."""
+    done: list[str] = []
+
+    def measure(name: str) -> dict:
+        if name == "b" and "b" not in done:
+            done.append("b")
+            raise KeyboardInterrupt
+        done.append(name)
+        return {"as_expected": True, "of": name}
+
+    three = [Task("laws", name, lambda name=name: measure(name)) for name in "abc"]
+    monkeypatch.setattr(run, "tasks", lambda quick: three)
+    return done
+
+
+def test_an_interrupted_study_goes_on(counted: list[str], tmp_path: pathlib.Path) -> None:
+    with pytest.raises(KeyboardInterrupt):
+        run.run(tmp_path, True, QUIET)
+    assert list(run.load(tmp_path / "stability.json").results["laws"]) == ["a"]
+    found = run.run(tmp_path, True, QUIET)
+    assert counted == ["a", "b", "b", "c"]
+    assert [each["of"] for each in found.of("laws")] == ["a", "b", "c"]
+    assert run.load(tmp_path / "stability.json") == found
+
+
+def test_another_study_does_not_go_on_with_it(counted: list[str], tmp_path: pathlib.Path) -> None:
+    counted.append("b")
+    run.run(tmp_path, True, QUIET)
+    before = len(counted)
+    run.run(tmp_path, False, QUIET)
+    assert len(counted) == 2 * before - 1
+    run.run(tmp_path, False, QUIET)
+    assert len(counted) == 2 * before - 1
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[]", '{"results": {}}'])
+def test_what_is_no_study_is_refused(text: str, tmp_path: pathlib.Path) -> None:
+    (tmp_path / "stability.json").write_text(text)
+    with pytest.raises(ParameterError, match=r"stability\.json is no study that `mjbeer stability` wrote"):
+        run.run(tmp_path, True, QUIET)
+
+
+def test_a_folder_that_is_a_file_is_an_output_error(counted: list[str], tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="cannot write"):
+        run.run(tmp_path / "file", True, QUIET)
+
+
+@pytest.mark.parametrize(
+    ("found", "unexpected"),
+    [
+        (study(catalogue=case(run_of("reduced, RK4", "stable and accurate"))), []),
+        (
+            study(catalogue=case(run_of("reduced, RK4", "wrong and silent", False))),
+            ["catalogue: a: reduced, RK4"],
+        ),
+        (study(laws={"as_expected": False}), ["laws: a"]),
+        (study(limits={"agrees": False}), ["limits: a"]),
+        (study(search={"silent": [{"trial": "one"}]}), ["search: a"]),
+        (study(search={"silent": []}, endurance={"as_expected": True}, maps={"agrees": True}), []),
+    ],
+)
+def test_what_is_unexpected_is_named(found: run.Stability, unexpected: list[str]) -> None:
+    assert found.unexpected == unexpected
+
+
+def test_tables_say_what_happened() -> None:
+    runs = (
+        run_of("reduced, RK4", "stable and accurate"),
+        run_of("equality, RK4", "stable, inaccurate", error=0.3),
+        run_of("equality, Euler", "unstable, detected", False, error=None),
+        run_of("contact, RK4", "refused", error=None),
+    )
+    found = study(catalogue=case(*runs))
+    assert tables.catalogue(found).rows == [
+        (
+            "stiff: a case",
+            "1 accurate (1e-09)",
+            "1 stable, inaccurate (3e-01), 1 unstable, detected; 1 UNEXPECTED",
+            "1 refused",
+        )
+    ]
+    assert tables.verdicts(found).rows == [("stiff", "1", "1", "1", "1", "0")]
+    lines = tables.runs(found).splitlines()
+    assert lines[0] == "kind,case,setting,verdict,error,admitted,says,expected,as_expected"
+    assert lines[1] == 'stiff,a case,"reduced, RK4",stable and accurate,1e-09,1e-09,,stable and accurate,True'
+    assert len(lines) == 5
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_tasks_have_names_of_their_own(quick: bool) -> None:
+    names = [(each.group, each.name) for each in run.tasks(quick)]
+    assert len(set(names)) == len(names)
+    assert {group for group, _ in names} == {"laws", "limits", "maps", "catalogue", "search", "endurance"}
+
+
+def test_the_report_is_written(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One task of each group, for real; the maps have a test of their own."""
+    stubs.stability(monkeypatch)
+    found = run.run(tmp_path, True, QUIET)
+    report.write(found, tmp_path)
+    summary = (tmp_path / "summary.md").read_text()
+    assert "All came out as theory expects." in summary
+    for each in tmp_path.glob("*.svg"):
+        assert f"]({each.name})" in summary
+        assert each.with_suffix(".png").stat().st_size > 5000
+    assert json.loads((tmp_path / "stability.json").read_text())["settings"] == {"quick": True}
+    assert len((tmp_path / "runs.csv").read_text().splitlines()) > 3

@@ -1,0 +1,75 @@
+"""The validation table passes row by row, and each kind of row fails on a wrong model or a misprint."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from mjbeer import exact, frozen, hoop, simulate, sliding
+from mjbeer.model import mesh
+from mjbeer.paper.closed_forms import corrected_55, eq_10, eq_53, printed_55
+from mjbeer.studies import convergence
+from mjbeer.studies.check import Check
+from mjbeer.studies.validation import models, motions
+from mjbeer.theory import exact as theory
+from mjbeer.theory import measure
+
+ROWS = motions.rows()
+
+
+@pytest.mark.parametrize("row", ROWS, ids=[f"{row.quantity} - {row.by}" for row in ROWS])
+def test_row(row: motions.Row) -> None:
+    check = row.run()
+    assert check.passed, f"{check.error} > {check.bound} {check.unit}"
+
+
+def test_what_is_not_a_number_does_not_pass() -> None:
+    assert not Check("", "", math.nan, 1.0, "", "").passed
+    assert Check("", "", 1.0, 1.0, "", "").passed
+
+
+def test_closed_forms_are_theory() -> None:
+    """Three roots of a product of a few numbers each."""
+    assert eq_10(sliding()) == pytest.approx(sliding().frequency(), rel=1e-15)
+    assert corrected_55(frozen()) == pytest.approx(frozen().frequency(), rel=1e-15)
+    assert eq_53(frozen()) == pytest.approx(frozen().equilibrium(), rel=1e-15)
+
+
+def test_the_misprinted_frequency_is_found_out() -> None:
+    assert abs(printed_55(frozen()) / frozen().frequency() - 1) > 0.2
+
+
+def test_a_wrong_motion_is_found_out() -> None:
+    """A gravity 1e-7 too strong shows in phi, in the period and in the acceleration."""
+    run = simulate(sliding(gravity=9.81 * (1 + 1e-6)), 4, 1.0)
+    wrong = dataclasses.replace(run, scene=sliding())
+    assert theory.phi_error(wrong) > 1e-7
+    assert abs(measure.swing_period(wrong) / sliding().period(1.0) - 1) > 1e-9
+    steady = simulate(sliding(gravity=9.81 * (1 + 1e-6)), 2, 0.0)
+    assert abs(measure.acceleration(steady) / sliding().acceleration() - 1) > 1e-10
+
+
+def test_an_order_is_the_slope() -> None:
+    steps = np.array([0.4, 0.2, 0.1])
+    assert convergence.observed_order(steps, 3 * steps**4) == pytest.approx(4, rel=1e-12)
+
+
+def test_takeoff_is_the_first_sample_in_the_air() -> None:
+    fall = exact(hoop(), np.linspace(0, 0.3, 4), 3.0)
+    lifted = dataclasses.replace(fall, lift=np.array([-1e-9, 0.0, 1e-6, 2e-6]))
+    assert measure.takeoff(fall) is None
+    assert measure.takeoff(lifted) == pytest.approx(math.pi - fall.phi[2])
+
+
+@pytest.mark.parametrize("fill", models.FILLS)
+def test_meshes_converge_as_the_square_of_their_resolution(fill: float) -> None:
+    """Halving the edges quarters the error; the next order is within 5 % of it from 64 edges on."""
+    coarse, fine = (np.array(models.mesh_errors(fill, resolution)) for resolution in (64, 128))
+    assert coarse / fine == pytest.approx(4, rel=0.05)
+
+
+def test_a_mesh_of_another_fill_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = mesh.beer
+    monkeypatch.setattr(mesh, "beer", lambda fill, *rest: right(fill * 1.01, *rest))
+    assert min(models.mesh_errors(0.5)) > 1e-3

@@ -1,0 +1,104 @@
+"""Stand-ins for what takes long: made-up rows to validate, videos that are not drawn, studies that are short."""
+
+import inspect
+import pathlib
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+from mjbeer import exact, sliding
+from mjbeer.drawing import video
+from mjbeer.drawing.film import Film
+from mjbeer.exceptions import RenderingError
+from mjbeer.output import files
+from mjbeer.paper.audit import chapters
+from mjbeer.paper.audit.claim import confirmed
+from mjbeer.paper.stories import report
+from mjbeer.paper.stories.story import Story
+from mjbeer.studies.benchmark import curves
+from mjbeer.studies.benchmark import run as benchmark_run
+from mjbeer.studies.benchmark.curves import Curve
+from mjbeer.studies.benchmark.peers import with_scipy
+from mjbeer.studies.check import Row
+from mjbeer.studies.stability import run as stability_run
+from mjbeer.studies.stability.run import tasks
+from mjbeer.studies.study import Task
+from mjbeer.studies.validation import motions
+
+STEPS = tuple(16e-3 / 2**k for k in range(6))
+LARGE = tuple(64e-3 / 2**k for k in range(7))
+LADDERS = {
+    Curve("reduced", "Euler", "timestep"): STEPS,
+    Curve("reduced", "RK4", "timestep"): STEPS,
+    Curve("reduced", "DOP853", "timestep"): LARGE,
+    Curve("reduced", "DOP853", "tolerance"): (1e-6, 1e-9),
+    Curve("equality", "RK4", "timestep"): STEPS,
+    Curve("contact", "DOP853", "timestep"): LARGE[:5],
+    Curve("equality, slide first", "Euler", "timestep"): (2e-3,),
+    Curve("equality, hinge first", "Euler", "timestep"): (2e-3,),
+    Curve("contact, defaults", "Euler", "timestep"): (2e-3,),
+}
+
+
+def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make the benchmark one of short ladders and two peers, timed twice, with a made-up cost of stages."""
+    monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(LADDERS))
+    monkeypatch.setattr(benchmark_run, "installed", lambda: [with_scipy.DOP853, with_scipy.ODEINT])
+    stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
+    monkeypatch.setattr(benchmark_run, "ablate", lambda: stages)
+    monkeypatch.setattr(benchmark_run, "REPEATS", 2)
+
+
+def stability(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make the stability study one of the first task of each group, but for the maps, which take longer."""
+    first: dict[str, Task] = {}
+    for each in tasks(quick=True):
+        first.setdefault(each.group, each)
+    del first["maps"]
+    monkeypatch.setattr(stability_run, "tasks", lambda quick: list(first.values()))
+
+
+def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
+    """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
+    rows = [Row(name, "a stub", 1e-3, "rad", "none", lambda error=error: error) for name, error in errors.items()]
+    monkeypatch.setattr(motions, "rows", lambda: rows)
+    monkeypatch.setattr(chapters, "claims", list)
+
+
+def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
+    """Make the audit one of confirmed equations with an error each, and the bound 1e-3."""
+    claims = [
+        confirmed(name, "a stub", "none", lambda e=error: (1.0 + e, -1.0), 1e-3, "") for name, error in errors.items()
+    ]
+    monkeypatch.setattr(chapters, "claims", lambda: claims)
+
+
+def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:
+    """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far.
+
+    The paper has a single story then, whose plot is a text file too.
+    """
+    calls: list[dict[str, Any]] = []
+
+    def stub(name: str, real: Callable[..., None]) -> Callable[..., None]:
+        signature = inspect.signature(real)
+
+        def instead(*args: object, **kwargs: object) -> None:
+            call = signature.bind(*args, **kwargs).arguments
+            call["path"] = pathlib.Path(call["path"])
+            if call["path"].name == fail_at:
+                raise RenderingError(f"cannot draw {fail_at}")
+            files.write(call["path"], name)
+            calls.append({"function": name, **call})
+
+        return instead
+
+    def tell(path: pathlib.Path) -> None:
+        files.write(path.with_name(f"{path.name}.svg"), "plot")
+
+    film = Film(0.5, lambda: exact(sliding(), [0.0, 0.1], 0.1))
+    monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
+    for name in ("render", "save_frame"):
+        monkeypatch.setattr(video, name, stub(name, getattr(video, name)))
+    return calls

@@ -1,0 +1,152 @@
+"""Accelerations against the corrected equations, forces against the motion of the centre of mass, and hopping."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq, minimize_scalar
+
+from mjbeer import Scene, exact, frozen, hoop, pendulum, sliding
+from mjbeer.paper.audit.claim import miss
+from mjbeer.paper.equations import massive_can
+from mjbeer.paper.equations.frozen import eq_52
+from mjbeer.paper.equations.pendulum import eq_57, eq_58, eq_60, eq_61, printed_61
+from mjbeer.paper.equations.sliding import eq_16
+from mjbeer.paper.letters import Quantities, letters
+from mjbeer.theory.forces import accelerations, rolling_forces
+from tests.support.scenes import METAL, SCENES
+from tests.theory.test_motion import Motion, Witness, mp, mpf
+
+# Sums of a few terms, compared with the largest of them.
+ROUNDING = 5e-15
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
+@pytest.mark.parametrize(("phi", "rate"), [(0.7, 3.0), (-2.0, -11.0)])
+def test_motion_obeys_the_corrected_equations(scene: Scene, phi: float, rate: float) -> None:
+    """(47), (49) and (61) as printed leave a residual that is no rounding."""
+    u2, phi2 = (float(each) for each in accelerations(scene, phi, rate))
+    a, b, sin, cos = scene.can.radius, scene.load.offset, math.sin(phi), math.cos(phi)
+    theta = scene.incline + phi
+    q = Quantities(
+        **letters(scene), s=0, s_dot=0, s_ddot=u2 - b * (cos * phi2 - sin * rate**2), u=0, u_dot=0, u_ddot=u2, phi=phi,
+        phi_dot=rate, phi_ddot=phi2, sin_phi=sin, cos_phi=cos, sin_theta=math.sin(theta), cos_theta=math.cos(theta),
+    )  # fmt: skip
+    if scene.attachment == "frozen":
+        assert u2 == pytest.approx(a * phi2, rel=ROUNDING)
+        whole = q.m + q.can_mass
+        resists = q.axial + q.can_inertia + whole * a**2
+        pull = -whole * q.g * a * q.sin_alpha, q.m * q.g * b * q.sin_theta
+        lever = q.m * a * b
+        assert miss((resists * phi2, -2 * lever * cos * phi2, lever * sin * rate**2, *pull)) < ROUNDING
+        if scene.can.mass == 0:  # then it is (52)
+            assert miss(eq_52(q)) < ROUNDING
+        return
+    for equation in (massive_can.eq_46, massive_can.eq_47, massive_can.eq_48, massive_can.eq_49):
+        assert miss(equation(q)) < ROUNDING
+    assert miss(massive_can.printed_47(q)) > 0.01
+    if scene.can.mass == 0:
+        assert miss(eq_16(q)) < ROUNDING
+    else:
+        assert miss(massive_can.printed_49(q)) > 1e-3
+    if scene.load.inertia == 0:
+        for equation in (eq_57, eq_58, eq_60, eq_61):
+            assert miss(equation(q)) < ROUNDING
+        assert miss(printed_61(q)) > 1e-3
+
+
+def positions(scene: Scene, motion: Motion, time: mpf, guess: mpf) -> tuple[mpf, mpf, mpf]:
+    """Of the axis along the incline, and of the whole's centre of mass along it and away from it."""
+    can, load = scene.can, scene.load
+    m, b, a, can_mass = (mp.mpf(each) for each in (load.mass, load.offset, can.radius, can.mass))
+    phi = motion.state(time, guess)[0]
+    u = a * phi
+    if scene.attachment == "sliding":  # (46), integrated twice from rest
+        rolling, start = can_mass + can.inertia / a**2, b * mp.sin(motion.angle(motion.begin))
+        drive = (m + can_mass) * mp.mpf(scene.gravity) * mp.sin(mp.mpf(scene.incline)) * time**2 / 2
+        u = (drive + m * b * mp.sin(phi) + rolling * start) / (m + rolling)
+    return u, u - m / (m + can_mass) * b * mp.sin(phi), -m / (m + can_mass) * b * mp.cos(phi)  # (38)
+
+
+@pytest.mark.parametrize(
+    "scene", [sliding(), sliding(can=METAL), pendulum(-0.2), frozen(), frozen(-0.1, can=METAL), hoop(0.1)]
+)
+def test_forces_move_the_centre_of_mass(scene: Scene) -> None:
+    """Newton's second law for the whole, its acceleration by fourth-order differences of the witness's motion."""
+    phi0, time = scene.equilibrium() + 1.2, mp.mpf("0.07")
+    motion, h = Witness(scene).swing(phi0), mp.mpf(10) ** -6
+    state = exact(scene, [float(time)], phi0)
+    centre, width = motion.angle(0), motion.advance(0)
+    guess = mp.pi - mp.asin((mp.mpf(state.phi[0]) - centre) / width)
+    weights = {-2: -1, -1: 16, 0: -30, 1: 16, 2: -1}
+    points = {step: positions(scene, motion, time + step * h, guess) for step in weights}
+    # Leaves h^4 omega^4 of the acceleration: 1e-16 at 100 rad/s, more than any of these.
+    axis, along, away = (
+        float(sum(weight * points[step][i] for step, weight in weights.items()) / (12 * h**2)) for i in range(3)
+    )
+    weight = scene.mass * scene.gravity
+    normal = weight * math.cos(scene.incline) + scene.mass * away
+    friction = weight * math.sin(scene.incline) - scene.mass * along
+    scale = weight + scene.mass * (abs(away) + abs(along))
+    assert state.forces.normal[0] == pytest.approx(normal, abs=ROUNDING * scale)
+    assert state.forces.friction[0] == pytest.approx(friction, abs=ROUNDING * scale)
+    u_ddot = float(accelerations(scene, state.phi, state.phi_dot)[0][0])
+    assert u_ddot == pytest.approx(axis, abs=ROUNDING * scale / scene.mass)
+    if scene.attachment == "sliding":  # nothing but friction turns the can
+        turning = scene.can.inertia * axis / scene.can.radius**2
+        assert friction == pytest.approx(turning, abs=ROUNDING * scale)
+
+
+@pytest.mark.parametrize("scene", [frozen(), frozen(0.3, can=METAL), frozen(-0.2)])
+def test_frozen_equilibrium_needs_tan_alpha(scene: Scene) -> None:
+    """Footnote 7."""
+    forces = rolling_forces(scene, np.array([scene.equilibrium()]), np.zeros(1))
+    assert forces.friction / forces.normal == pytest.approx([math.tan(scene.incline)], rel=ROUNDING)
+    assert forces.needed == pytest.approx([abs(math.tan(scene.incline))], rel=ROUNDING)
+
+
+def test_massless_can_with_a_sliding_load_needs_no_friction() -> None:
+    """Footnote 1."""
+    forces = exact(sliding(), np.linspace(0, 1, 9), 1.0).forces
+    assert not forces.friction.any()
+    assert not forces.needed.any()
+
+
+def falling(scene: Scene, phi: float) -> float:
+    """N / mg of a hoop with a load on its rim that fell from rest at the top; phi_dot^2 by energy, by hand.
+
+    With k = M/m: (2k + 4 sin^2(phi/2)) a^2 phi_dot^2 / 2 = g a (1 + cos phi).
+    """
+    k, a, g = scene.can.mass / scene.load.mass, scene.can.radius, scene.gravity
+    rate = math.sqrt(2 * g / a * math.cos(phi / 2) ** 2 / (k / 2 + math.sin(phi / 2) ** 2) / 2)
+    forces = rolling_forces(scene, np.array([phi]), np.array([rate]))
+    return float(forces.normal[0]) / (scene.load.mass * g)
+
+
+def test_littlewood_s_hoop_lifts_off_when_its_load_is_level() -> None:
+    """A.4. For M = 0 the energy above gives phi_dot^2 = (g/a) cot^2(phi/2), and with it N = -m g cos(phi)."""
+    scene = hoop(hoop_mass=1e-9 * 0.2, load_mass=0.2)
+    for phi in (3.0, 2.5, 2.0, 1.6, 1.5, 1.2):
+        assert falling(scene, phi) == pytest.approx(-math.cos(phi), abs=2e-8)  # (M/m) / sin^2(phi/2), times a few
+    assert math.degrees(brentq(lambda phi: falling(scene, phi), 1.0, 3.0)) == pytest.approx(90, abs=1e-6)
+
+
+def test_hoop_hops_only_below_a_thirteenth() -> None:
+    """Pritchett's condition: the least N of the fall is 0 at M/m = 1/13, and grows with M."""
+
+    def least(ratio: float) -> float:
+        scene = hoop(hoop_mass=ratio, load_mass=1.0)
+        found = minimize_scalar(lambda phi: falling(scene, phi), bounds=(0.5, 3), options={"xatol": 1e-9})
+        return float(found.fun)
+
+    # N is linear in M/m there with a slope of some 10, so 1e-6 is 1e-5 of mg; rounding is 1e-15.
+    assert least(1 / 13 - 1e-6) < -1e-7
+    assert least(1 / 13 + 1e-6) > 1e-7
+    assert abs(least(1 / 13)) < ROUNDING
+
+
+def test_forces_where_the_incline_would_have_to_pull() -> None:
+    forces = rolling_forces(hoop(), np.array([math.pi, 0.0]), np.full(2, 10.0 * math.sqrt(9.81 / 0.033)))
+    assert forces.normal[0] < 0 < forces.normal[1]
+    assert forces.needed[0] == math.inf
+    assert math.isfinite(forces.needed[1])

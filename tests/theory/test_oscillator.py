@@ -1,0 +1,185 @@
+"""J, V and what follows from them, against the Lagrangian of the whole system, reduced by SymPy."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+import sympy as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mpmath import MPContext
+
+from mjbeer import Scene, frozen, pendulum, sliding
+from mjbeer.exceptions import NoEquilibriumError
+from tests.support.scenes import METAL, SCENES, scenes
+
+# J is a sum of positive terms and V' a difference of two, each of a few roundings; measured: 1e-15.
+ROUNDING = 3e-15
+# Angles are good to a few eps, and an equilibrium near the steepest incline to the root of that.
+ANGLE = 5e-15
+
+mp = MPContext()
+mp.dps = 30
+mpf = Any  # numbers of that context
+
+PARAMETERS = RADIUS, CAN, CAN_INERTIA, LOAD, OFFSET, INERTIA, GRAVITY, INCLINE = sp.symbols(
+    "a m_can I_can m b I_cm g alpha"
+)
+PHI, RATE = sp.symbols("phi phi_dot")
+
+
+@cache
+def reduced(attachment: str) -> tuple[sp.Expr, sp.Expr]:
+    """J and V' of the paper's coordinates (Fig. 3), the axis eliminated by its own equation or by rolling (50)."""
+    t = sp.Symbol("t")
+    phi, u = (each(t) for each in sp.symbols("phi u", cls=sp.Function))
+    if attachment == "frozen":
+        u = RADIUS * phi
+    along, away = u - OFFSET * sp.sin(phi), -OFFSET * sp.cos(phi)
+    speed = along.diff(t) ** 2 + away.diff(t) ** 2
+    roll = u.diff(t) / RADIUS
+    kinetic = (CAN * u.diff(t) ** 2 + CAN_INERTIA * roll**2 + LOAD * speed + INERTIA * phi.diff(t) ** 2) / 2
+    height = away * sp.cos(INCLINE) - along * sp.sin(INCLINE)
+    lagrangian = kinetic - GRAVITY * (LOAD * height - CAN * u * sp.sin(INCLINE))
+
+    def equation(coordinate: sp.Expr) -> sp.Expr:
+        return lagrangian.diff(coordinate.diff(t)).diff(t) - lagrangian.diff(coordinate)
+
+    motion = equation(phi)
+    if attachment == "sliding":
+        motion = motion.subs(u.diff(t, 2), sp.solve(equation(u), u.diff(t, 2))[0])
+    motion = sp.expand(motion.doit()).subs(phi.diff(t, 2), sp.Symbol("phi_ddot"))
+    motion = motion.subs(phi.diff(t), RATE).subs(phi, PHI)
+    inertia, rest = motion.coeff("phi_ddot"), motion.coeff("phi_ddot", 0)
+    assert sp.simplify(rest.coeff(RATE, 2) - inertia.diff(PHI) / 2) == 0  # so 1/2 J phi_dot^2 + V is conserved
+    return inertia, rest.coeff(RATE, 0)
+
+
+@cache
+def compiled(attachment: str) -> tuple[Callable[..., mpf], ...]:
+    inertia, pull = reduced(attachment)
+    names = {"sin": mp.sin, "cos": mp.cos}
+    forms = (inertia, inertia.diff(PHI), pull, sp.integrate(pull, PHI))
+    return tuple(sp.lambdify([*PARAMETERS, PHI], form, modules=[names]) for form in forms)
+
+
+def values(scene: Scene, phi: float) -> tuple[mpf, ...]:
+    """J, J', V' and V, up to a constant, in 30 digits at the very doubles of the scene."""
+    can, load = scene.can, scene.load
+    numbers = (can.radius, can.mass, can.inertia, load.mass, load.offset, load.inertia, scene.gravity, scene.incline)
+    exact = [mp.mpf(number) for number in (*numbers, phi)]
+    return tuple(form(*exact) for form in compiled(scene.attachment))
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(scenes(), st.floats(-4, 4), st.floats(-5, 5))
+def test_reduction_is_the_lagrangian_s(scene: Scene, phi: float, swing: float) -> None:
+    form = scene.oscillator
+    inertia, steepening, pull, potential = values(scene, phi)
+    torque = form.depth + abs(form.slope)
+    rate = swing * math.sqrt(torque / form.base)
+    assert abs(form.inertia(phi) - inertia) <= ROUNDING * inertia
+    acceleration = -(pull + steepening * mp.mpf(rate) ** 2 / 2) / inertia
+    scale = (torque + (form.chord + form.swing) * rate**2) / inertia
+    assert abs(form.acceleration(phi, rate) - acceleration) <= ROUNDING * scale
+    if form.slope >= 0:
+        assert abs(form.force(phi) + pull) <= ROUNDING * torque
+    # V only ever appears as a difference.
+    fall = values(scene, 0.5)[3] - potential
+    assert abs(form.drop(phi, 0.5) - fall) <= ROUNDING * torque * (1 + abs(phi))
+    assert abs(form.potential(0.5) - form.potential(phi) - fall) <= ROUNDING * torque * (1 + abs(phi))
+
+
+@pytest.mark.parametrize(("scene", "start"), [(frozen(), 1.0), (sliding(), 3.0), (frozen(can=METAL), -2.0)])
+def test_energy_differences_do_not_cancel(scene: Scene, start: float) -> None:
+    """Over 1e-7 rad, drop keeps the digits that V(start) - V(phi) loses."""
+    form, phi = scene.oscillator, start + 1e-7
+    fall = values(scene, start)[3] - values(scene, phi)[3]
+    assert abs(form.drop(phi, start) / fall - 1) < 10 * ROUNDING
+    assert abs((form.potential(start) - form.potential(phi)) / fall - 1) > 1e-11
+
+
+@pytest.mark.parametrize("gap", [1e-4, 1e-8])
+def test_surplus_and_force_keep_their_digits_beside_the_barrier(gap: float) -> None:
+    scene, (form, top) = sliding(), (sliding().oscillator, math.pi)
+    # Released from rest a gap before pi: what is missing to pass is m g b cos(alpha) gap^2 / 2, far below V's eps.
+    before = top - gap
+    exact = mp.pi - mp.mpf(before)  # which a double, and so `form`, cannot know better than to half an ulp of pi
+    pi_in_doubles = ROUNDING / gap
+    missing = values(scene, before)[3] - values(scene, math.pi)[3]
+    assert abs(missing + form.depth * exact**2 / 2) < form.depth * gap**3
+    assert abs(form.surplus(top, before, 0.0) / missing - 1) < pi_in_doubles
+    assert abs(form.force(before) / (-form.depth * mp.sin(exact)) - 1) < pi_in_doubles
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
+def test_equilibrium(scene: Scene) -> None:
+    can, load, alpha = scene.can, scene.load, scene.incline
+    phi = scene.equilibrium()
+    if scene.attachment == "frozen":  # (53), with the can's mass
+        held = (load.mass + can.mass) * can.radius * math.sin(alpha) / (load.mass * load.offset)
+        assert math.sin(alpha + phi) == pytest.approx(held, rel=ANGLE, abs=0)
+    else:  # level with the steady acceleration of footnote 4
+        steady = (load.mass + can.mass) / (load.mass + can.mass + can.inertia / can.radius**2)
+        lag = scene.gravity * math.sin(alpha) * (1 - steady)
+        assert math.tan(phi) == pytest.approx(-lag / (scene.gravity * math.cos(alpha)), rel=ANGLE, abs=1e-16)
+    inertia, _, pull, _ = values(scene, phi)
+    assert abs(pull) < ANGLE * scene.oscillator.depth
+    stiffness = mp.diff(lambda x: values(scene, x)[2], phi)
+    assert abs(scene.frequency() / mp.sqrt(stiffness / inertia) - 1) < ANGLE
+
+
+def test_paper_s_numbers() -> None:
+    slides, frozen_can = sliding(math.radians(10)), frozen(math.radians(10))
+    a, g, alpha = 0.033, 9.81, math.radians(10)
+    assert slides.equilibrium() == 0
+    ten = 24 * math.pi * g * math.cos(alpha) / (9 * math.pi**2 - 32) / a  # (10), divided by a
+    assert slides.frequency() == pytest.approx(math.sqrt(ten), rel=ANGLE)
+    assert math.sqrt(ten) == pytest.approx(math.sqrt(1.33 * g * math.cos(alpha) / a), rel=2e-3)
+    phi, b = frozen_can.equilibrium(), 4 * a / (3 * math.pi)
+    assert math.sin(alpha + phi) == pytest.approx(3 * math.pi / 4 * math.sin(alpha), rel=ANGLE)  # (53)
+    corrected, printed = (
+        math.sqrt(g * b * math.cos(alpha + phi) / (1.5 * a**2 - factor * a * b * math.cos(phi))) for factor in (2, 1)
+    )
+    assert frozen_can.frequency() == pytest.approx(corrected, rel=ANGLE)  # (55), corrected
+    assert (corrected, printed) == pytest.approx((13.04, 10.28), abs=0.005)
+    assert 1 - printed / corrected == pytest.approx(0.21, abs=0.005)
+
+
+def test_steepest_incline() -> None:
+    limit = frozen().largest_incline()
+    assert limit == pytest.approx(math.asin(4 / (3 * math.pi)), rel=ANGLE)
+    assert math.degrees(limit) == pytest.approx(25.1, abs=0.05)
+    assert sliding().largest_incline() == math.pi / 2
+    for sign in (1, -1):
+        # There sin(alpha + phi) is 1, and 1 - x^2/2 tells angles apart only to the root of the distance.
+        assert frozen(sign * limit * (1 - 1e-8)).equilibrium() == pytest.approx(
+            sign * (math.pi / 2 - limit), abs=2 * math.sqrt(1e-8)
+        )
+        for ask in (Scene.equilibrium, Scene.frequency, Scene.separatrix, lambda scene: scene.period(0.1)):
+            with pytest.raises(NoEquilibriumError, match=r"incline of -?26 degrees: .* only up to 25\.1 degrees"):
+                ask(frozen(sign * math.radians(26)))
+
+
+@pytest.mark.parametrize("scene", [sliding(fill=1.0), frozen(fill=1.0), sliding(gravity=0.0), frozen(gravity=0.0)])
+def test_nothing_restores(scene: Scene) -> None:
+    with pytest.raises(NoEquilibriumError, match=r"balanced about the axis \(offset 0 m\) or gravity is 0 m/s\^2"):
+        scene.equilibrium()
+
+
+@pytest.mark.parametrize("scene", [frozen(), frozen(0.01, can=METAL), sliding(can=METAL), pendulum(0.4)])
+def test_separatrix_and_mirror(scene: Scene) -> None:
+    low, high = scene.separatrix()
+    top = mp.findroot(lambda x: values(scene, x)[2], high)
+    assert abs(high - top) < ANGLE
+    if scene.attachment == "sliding":
+        assert abs(low - (top - 2 * mp.pi)) < ANGLE
+    else:
+        height = values(scene, top)[3]
+        assert abs(low - mp.findroot(lambda x: values(scene, x)[3] - height, low)) < ANGLE
+    behind = replace(scene, incline=-scene.incline)
+    assert behind.separatrix() == (-high, -low)
+    assert (behind.equilibrium(), behind.frequency()) == (-scene.equilibrium(), scene.frequency())

@@ -1,0 +1,223 @@
+"""What a trajectory says about itself: nothing against an exact one, and the truth about one that was tampered with."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, sliding
+from mjbeer.theory.conserved import axis_drift, implied_error, swing_drift
+from mjbeer.theory.diagnostics import ERROR, LIFT, SLIP, turning_times
+from tests.support.scenes import METAL, SCENES
+
+# After 2 s the can as a whole has some thousand times the energy of the swing, to which a drift is compared.
+DRIFT = 1e-11
+ROUNDING = 1e-14
+TIME = np.linspace(0, 2, 401)
+
+
+@pytest.mark.parametrize("scene", [sliding(can=METAL), frozen(-0.2), pendulum(), hoop(0.1)])
+def test_energy_of_any_state(scene: Scene) -> None:
+    """Of two bodies whose positions and speeds are written down in the upright frame, not in the incline's."""
+    can, load, alpha = scene.can, scene.load, scene.incline
+    downhill, off = np.array([math.cos(alpha), -math.sin(alpha)]), np.array([math.sin(alpha), math.cos(alpha)])
+    axis, axis_dot = 0.3 * downhill + 0.01 * off, 1.1 * downhill + 0.4 * off
+    # theta = alpha + phi is the load's angle to the plumb line, positive uphill (Fig. 3)
+    theta = alpha + 0.7
+    position = axis - load.offset * np.array([math.sin(theta), math.cos(theta)])
+    speed = axis_dot - load.offset * -3.0 * np.array([math.cos(theta), -math.sin(theta)])
+    kinetic = can.mass * axis_dot @ axis_dot + load.mass * speed @ speed + can.inertia * 5.0**2 + load.inertia * 3.0**2
+    potential = scene.gravity * (can.mass * axis[1] + load.mass * position[1])
+    state = replace(
+        exact(scene, [0.0], 0.7, -3.0),
+        u=np.array([0.3]),
+        u_dot=np.array([1.1]),
+        phi_dot=np.array([-3.0]),
+        roll_dot=np.array([5.0]),
+        lift=np.array([0.01]),
+        lift_dot=np.array([0.4]),
+    )
+    assert state.energy == pytest.approx([kinetic / 2 + potential], rel=ROUNDING)
+
+
+STARTS = [(0.8, 0.0), (-0.5, 3.0), (0.1, 0.0)]
+
+
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
+@pytest.mark.parametrize(("phi0", "phi_dot0"), STARTS)
+def test_exact_motion_is_trusted(scene: Scene, phi0: float, phi_dot0: float) -> None:
+    motion = exact(scene, TIME, phi0, phi_dot0)
+    assert motion.energy_drift < DRIFT
+    assert np.abs(motion.slip).max() <= 2 * ROUNDING * np.abs(motion.u).max()
+    assert motion.warnings == ()
+    assert motion.trusted
+    assert motion.rolls_until() == math.inf
+
+
+@pytest.mark.parametrize("scene", [sliding(fill=1.0), sliding(fill=1 - 1e-9), frozen(fill=1.0), sliding(gravity=0.0)])
+@pytest.mark.parametrize("phi_dot0", [0.0, 1e-9, 1.0])
+def test_exact_motion_without_a_swing_is_trusted(scene: Scene, phi_dot0: float) -> None:
+    motion = exact(scene, np.linspace(0, 100, 11), 0.3, phi_dot0)
+    assert implied_error(motion) < ROUNDING * 100**2
+    assert motion.trusted or scene.gravity == 0  # without weight a load that circles lifts the can
+
+
+def moved(motion: Trajectory, along: np.ndarray, up: np.ndarray | float = 0.0) -> Trajectory:
+    """Down the incline by rolling, and away from it."""
+    rolled = along / motion.scene.can.radius
+    return replace(motion, u=motion.u + along, roll=motion.roll + rolled, lift=motion.lift + up)
+
+
+def gaining(motion: Trajectory, error: float) -> Trajectory:
+    """Swinging ever faster or slower, by as much as takes phi off by an error over its way."""
+    form = motion.scene.oscillator
+    swing = np.max(form.inertia(motion.phi) * motion.phi_dot**2) / 2
+    way, turned = np.trapezoid(np.abs(motion.phi_dot), TIME), np.abs(motion.phi - motion.phi[0]).max()
+    gained = swing * error * max(1, turned) / way * TIME / TIME[-1]
+    kinetic = form.inertia(motion.phi) * motion.phi_dot**2 / 2 + gained
+    rate = np.sqrt(2 * np.maximum(kinetic, 0) / form.inertia(motion.phi))
+    return replace(motion, phi_dot=np.copysign(rate, motion.phi_dot))
+
+
+def lifted(motion: Trajectory, radii: float) -> Trajectory:
+    """Along the horizontal, so that no energy is gained."""
+    up = radii * motion.scene.can.radius * TIME / TIME[-1]
+    return moved(motion, up / math.tan(motion.scene.incline), up)
+
+
+def slipped(motion: Trajectory, radii: float) -> Trajectory:
+    return replace(motion, roll=motion.roll + radii * TIME / TIME[-1])
+
+
+@pytest.mark.parametrize("scene", [sliding(can=METAL), frozen()])
+@pytest.mark.parametrize(
+    ("tamper", "trusted", "warning"),
+    [
+        (gaining, ERROR, "energy or momentum drift like an error of 0.012 rad of phi or u/a (trusted up to 0.01)"),
+        (slipped, SLIP, "the can slips by 0.0012 radii (trusted up to 0.001)"),
+        (lifted, LIFT, "the can parts from the incline, or sinks in, by 0.0012 radii (trusted up to 0.001)"),
+    ],
+)
+def test_tampering_is_noticed(scene: Scene, tamper: Callable, trusted: float, warning: str) -> None:
+    """Just beyond what is trusted there is one warning, just within it there is none, and so for the other sign."""
+    motion = exact(scene, TIME, 0.8)
+    for sign in (1, -1):
+        noticed = tamper(motion, sign * 1.2 * trusted)
+        assert [warning in each for each in noticed.warnings] == [True]
+        assert not noticed.trusted
+        assert tamper(motion, sign * 0.8 * trusted).trusted
+
+
+@pytest.mark.parametrize("scene", [sliding(), sliding(can=METAL), pendulum()])
+def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
+    """An axis that runs ahead steadily breaks no energy of the swing, and does not slip."""
+    motion = exact(scene, TIME, 0.8)
+    way = np.abs(motion.u - motion.u[0]).max()
+    for share, trusted in [(1.2, False), (-1.2, False), (0.8, True)]:
+        ahead = moved(motion, share * ERROR * way * (TIME / TIME[-1]) ** 2)
+        assert swing_drift(ahead) == swing_drift(motion)
+        assert ahead.trusted == trusted
+        assert axis_drift(ahead)[-1] == pytest.approx(share * ERROR * way, rel=1e-9)
+
+
+def test_the_swing_s_energy_is_that_of_theory() -> None:
+    """Half of the kinetic energy, at the bottom of the swing, is half of it."""
+    scene = frozen()
+    bottom = scene.equilibrium()
+    fall = exact(scene, [0.0, scene.period(0.5) / 4], bottom + 0.5)
+    slower = replace(fall, phi=np.array([bottom + 0.5, bottom]), phi_dot=np.array([0.0, fast(scene) / math.sqrt(2)]))
+    # Relative to its own largest kinetic energy, the missing half is as much again.
+    assert swing_drift(slower) == pytest.approx(1, rel=1e-12)
+
+
+def fast(scene: Scene) -> float:
+    """phi_dot at the bottom, let go 0.5 rad above it."""
+    form, bottom = scene.oscillator, scene.equilibrium()
+    return math.sqrt(2 * form.drop(bottom, bottom + 0.5) / form.inertia(bottom))
+
+
+@pytest.mark.parametrize(
+    ("opinion", "warning"),
+    [
+        (1.2 * ERROR, "phi and u/a are off by 0.012 rad (trusted up to 0.01), as a run at half the timestep shows"),
+        (math.inf, "a run at half the timestep diverges: take a much smaller timestep or a better integrator"),
+        (math.nan, "a run at half the timestep diverges: take a much smaller timestep or a better integrator"),
+    ],
+)
+def test_a_second_run_that_differs_is_told(opinion: float, warning: str) -> None:
+    motion = replace(exact(frozen(), TIME, 0.8), timestep=1e-3)
+    assert replace(motion, second_opinion=lambda: opinion).warnings == (warning,)
+    assert replace(motion, second_opinion=lambda: 0.8 * ERROR).trusted
+
+
+def test_slip_is_counted_from_the_start() -> None:
+    motion = exact(frozen(), TIME, 0.8)
+    motion = replace(motion, u=motion.u + 0.01, roll=motion.roll - 3.0 + 0.1 * TIME)
+    assert motion.slip == pytest.approx(-0.033 * 0.1 * TIME, abs=1e-15)
+
+
+def test_frozen_can_from_the_top_leaves_the_incline() -> None:
+    motion = exact(frozen(), TIME, math.pi)
+    (warning,) = motion.warnings
+    until = motion.rolls_until()
+    assert (
+        warning
+        == f"from t = {until:.6g} s the incline would have to pull at the can (N < 0): a real one leaves it there"
+    )
+    # N crosses zero there, up to the straight line's error between two samples, h^2 N'' / 8 N'.
+    crossing = brentq(lambda time: exact(frozen(), [time], math.pi).forces.normal[0], until - 0.01, until + 0.01)
+    around = crossing + np.linspace(-5e-3, 5e-3, 101)
+    steepness = np.gradient(exact(frozen(), around, math.pi).forces.normal, around)
+    bend = np.abs(np.gradient(steepness, around)).max() / np.abs(steepness).min()
+    for samples in (401, 4001):
+        time = np.linspace(0, 2, samples)
+        assert abs(exact(frozen(), time, math.pi).rolls_until() - crossing) < time[1] ** 2 / 8 * bend
+    assert replace(motion, rolling="contact").warnings == ()  # a contact can part, and its lift tells
+
+
+@pytest.mark.parametrize("scene", [frozen(), frozen(-0.1)])
+def test_friction_that_holds(scene: Scene) -> None:
+    """At the frozen equilibrium tan(alpha) is needed from the start (footnote 7), elsewhere from when it runs out."""
+    rest = exact(scene, TIME, scene.equilibrium())
+    assert rest.rolls_until(1.001 * abs(math.tan(scene.incline))) == math.inf
+    assert rest.rolls_until(0.999 * abs(math.tan(scene.incline))) == 0
+    motion = exact(scene, TIME, 0.0)
+    most = float(motion.forces.needed.max())
+    until = motion.rolls_until(0.9 * most)
+    assert 0 < until < 2
+    first = np.flatnonzero(motion.forces.needed > 0.9 * most)[0]
+    assert TIME[first - 1] <= until <= TIME[first]
+    assert motion.rolls_until(1.01 * most) == math.inf
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum(), frozen(-0.2, can=METAL)])
+def test_frequency_is_that_of_the_period(scene: Scene) -> None:
+    """Of fourth order in the sampling: the cubic between two samples has an error of h^4 phi_ddddot / 384."""
+    amplitude = 0.9
+    period = scene.period(amplitude)
+    errors = []
+    for samples in (24, 48, 96):
+        # An awkward number of samples a period, so that turning points do not fall on them.
+        time = np.arange(0, 20.3 * period, period / (samples + 0.37))
+        measured = exact(scene, time, scene.equilibrium() + amplitude).frequency()
+        errors.append(abs(measured * period / (2 * math.pi) - 1))
+    for error, samples in zip(errors, (24, 48, 96), strict=True):
+        step = 2 * math.pi / samples
+        assert error < step**4 / 384 + ROUNDING
+
+
+def test_turning_times() -> None:
+    scene = sliding()
+    period = scene.period(1.0)
+    motion = exact(scene, np.arange(0, 3.2 * period, period / 1000.3), 1.0)
+    assert turning_times(motion)[-6:] == pytest.approx(np.arange(1, 7) * period / 2, rel=1e-9)
+
+
+@pytest.mark.parametrize(("scene", "phi0", "phi_dot0"), [(sliding(), 0.5, 0.0), (sliding(), 0.0, 60.0)])
+def test_no_frequency_without_a_swing(scene: Scene, phi0: float, phi_dot0: float) -> None:
+    motion = exact(scene, np.linspace(0, 0.3, 100), phi0, phi_dot0)
+    with pytest.raises(MjbeerError, match=r"no frequency: the motion turns \d times in 0\.3 s, 3 are needed"):
+        motion.frequency()
