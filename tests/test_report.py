@@ -9,7 +9,6 @@ import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import MjbeerError
-from mjbeer.theory.measure import takeoff
 from tests.support import stubs
 
 FILMS = ("sliding", "frozen", "pendulum", "hoop")
@@ -100,7 +99,7 @@ def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
     }
     assert all(run.trusted for name, run in runs.items() if name != "hoop")
     # The hoop is there to leave the incline, which costs it some slip and energy when it lands.
-    assert takeoff(runs["hoop"]) is not None
+    assert runs["hoop"].takeoff() is not None
 
 
 def test_a_failed_check_is_in_the_report_and_in_its_exit_status(

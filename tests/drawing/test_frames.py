@@ -44,7 +44,16 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
     times, rest = np.arange(len(phis), dtype=float), np.zeros(len(phis))
     u = scene.can.radius * np.array(rolls)
     still = Trajectory(
-        scene, "exact", "exact", None, times, u, np.array(phis), rest, rest, np.array(rolls), rest, rest, rest
+        scene=scene,
+        time=times,
+        u=u,
+        phi=np.array(phis),
+        u_dot=rest,
+        phi_dot=rest,
+        roll=np.array(rolls),
+        roll_dot=rest,
+        lift=rest,
+        lift_dot=rest,
     )
     drawn = frames.draw(still, times, 640, 360)
     return [Seen(*each) for each in zip(drawn, [scene] * len(phis), zip(u, phis, rolls, strict=True), strict=True)]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model.build import specify
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting
 from mjbeer.model.state import read, start
 from mjbeer.theory.forces import accelerations
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
@@ -26,7 +26,7 @@ def forward(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> 
     data = mujoco.MjData(model)
     data.qpos, data.qvel = np.split(state, 2)
     mujoco.mj_forward(model, data)
-    moved = read(model, scene, np.concatenate([data.qvel, data.qacc])[None])
+    moved = read(model, scene, np.concatenate([data.qvel, data.qacc])[None], times=np.zeros(1))
     return float(moved.u_dot[0]), float(moved.phi_dot[0])
 
 
@@ -79,7 +79,7 @@ def test_constrained_models_have_the_scene_s_mass_matrix(name: str, rolling: str
     data.qpos, data.qvel = np.split(state, 2)
     model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     mujoco.mj_forward(model, data)
-    moved = read(model, scene, state[None])
+    moved = read(model, scene, state[None], times=np.zeros(1))
     can, load = scene.can, scene.load
     along = moved.u_dot - load.offset * np.cos(moved.phi) * moved.phi_dot
     across = moved.lift_dot + load.offset * np.sin(moved.phi) * moved.phi_dot
@@ -106,7 +106,7 @@ def test_contact_has_two_geoms_and_one_pair() -> None:
 @pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
 def test_constraints_are_as_stiff_as_asked_for(rolling: str, integrator: str) -> None:
     """MuJoCo clamps a time constant under two timesteps unless refsafe is off."""
-    model = specify(frozen(), rolling, integrator=integrator, timestep=2e-3).compile()
+    model = specify(frozen(), Setting(rolling, integrator, timestep=2e-3)).compile()
     solref = model.eq_solref[0] if rolling == "equality" else model.pair_solref[0]
     stiff = 1e-3 if rolling == "equality" else 2e-3
     assert solref[0] == (stiff if integrator in ("RK4", "discrete", "DOP853") else 4e-3)
@@ -127,7 +127,7 @@ def test_the_equality_as_compiled_is_soft() -> None:
     """What the test above would say of solimp 0.9999: off by 1e-4 of the force."""
     scene = frozen()
     expected = accelerations(scene, np.float64(0.7), np.float64(2.0))[1]
-    soft = forward(specify(scene, "equality").compile(), scene, 0.7, 2.0)[1]
+    soft = forward(specify(scene, Setting("equality")).compile(), scene, 0.7, 2.0)[1]
     assert 1e-5 < abs(soft / expected - 1) < 1e-3
 
 

@@ -17,7 +17,7 @@ from mjbeer.model import state
 from mjbeer.model.build import specify
 from mjbeer.model.engine import library
 from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS
+from mjbeer.model.setting import INTEGRATORS, Setting
 from tests.support.scenes import METAL, SCENES
 
 START = 1.0, 0.5
@@ -70,7 +70,7 @@ def step(model: mujoco.MjModel, duration: float) -> tuple[np.ndarray, np.ndarray
 
 def assert_moves_exactly(scene: Scene, model: mujoco.MjModel, tolerance: float, duration: float = 1.0) -> None:
     times, states = step(model, duration)
-    motion, truth = state.read(model, scene, states), exact(scene, times, *START)
+    motion, truth = state.read(model, scene, states, times), exact(scene, times, *START)
     assert np.abs(motion.phi - truth.phi).max() < tolerance
     assert np.abs(motion.u - truth.u).max() < tolerance * scene.can.radius
 
@@ -96,7 +96,7 @@ def test_an_export_is_the_model_and_moves_exactly(
     export(scene, path, *START, rolling, timestep=TIMESTEP, friction=FRICTION)
     assert not re.search(r"\b(file|\w+dir)=|<include", path.read_text())
     model = load(path, monkeypatch)
-    built = specify(scene, rolling, True, timestep=TIMESTEP, friction=FRICTION).compile()
+    built = specify(scene, Setting(rolling, timestep=TIMESTEP, friction=FRICTION), visuals=True).compile()
     assert_same_physics(model, built)
     assert [model.key(i).name for i in range(model.nkey)] == ["start"]
     start = state.start(built, scene, *START)
@@ -116,7 +116,7 @@ def test_cans_of_every_size(
     path = tmp_path / "model.xml"
     export(scene, path, *START, rolling, timestep=TIMESTEP * pace, friction=FRICTION)
     model = load(path, monkeypatch)
-    built = specify(scene, rolling, True, timestep=TIMESTEP * pace, friction=FRICTION).compile()
+    built = specify(scene, Setting(rolling, timestep=TIMESTEP * pace, friction=FRICTION), visuals=True).compile()
     assert_same_physics(model, built)
     assert_moves_exactly(scene, model, TOLERANCE[rolling], 0.3 * pace)
 
@@ -130,7 +130,7 @@ def test_what_was_asked_for_arrives(integrator: str, incline: float, tmp_path: p
         for rolling in TOLERANCE:
             export(scene, tmp_path / "model.xml", 2.0, -3.0, rolling, integrator, 7.3e-4, 0.37)
             model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
-            assert model.opt.integrator == INTEGRATORS[integrator]
+            assert model.opt.integrator == getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
             assert model.opt.timestep == 7.3e-4
             assert np.linalg.norm(model.opt.gravity) == scene.gravity
             assert all(model.pair_friction[:, 0] == 0.37)

@@ -14,7 +14,6 @@ from mjbeer.output import plots
 from mjbeer.paper.scenarios import footnote_scene
 from mjbeer.paper.stories import report
 from mjbeer.paper.stories.frozen import _held, _printed
-from mjbeer.theory.measure import takeoff
 from tests.support import stubs
 
 STORIES = {story.name: story for story in report.stories()}
@@ -61,7 +60,7 @@ def test_films_show_what_they_say(name: str) -> None:
     elif name == "friction":
         assert np.abs(run.slip).max() > run.scene.can.radius
     else:
-        assert takeoff(run) is not None
+        assert run.takeoff() is not None
 
 
 def test_footnote_7_holds_just_above_and_slides_just_below() -> None:

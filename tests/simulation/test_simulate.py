@@ -4,18 +4,17 @@ import math
 import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, Trajectory, build, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, UnsupportedError
-from mjbeer.model.setting import INTEGRATORS
-from mjbeer.simulation.simulate import follow
-from mjbeer.theory.exact import relative_phi_error
-from mjbeer.theory.measure import farthest
+from mjbeer.model.build import compile_model
+from mjbeer.model.setting import INTEGRATORS, Setting
+from mjbeer.theory.exact import phi_error
+from mjbeer.theory.measure import distance
 from tests.support.scenes import SCENES
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
@@ -157,34 +156,35 @@ def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(roll
     scene, steps = SCENES["frozen, metal can"], {"Euler": 1e-4, "RK4": 4e-3, "DOP853": 3e-2}
     run = simulate(scene, 1.2, 1.0, rolling=rolling, integrator=integrator, timestep=steps[integrator])
     truth = exact(scene, run.time, 1.0)
-    error = max(farthest(run.phi, truth.phi), farthest(run.u / scene.can.radius, truth.u / scene.can.radius))
+    error = distance(run, truth, scene.can.radius)
     assert run.error_estimate is not None
     assert 1.2 * error < run.error_estimate < 2.6 * error
 
 
 def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    built: list[float] = []
+    timesteps: list[float] = []
 
-    def count(*arguments: Any, **settings: Any) -> mujoco.MjModel:
-        built.append(settings["timestep"])
-        return build(*arguments, **settings)
+    def count(scene: Scene, setting: Setting) -> mujoco.MjModel:
+        timesteps.append(setting.timestep)
+        return compile_model(scene, setting)
 
-    monkeypatch.setattr("mjbeer.simulation.simulate.build", count)
+    monkeypatch.setattr("mjbeer.simulation.prepare.compile_model", count)
     run = simulate(frozen(), 0.1, 1.0)
-    assert built == [1e-3]
+    assert timesteps == [1e-3]
     assert run.trusted
     assert run.error_estimate == run.error_estimate
-    assert built == [1e-3, 5e-4]
+    assert timesteps == [1e-3, 5e-4]
 
 
-def test_a_second_run_that_diverges_is_an_infinite_error() -> None:
-    def make(integrator: str, timestep: float) -> mujoco.MjModel:
-        model = build(frozen(), integrator=integrator, timestep=timestep)
-        if timestep < 1e-3:
+def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def compile_heavy(scene: Scene, setting: Setting) -> mujoco.MjModel:
+        model = compile_model(scene, setting)
+        if setting.timestep < 1e-3:
             model.opt.gravity[:] = 1e300
         return model
 
-    run = follow(make, frozen(), 0.1, 1.0)
+    monkeypatch.setattr("mjbeer.simulation.prepare.compile_model", compile_heavy)
+    run = simulate(frozen(), 0.1, 1.0)
     assert run.error_estimate == math.inf
     assert run.warnings == ("a run at half the timestep diverges: take a much smaller timestep or a better integrator",)
 
@@ -198,5 +198,5 @@ def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: floa
     """
     slow = math.sqrt(9.81 / gravity)
     run = simulate(scene(gravity=gravity), 2 * slow, 1.0, rolling="contact", timestep=1e-3 * slow)
-    assert relative_phi_error(run) < 5e-7
+    assert phi_error(run, relative=True) < 5e-7
     assert np.abs(run.slip).max() < 1e-6 * run.scene.can.radius

@@ -2,15 +2,18 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, sliding
+from mjbeer.model.setting import Setting
+from mjbeer.simulation.run import Run
 from mjbeer.theory.conserved import axis_drift, implied_error, swing_drift
-from mjbeer.theory.diagnostics import ERROR, LIFT, SLIP, turning_times
+from mjbeer.theory.measure import turning_times
+from mjbeer.theory.trajectory import ERROR, LIFT, SLIP
 from tests.support.scenes import METAL, SCENES
 
 # After 2 s the can as a whole has some thousand times the energy of the swing, to which a drift is compared.
@@ -61,7 +64,7 @@ def test_exact_motion_is_trusted(scene: Scene, phi0: float, phi_dot0: float) -> 
 @pytest.mark.parametrize("phi_dot0", [0.0, 1e-9, 1.0])
 def test_exact_motion_without_a_swing_is_trusted(scene: Scene, phi_dot0: float) -> None:
     motion = exact(scene, np.linspace(0, 100, 11), 0.3, phi_dot0)
-    assert implied_error(motion) < ROUNDING * 100**2
+    assert implied_error(motion.scene, motion) < ROUNDING * 100**2
     assert motion.trusted or scene.gravity == 0  # without weight a load that circles lifts the can
 
 
@@ -118,9 +121,9 @@ def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
     way = np.abs(motion.u - motion.u[0]).max()
     for share, trusted in [(1.2, False), (-1.2, False), (0.8, True)]:
         ahead = moved(motion, share * ERROR * way * (TIME / TIME[-1]) ** 2)
-        assert swing_drift(ahead) == swing_drift(motion)
+        assert swing_drift(scene, ahead) == swing_drift(scene, motion)
         assert ahead.trusted == trusted
-        assert axis_drift(ahead)[-1] == pytest.approx(share * ERROR * way, rel=1e-9)
+        assert axis_drift(scene, ahead)[-1] == pytest.approx(share * ERROR * way, rel=1e-9)
 
 
 def test_the_swing_s_energy_is_that_of_theory() -> None:
@@ -130,7 +133,7 @@ def test_the_swing_s_energy_is_that_of_theory() -> None:
     fall = exact(scene, [0.0, scene.period(0.5) / 4], bottom + 0.5)
     slower = replace(fall, phi=np.array([bottom + 0.5, bottom]), phi_dot=np.array([0.0, fast(scene) / math.sqrt(2)]))
     # Relative to its own largest kinetic energy, the missing half is as much again.
-    assert swing_drift(slower) == pytest.approx(1, rel=1e-12)
+    assert swing_drift(scene, slower) == pytest.approx(1, rel=1e-12)
 
 
 def fast(scene: Scene) -> float:
@@ -140,17 +143,23 @@ def fast(scene: Scene) -> float:
 
 
 @pytest.mark.parametrize(
-    ("opinion", "warning"),
+    ("estimate", "warning"),
     [
         (1.2 * ERROR, "phi and u/a are off by 0.012 rad (trusted up to 0.01), as a run at half the timestep shows"),
         (math.inf, "a run at half the timestep diverges: take a much smaller timestep or a better integrator"),
         (math.nan, "a run at half the timestep diverges: take a much smaller timestep or a better integrator"),
     ],
 )
-def test_a_second_run_that_differs_is_told(opinion: float, warning: str) -> None:
-    motion = replace(exact(frozen(), TIME, 0.8), timestep=1e-3)
-    assert replace(motion, second_opinion=lambda: opinion).warnings == (warning,)
-    assert replace(motion, second_opinion=lambda: 0.8 * ERROR).trusted
+def test_a_second_run_that_differs_is_a_warning(estimate: float, warning: str) -> None:
+    motion = exact(frozen(), TIME, 0.8)
+    assert simulated(motion, Setting(), estimate).warnings == (warning,)
+    assert simulated(motion, Setting(), 0.8 * ERROR).trusted
+
+
+def simulated(motion: Trajectory, setting: Setting, estimate: float) -> Run:
+    """A motion as if it had been simulated in a setting."""
+    values = {field.name: getattr(motion, field.name) for field in fields(motion)}
+    return Run(**values, phi0=0.8, phi_dot0=0.0, setting=setting, estimate=estimate)
 
 
 def test_slip_is_counted_from_the_start() -> None:
@@ -175,7 +184,7 @@ def test_frozen_can_from_the_top_leaves_the_incline() -> None:
     for samples in (401, 4001):
         time = np.linspace(0, 2, samples)
         assert abs(exact(frozen(), time, math.pi).rolls_until() - crossing) < time[1] ** 2 / 8 * bend
-    assert replace(motion, rolling="contact").warnings == ()  # a contact can part, and its lift tells
+    assert simulated(motion, Setting("contact"), 0.0).warnings == ()  # a contact can part, and its lift tells
 
 
 @pytest.mark.parametrize("scene", [frozen(), frozen(-0.1)])
@@ -213,7 +222,7 @@ def test_turning_times() -> None:
     scene = sliding()
     period = scene.period(1.0)
     motion = exact(scene, np.arange(0, 3.2 * period, period / 1000.3), 1.0)
-    assert turning_times(motion)[-6:] == pytest.approx(np.arange(1, 7) * period / 2, rel=1e-9)
+    assert turning_times(motion, scene.oscillator)[-6:] == pytest.approx(np.arange(1, 7) * period / 2, rel=1e-9)
 
 
 @pytest.mark.parametrize(("scene", "phi0", "phi_dot0"), [(sliding(), 0.5, 0.0), (sliding(), 0.0, 60.0)])

@@ -8,6 +8,7 @@ import tyro
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
+from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.load import BEER
 from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, pendulum, sliding
@@ -15,9 +16,7 @@ from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, pendulum, sliding
 if TYPE_CHECKING:
     from mjbeer.theory.trajectory import Trajectory
 
-Rolling = Literal["reduced", "equality", "contact"]
 CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop"]
-Integrator = Literal["Euler", "implicit", "implicitfast", "discrete", "RK4", "DOP853"]
 
 
 def radians(name: str, value: float, unit: str = "degrees") -> float:

@@ -2,9 +2,9 @@
 
 import pathlib
 from dataclasses import dataclass
-from typing import Literal
 
-from mjbeer.cli.arguments import AnyScene, Rolling, Run, radians
+from mjbeer.cli.arguments import AnyScene, Run, radians
+from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 
@@ -76,7 +76,7 @@ class Export:
     """Start rate of phi [degrees/s]."""
     rolling: Rolling = "reduced"
     """What makes the can roll; the reduced model of a frozen load turns on the spot."""
-    integrator: Literal["Euler", "implicit", "implicitfast", "discrete", "RK4"] = "RK4"
+    integrator: MujocoIntegrator = "RK4"
     """Integrator."""
     timestep: float = 1e-3
     """Timestep [s]."""

@@ -6,7 +6,8 @@ from typing import Annotated
 
 import tyro
 
-from mjbeer.cli.arguments import CaseName, Rolling
+from mjbeer.cli.arguments import CaseName
+from mjbeer.model.setting import Rolling
 from mjbeer.output import terminal
 from mjbeer.output.exclusive import claimed
 from mjbeer.output.terminal import STDERR, say, show

@@ -10,6 +10,7 @@ import mujoco
 
 from mjbeer.model import appearance
 from mjbeer.model.build import specify
+from mjbeer.model.setting import Setting
 from mjbeer.model.state import places
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
@@ -25,7 +26,7 @@ def display_model(scene: Scene, reach: tuple[float, float] = (0.0, 0.0), aspect:
       TemplateError: if a template is missing or has been tampered with.
     """
     drawn = _drawn(scene)
-    spec = specify(drawn, "contact", visuals=True)
+    spec = specify(drawn, Setting("contact"), visuals=True)
     appearance.extend(spec, drawn, reach[0] * scale(scene), reach[1] * scale(scene), aspect)
     return spec.compile()
 

@@ -4,13 +4,20 @@ import math
 
 import mujoco
 
-from mjbeer import require
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import appearance, constrained, reduced, templates
 from mjbeer.model.inertia import mass_unit
-from mjbeer.model.setting import DOP853, FRICTION, INTEGRATORS, ROLLINGS
+from mjbeer.model.setting import DOP853, FRICTION, TUNED, Setting, Softness
 from mjbeer.theory.scene import Scene
 
+_INTEGRATORS = {
+    "Euler": mujoco.mjtIntegrator.mjINT_EULER,
+    "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
+    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
+    "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
+    "RK4": mujoco.mjtIntegrator.mjINT_RK4,
+    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # it evaluates the model's forward dynamics, and steps by itself
+}
 _DISABLE = mujoco.mjtDisableBit
 # What no scene needs. Autoreset must go: it would hide a divergence by starting again.
 _UNUSED = (
@@ -30,13 +37,14 @@ def build(
     integrator: str = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
+    softness: Softness = TUNED,
 ) -> mujoco.MjModel:
     """A compiled MuJoCo model of a scene.
 
     `rolling` is "reduced" (no constraint: the can's rotation is folded into the coordinates), "equality"
     (a joint equality u = a roll) or "contact" (a cylinder on a plane, with a `friction` coefficient).
-    The constraints of the last two are tuned to `integrator` and `timestep` [s]. Without `visuals` the
-    model has no geoms but those of a contact, and the stages that it does not need are disabled.
+    The constraints of the last two are tuned to `integrator` and `timestep` [s], but for what `softness` gives.
+    Without `visuals` the model has no geoms but those of a contact, and the stages that it does not need are disabled.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
     the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. Where the scene is so
@@ -48,32 +56,28 @@ def build(
       UnsupportedError: if MuJoCo has no such model, as for a massless can around a sliding load.
       TemplateError: if a template is missing or has been tampered with.
     """
-    spec = specify(scene, rolling, visuals, integrator, timestep, friction)
+    setting = Setting(rolling, integrator, timestep, friction=friction, softness=softness)
+    return compile_model(scene, setting, visuals)
+
+
+def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjModel:
+    """The model of a scene that is rolled and stepped in a setting; errors as in `build`."""
+    spec = specify(scene, setting, visuals)
     try:
         model = spec.compile()
     except ValueError as error:
         raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
-    if rolling == "equality":
+    if setting.rolling == "equality" and setting.softness == TUNED:
         constrained.make_rigid(model)
     return model
 
 
-def specify(
-    scene: Scene,
-    rolling: str = "reduced",
-    visuals: bool = False,
-    integrator: str = "RK4",
-    timestep: float = 1e-3,
-    friction: float = FRICTION,
-) -> mujoco.MjSpec:
-    """The editable specification that `build` compiles, with the same parameters and errors.
+def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
+    """The editable specification that `compile_model` compiles, with the same errors.
 
-    Compiled by itself, its joint equality is as stiff as MJCF can say; `build` makes it rigid.
+    Compiled by itself, its joint equality is as stiff as MJCF can say; `compile_model` makes it rigid.
     """
-    require.choice("rolling", rolling, ROLLINGS)
-    require.choice("integrator", integrator, (*INTEGRATORS, DOP853))
-    require.positive("timestep", timestep, "s")
-    require.positive("friction", friction)
+    rolling = setting.rolling
     spec = templates.read(templates.name(scene))
     if visuals:
         appearance.dress(spec, scene)
@@ -82,18 +86,15 @@ def specify(
     _tilt(spec, scene, visuals)
     # Without an incline to lie on, the axis is the origin: an offset far smaller than the radius keeps its digits.
     spec.body("can").pos = [0, 0, scene.can.radius if visuals or rolling == "contact" else 0.0]
-    option = spec.option
-    option.timestep = timestep
-    # Around DOP853 the model's own integrator never runs.
-    option.integrator = int(INTEGRATORS.get(integrator, mujoco.mjtIntegrator.mjINT_RK4))
+    spec.option.timestep = setting.timestep
+    spec.option.integrator = int(_INTEGRATORS[setting.integrator])
     unit = mass_unit(scene)
     if rolling == "reduced":
         reduced.reduce(spec, scene, unit)
     elif rolling == "equality":
-        constrained.roll_by_equality(spec, scene, unit, constrained.stiffest(integrator, timestep))
+        constrained.roll_by_equality(spec, scene, unit, setting)
     else:
-        timeconst = constrained.stiffest(integrator, timestep, contact=True)
-        constrained.roll_by_contact(spec, scene, unit, timeconst, friction)
+        constrained.roll_by_contact(spec, scene, unit, setting)
     if not visuals:
         _disable_unused(spec, rolling)
     return spec

@@ -9,10 +9,14 @@ import mujoco
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.inertia import frozen_inertia, point_share, set_inertial, weightless
+from mjbeer.model.setting import Setting
 from mjbeer.theory.scene import Scene
 
-_IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]
-"""solimp: the hardest that MuJoCo takes (mjMAXIMP). It is the share of a force that is not let through."""
+_IMPEDANCE = (0.9999, 0.9999)
+"""dmin and dmax of solimp: the hardest that MuJoCo takes (mjMAXIMP). It is the share of a force that is not let
+through."""
+_WIDTH = (0.001, 0.5, 2)
+"""The rest of solimp, MuJoCo's default: with dmin = dmax it does nothing."""
 _FRICTION_HARDNESS = 100.0
 """impratio: friction rows this much harder than the normal one. More gains little; from 1e6 on the solver
 stops converging (measured on frozen: error 3e-7 rad at 100, 2e-7 at 1e4, 5e-3 at 1e6)."""
@@ -37,8 +41,8 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     return timestep if contact else timestep / 2
 
 
-def roll_by_equality(spec: mujoco.MjSpec, scene: Scene, unit: float, timeconst: float) -> None:
-    """u = a roll as a joint equality."""
+def roll_by_equality(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Setting) -> None:
+    """Make the can roll by a joint equality u = a roll."""
     _inertials(spec, scene, unit)
     if spec.joint("lift") is not None:
         for each in (*spec.pairs, spec.joint("lift"), spec.geom("surface"), spec.geom("can")):
@@ -47,7 +51,10 @@ def roll_by_equality(spec: mujoco.MjSpec, scene: Scene, unit: float, timeconst: 
         rolling.objtype = mujoco.mjtObj.mjOBJ_JOINT
     rolling = spec.equality("rolling")
     rolling.data[:5] = [0, scene.can.radius, 0, 0, 0]
-    _harden(spec, rolling, timeconst)
+    if setting.softness.first == "hinge":
+        rolling.name1, rolling.name2 = rolling.name2, rolling.name1
+        rolling.data[1] = 1 / scene.can.radius
+    _harden(spec, rolling, setting)
 
 
 def make_rigid(model: mujoco.MjModel) -> None:
@@ -63,18 +70,19 @@ def make_rigid(model: mujoco.MjModel) -> None:
     model.opt.iterations, model.opt.tolerance = 1, 0.0
 
 
-def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, timeconst: float, friction: float) -> None:
-    """A cylinder on a plane, with friction and nothing else to hold it there."""
+def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Setting) -> None:
+    """Make the can roll as a cylinder on a plane, with friction and nothing else to hold it there."""
     _inertials(spec, scene, unit)
     if spec.joint("lift") is None:
         spec.delete(spec.equality("rolling"))
         _make_contact(spec)
     spec.geom("can").size = [scene.can.radius, scene.can.length / 2, 0]
     rolling = spec.pair("rolling")
-    rolling.friction = [friction, friction, 0.005, 1e-4, 1e-4]
-    _harden(spec, rolling, timeconst)
-    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
-    spec.option.impratio = _FRICTION_HARDNESS
+    rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
+    _harden(spec, rolling, setting)
+    cones = mujoco.mjtCone
+    spec.option.cone = cones.mjCONE_ELLIPTIC if setting.softness.elliptic else cones.mjCONE_PYRAMIDAL
+    spec.option.impratio = setting.softness.impratio or _FRICTION_HARDNESS
     weight = max(scene.gravity / _STANDARD_GRAVITY, _WEIGHTLESS)
     spec.option.tolerance = _TOLERANCE * min(1.0, weight) ** 2
 
@@ -90,11 +98,19 @@ def _make_contact(spec: mujoco.MjSpec) -> None:
     spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
 
 
-def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, timeconst: float) -> None:
-    rolling.solref, rolling.solimp = [timeconst, 1], _IMPEDANCE
+def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, setting: Setting) -> None:
+    softness = setting.softness
+    timeconst = stiffest(setting.integrator, setting.timestep, contact=setting.rolling == "contact")
+    rolling.solref = softness.solref or (timeconst, 1)
+    rolling.solimp = [*(softness.impedance or _IMPEDANCE), *_WIDTH]
     # The default diagonal adds the inverse inertias of slide and hinge, metres and radians alike.
-    spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
-    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    exact_diagonal, no_refsafe = mujoco.mjtEnableBit.mjENBL_DIAGEXACT, mujoco.mjtDisableBit.mjDSBL_REFSAFE
+    spec.option.enableflags = _switch(spec.option.enableflags, exact_diagonal, softness.exact_diagonal)
+    spec.option.disableflags = _switch(spec.option.disableflags, no_refsafe, not softness.refsafe)
+
+
+def _switch(flags: int, flag: int, on: bool) -> int:
+    return flags | int(flag) if on else flags & ~int(flag)
 
 
 def _inertials(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:

@@ -48,7 +48,7 @@ def export(
         raise UnsupportedError(
             f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
         )
-    spec = build.specify(scene, rolling, True, integrator, timestep, friction)
+    spec = build.specify(scene, setting.Setting(rolling, integrator, timestep, friction=friction), visuals=True)
     # The template's own are about another scene, and about files that are not needed.
     spec.comment, spec.meshdir = f" Written by mjbeer: rolling={rolling!r}, {scene!r} ", ""
     built = spec.compile()

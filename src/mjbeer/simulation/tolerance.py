@@ -8,7 +8,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.state import read
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.theory.measure import farthest
+from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 
 _FIRST = 0.07
@@ -44,7 +44,8 @@ class Solution:
     """States, shape (samples, nq + nv), and the estimate of their error [rad], relative beyond 1 rad."""
 
     states: np.ndarray
-    estimate: float
+    estimate: float | None = None
+    """None where nothing has been compared."""
 
 
 class Solver:
@@ -52,8 +53,8 @@ class Solver:
 
     def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
         self._integrator, self._scale = Integrator(model), scales(model, scene)
-        unit = read(model, scene, np.eye(model.nq + model.nv))
         # phi and u/a are sums of components of the state.
+        unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
 
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float) -> Solution:
@@ -119,7 +120,7 @@ class Solver:
     def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
         """Largest difference of phi and of u/a [rad], relative to the angle where that exceeds 1 rad."""
         angles, truth = one @ self._angles, other @ self._angles
-        return max(farthest(angles[:, column], truth[:, column]) for column in (0, 1))
+        return max(angle_distance(angles[:, column], truth[:, column]) for column in (0, 1))
 
 
 def tuning(scene: Scene, rolling: str, timestep: float) -> float:

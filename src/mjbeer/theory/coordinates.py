@@ -1,19 +1,25 @@
-"""Coordinates of a motion at some times, and their rates."""
+"""Where can and load are at some times, and how fast they move."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 
-@dataclass(frozen=True, eq=False)
-class Motion:
-    """Sampled coordinates and their rates; the fields are those of a Trajectory."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Coordinates:
+    """A motion in the coordinates of the paper's Fig. 3, one row a sample; names with `_dot` are rates [per s]."""
 
+    time: np.ndarray
+    """Time [s]."""
     u: np.ndarray
+    """Distance of the axis down the incline [m]."""
     phi: np.ndarray
+    """Angle of the load's flat surface to the incline [rad]."""
     u_dot: np.ndarray
     phi_dot: np.ndarray
     roll: np.ndarray
+    """Angle by which the can has rolled [rad]; u/a where it does not slip."""
     roll_dot: np.ndarray
     lift: np.ndarray
+    """Height of the can above the incline [m]; slightly negative in a soft contact."""
     lift_dot: np.ndarray

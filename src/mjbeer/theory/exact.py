@@ -8,23 +8,9 @@ from numpy.typing import ArrayLike
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory import motion
-from mjbeer.theory.measure import farthest
+from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
-
-
-def phi_error(trajectory: Trajectory) -> float:
-    """Largest distance of phi from the exact motion with the same start [rad]."""
-    return float(np.abs(trajectory.phi - _truth(trajectory)).max())
-
-
-def relative_phi_error(trajectory: Trajectory) -> float:
-    """The same relative to the angle that phi has turned, where that exceeds 1 rad: what a tolerance bounds."""
-    return farthest(trajectory.phi, _truth(trajectory))
-
-
-def _truth(trajectory: Trajectory) -> np.ndarray:
-    return exact(trajectory.scene, trajectory.time, trajectory.phi[0], trajectory.phi_dot[0]).phi
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
@@ -46,8 +32,26 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     u, u_dot = _axis(scene, time, phi, phi_dot, scene.start(phi0, phi_dot0))
     radius, still = scene.can.radius, np.zeros_like(time)
     return Trajectory(
-        scene, "exact", "exact", None, time, u, phi, u_dot, phi_dot, u / radius, u_dot / radius, still, still
+        scene=scene,
+        time=time,
+        u=u,
+        phi=phi,
+        u_dot=u_dot,
+        phi_dot=phi_dot,
+        roll=u / radius,
+        roll_dot=u_dot / radius,
+        lift=still,
+        lift_dot=still,
     )
+
+
+def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
+    """Largest distance of phi from the exact motion with the same start [rad].
+
+    If `relative`, it is that over the angle that phi has turned, where that exceeds 1 rad: what a tolerance bounds.
+    """
+    truth = exact(trajectory.scene, trajectory.time, trajectory.phi[0], trajectory.phi_dot[0])
+    return angle_distance(trajectory.phi, truth.phi, relative)
 
 
 def _axis(

@@ -60,7 +60,7 @@ def test_bad_input_is_an_error(arguments: list[str], message: str, capsys: pytes
 
 def test_the_study_that_comes_with_mjbeer_is_whole() -> None:
     """Its errors are those of this code, on a few of its points, to the digits that rounding leaves."""
-    from mjbeer.studies.benchmark.measure import measure, prepare
+    from mjbeer.studies.benchmark.measure import Rung
     from mjbeer.studies.benchmark.points import Point
 
     stored = points.load(advice.SHIPPED)
@@ -71,7 +71,7 @@ def test_the_study_that_comes_with_mjbeer_is_whole() -> None:
             continue
         case = CASES[old.case]
         new = Point(old.case, old.way, old.method, old.knob, old.value)
-        measure(case, prepare(case, old.curve, old.value, {}), new, case.truth())
+        Rung(case, new, peer=None).measure(case.truth())
         assert new.error == pytest.approx(old.error, rel=1e-3)
 
 

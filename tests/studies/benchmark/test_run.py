@@ -16,6 +16,7 @@ from mjbeer.studies import study
 from mjbeer.studies.benchmark import advice, run, tables
 from mjbeer.studies.benchmark import points as benchmark
 from mjbeer.studies.benchmark.curves import Curve, aligned, curves
+from mjbeer.studies.benchmark.measure import Rung
 from mjbeer.studies.benchmark.points import Point, Study
 from mjbeer.studies.cases import CASES, INTERVAL
 from tests.support import stubs
@@ -134,7 +135,7 @@ def test_a_study_reads_back(measured: Study, tmp_path: pathlib.Path) -> None:
 
 def test_an_interrupted_study_goes_on(short: None, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Interrupted between two ladders, and again in the middle of a round; what was measured stays to the bit."""
-    climb, seconds = run._climb, run.seconds
+    climb, seconds = run._climb, Rung.seconds
 
     def stop(count: int, function):
         calls = iter(range(count))
@@ -152,10 +153,10 @@ def test_an_interrupted_study_goes_on(short: None, tmp_path: pathlib.Path, monke
     monkeypatch.setattr(run, "_climb", climb)
     first = benchmark.load(tmp_path / "study.json").points
     assert len({each.curve for each in first}) == 3
-    monkeypatch.setattr(run, "seconds", stop(70, seconds))
+    monkeypatch.setattr(Rung, "seconds", stop(70, seconds))
     with pytest.raises(KeyboardInterrupt):
         run.run(["frozen"], tmp_path, False, quiet())
-    monkeypatch.setattr(run, "seconds", seconds)
+    monkeypatch.setattr(Rung, "seconds", seconds)
     second = benchmark.load(tmp_path / "study.json").points
     assert {len(each.times) for each in second} == {1}
     said = io.StringIO()

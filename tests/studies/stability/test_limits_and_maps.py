@@ -11,6 +11,7 @@ import pytest
 
 from mjbeer import frozen
 from mjbeer.model.build import specify
+from mjbeer.model.setting import Setting
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import accurate_limit
 from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, Row
@@ -90,7 +91,7 @@ def test_rows_are_those_that_mujoco_solves(integrator: str, timeconst: float) ->
     """Reference acceleration and regularizer, in motion."""
     timestep, impedance = 1e-3, 0.9
     scene = frozen(incline=0.0)
-    spec = specify(scene, "equality", integrator=integrator, timestep=timestep)
+    spec = specify(scene, Setting("equality", integrator, timestep))
     rolling = spec.equality("rolling")
     rolling.solref, rolling.solimp = [timeconst, 0.7], [impedance, impedance, 0.001, 0.5, 2]
     model = spec.compile()
@@ -114,7 +115,7 @@ def test_refsafe_resolves_contacts_under_discrete(impedance: float, dampratio: f
     """On either side of its threshold."""
     timestep = 1e-3
     timeconst = share * timestep / (dampratio * math.sqrt(impedance))
-    spec = specify(frozen(incline=0.0), "contact", integrator="discrete", timestep=timestep)
+    spec = specify(frozen(incline=0.0), Setting("contact", "discrete", timestep))
     rolling = spec.pair("rolling")
     rolling.solref, rolling.solimp = [timeconst, dampratio], [impedance, impedance, 0.001, 0.5, 2]
     spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

@@ -45,8 +45,8 @@ def test_a_run_that_is_wrong_without_a_word_is_caught(
     error: float, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its own diagnostics are made blind, as those of a run would be that misses something in them."""
-    monkeypatch.setattr("mjbeer.theory.diagnostics.implied_error", lambda _: 0.0)
-    monkeypatch.setattr("mjbeer.theory.diagnostics.SLIP", 1.0)
+    monkeypatch.setattr("mjbeer.theory.trajectory.implied_error", lambda *_: 0.0)
+    monkeypatch.setattr("mjbeer.theory.trajectory.SLIP", 1.0)
     outcome = judge(lambda: lying(error))
     assert outcome.verdict == verdict
     assert outcome.error == pytest.approx(error, rel=1e-9)

@@ -12,7 +12,6 @@ from mjbeer.paper.equations import hopping
 from mjbeer.paper.letters import Terms
 from mjbeer.paper.scenarios import GRIP, MU, RATIO, TOP
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.measure import takeoff
 from mjbeer.theory.scene import Scene, hoop
 from mjbeer.theory.trajectory import Trajectory
 
@@ -58,7 +57,7 @@ def _hoop() -> Scene:
 
 def _parts() -> float:
     """Angle from the top [rad] at which the can lifts off, if it never slips."""
-    seen = takeoff(fall())
+    seen = fall().takeoff()
     return math.nan if seen is None else seen
 
 

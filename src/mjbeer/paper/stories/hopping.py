@@ -12,7 +12,6 @@ from mjbeer.paper.equations import hopping
 from mjbeer.paper.scenarios import GRIP, MU, RATIO, fall_from_top
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.measure import takeoff
 from mjbeer.theory.scene import hoop
 
 
@@ -56,7 +55,7 @@ def _lift_off(path: pathlib.Path) -> None:
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
     seen = []
     for ratio in few:
-        angle = takeoff(fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP))
+        angle = fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP).takeoff()
         seen.append(math.nan if angle is None else math.degrees(angle))
     with chart(path, width=8, height=5) as (axes,):
         axes.semilogx(

@@ -13,7 +13,7 @@ from mjbeer.paper.equations import segment
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
-from mjbeer.theory.measure import acceleration
+from mjbeer.theory.measure import mean_acceleration
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 _CANS = {
@@ -54,7 +54,7 @@ def stories() -> Iterator[Story]:
 
 def _steady(scene: Scene) -> float:
     """Acceleration [m/s^2] that MuJoCo has for a scene at rest in its own frame."""
-    return acceleration(simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853))
+    return mean_acceleration(simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853))
 
 
 def _accelerations(path: pathlib.Path) -> None:

@@ -1,10 +1,9 @@
 """The settings that the benchmark tries: ways of rolling, integrators, ladders of timesteps and tolerances."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
-from mjbeer.model.usual import USUAL
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, USUAL, Setting, supported
 from mjbeer.studies.cases import INTERVAL
 from mjbeer.theory.scene import Scene
 
@@ -12,8 +11,6 @@ TIMESTEP, TOLERANCE = "timestep", "tolerance"
 _COARSEST, _RUNGS = 16e-3, 10
 _COARSEST_DOP853, _RUNGS_DOP853 = 128e-3, 15
 _QUICK_RUNGS = 6
-USUAL_INTEGRATOR, USUAL_TIMESTEP = "Euler", 2e-3
-"""MuJoCo's default integrator at its default timestep [s]."""
 
 
 @dataclass(frozen=True, order=True)
@@ -33,6 +30,14 @@ class Curve:
         method = f"{self.method} to a tolerance" if self.method and self.knob == TOLERANCE else self.method
         return ", ".join(each for each in (self.way, method) if each)
 
+    def setting(self, value: float) -> Setting:
+        """The setting of mjbeer's own that a value of the knob stands for."""
+        if self.knob == TOLERANCE:
+            return Setting(self.way, tolerance=value)
+        if self.way in USUAL:
+            return replace(USUAL[self.way], integrator=self.method, timestep=value)
+        return Setting(self.way, self.method, value)
+
 
 def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
     """The curves of mjbeer's own models, each with its ladder, coarsest first.
@@ -50,9 +55,9 @@ def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
         found |= {Curve(way, each, TIMESTEP): steps for each in INTEGRATORS}
         found[Curve(way, DOP853, TIMESTEP)] = large
         found[Curve(way, DOP853, TOLERANCE)] = asked
-    for written, way in USUAL.items():
-        if supported(scene, way):
-            found[Curve(written, USUAL_INTEGRATOR, TIMESTEP)] = (USUAL_TIMESTEP,)
+    for written, setting in USUAL.items():
+        if supported(scene, setting.rolling):
+            found[Curve(written, setting.integrator, TIMESTEP)] = (setting.timestep,)
     return found
 
 

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import ROLLINGS
-from mjbeer.model.usual import USUAL
+from mjbeer.model.setting import ROLLINGS, USUAL
 from mjbeer.studies.benchmark.curves import Curve
 from mjbeer.studies.benchmark.points import Point
 
@@ -58,7 +57,7 @@ def gain_over_usual(points: list[Point], written: str) -> float | None:
     usual = next((each for each in points if each.way == written), None)
     if usual is None:
         return None
-    twins = [each for each in points if each.way == USUAL[written]]
+    twins = [each for each in points if each.way == USUAL[written].rolling]
     return usual.error / error_for(twins, usual.time)
 
 

@@ -1,25 +1,19 @@
-"""A setting made ready to be run and timed: everything but the loop is done beforehand."""
+"""One setting measured: its errors against exact theory, of the model and of the integrator, and its run time."""
 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-
-import mujoco
-import numpy as np
+from functools import cached_property, partial
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model import state
-from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853
 from mjbeer.model.softness import softness
-from mjbeer.model.usual import USUAL, build_usual
-from mjbeer.simulation import tolerance
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.stepping import Stepper
-from mjbeer.studies.benchmark.curves import TOLERANCE, Curve
-from mjbeer.studies.benchmark.peers.peer import Peer
+from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.tolerance import Solution, scales
+from mjbeer.studies.benchmark.peers.peer import Motion, Peer
 from mjbeer.studies.benchmark.points import Point
 from mjbeer.studies.cases import Case
+from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.measure import distance
 from mjbeer.theory.trajectory import Trajectory
 
@@ -27,81 +21,77 @@ _FINE = 1e-13
 """Local tolerance of the run that tells a model's error from its integrator's."""
 _PATIENCE = 50_000
 """Most evaluations of that run."""
-_SAMPLING = 1e-3
-"""What a constraint is tuned to where the steps are DOP853's own [s]."""
+_SHORT = 0.05
+"""Runs under this [s] are repeated once, untimed, before they are timed: caches and branch predictors warm."""
 
 
-@dataclass(frozen=True)
-class Prepared:
-    """A run, and what it runs: a model with its start, or None for a peer, whose run gives phi and u at once."""
+@dataclass(eq=False)
+class Rung:
+    """A point of the study, and what runs it: set up once, run often."""
 
-    run: Callable[[], np.ndarray] | Callable[[], tuple[np.ndarray, np.ndarray]]
-    setup: float
-    model: mujoco.MjModel | None = None
-    start: np.ndarray | None = None
+    case: Case
+    point: Point
+    peer: Peer | None
+    """The other tool whose point it is; None for mjbeer's own models."""
 
+    @cached_property
+    def prepared(self) -> Prepared:
+        """The scene in the setting of the point, for mjbeer's own models."""
+        return Prepared(self.case.scene, self.point.curve.setting(self.point.value))
 
-def prepare(case: Case, curve: Curve, value: float, peers: dict[str, Peer]) -> Prepared:
-    """Set up the run of a case with one setting.
+    @cached_property
+    def run(self) -> Callable[[], Solution] | Callable[[], Motion]:
+        """A function that integrates the motion from its start at every call: all that is timed."""
+        case = self.case
+        if self.peer is not None:
+            return self.peer.prepare(case.scene, case.phi0, 0.0, case.times, self.point.value)
+        return partial(self.prepared.solve, self.prepared.start(case.phi0, 0.0), case.times)
 
-    Raises:
-      UnsupportedError: if there is no such model.
-    """
-    begin = time.perf_counter()
-    if curve.way in peers:
-        motion = peers[curve.way].prepare(case.scene, case.phi0, 0.0, case.times, value)
-        return Prepared(motion, time.perf_counter() - begin)
-    scene, times = case.scene, case.times
-    timestep = tolerance.tuning(scene, curve.way, _SAMPLING) if curve.knob == TOLERANCE else value
-    if curve.way in USUAL:
-        model = build_usual(scene, curve.way, curve.method, timestep)
-    else:
-        model = build(scene, curve.way, integrator=curve.method, timestep=timestep)
-    start = state.start(model, scene, case.phi0, 0.0)
-    if curve.method != DOP853:
-        stepper, steps = Stepper(model), np.rint(times / timestep).astype(int)
-        run = lambda: stepper.run(start[None], steps)[0]  # noqa: E731
-    elif curve.knob == TOLERANCE:
-        solver = tolerance.Solver(model, scene)
-        run = lambda: solver.run(start, times, value).states  # noqa: E731
-    else:
-        integrator = Integrator(model)
-        run = lambda: integrator.run(start, times, timestep)  # noqa: E731
-    return Prepared(run, time.perf_counter() - begin, model, start)
+    def measure(self, truth: Trajectory) -> None:
+        """Run once, and fill in everything of the point but its run times.
 
+        Raises:
+          UnsupportedError: if there is no such model.
+          DivergenceError, ToleranceError: if the run fails.
+        """
+        begin = time.perf_counter()
+        run = self.run
+        self.point.setup = time.perf_counter() - begin
+        result = run()
+        if not isinstance(result, Solution):
+            self.point.judge(*result, truth)
+            return
+        motion = self.prepared.coordinates(result.states, self.case.times)
+        self.point.judge(motion.phi, motion.u, truth)
+        self.point.listen(Trajectory(**vars(motion), scene=self.case.scene))
+        self._split_error(motion, truth)
+        soft = softness(self.prepared.model, self.prepared.start(self.case.phi0, 0.0))
+        if soft:
+            self.point.timeconst, self.point.effective_timeconst = soft.timeconst, soft.effective_timeconst
+            self.point.impedance, self.point.effective_impedance = soft.impedance, soft.effective_impedance
 
-def measure(case: Case, prepared: Prepared, point: Point, truth: Trajectory) -> None:
-    """Run once, and fill in everything but the run times.
+    def seconds(self) -> float:
+        """Run time [s] of one warm run."""
+        taken = 0.0
+        for _ in range(2):
+            begin = time.perf_counter()
+            self.run()
+            taken = time.perf_counter() - begin
+            if taken > _SHORT:
+                break
+        return taken
 
-    Raises:
-      DivergenceError, ToleranceError: if the run fails.
-    """
-    point.setup = prepared.setup
-    result = prepared.run()
-    if prepared.model is None or prepared.start is None:
-        point.judge(*result, truth)
-        return
-    moved = state.read(prepared.model, case.scene, np.asarray(result))
-    run = Trajectory(case.scene, point.way, point.method, None, case.times, **vars(moved))
-    point.judge(run.phi, run.u, truth)
-    point.listen(run)
-    _split(case, prepared, point, run, truth)
-    soft = softness(prepared.model, prepared.start)
-    if soft:
-        point.timeconst, point.effective_timeconst = soft.timeconst, soft.effective_timeconst
-        point.impedance, point.effective_impedance = soft.impedance, soft.effective_impedance
+    def _split_error(self, motion: Coordinates, truth: Trajectory) -> None:
+        """Find the model's own error and the integrator's, by a run of the same model with hardly any of the latter.
 
-
-def _split(case: Case, prepared: Prepared, point: Point, run: Trajectory, truth: Trajectory) -> None:
-    """The model's own error and the integrator's, by a run of the same model that has hardly any of the latter."""
-    assert prepared.model is not None
-    assert prepared.start is not None
-    scale = tolerance.scales(prepared.model, case.scene)
-    integrator = Integrator(prepared.model)
-    try:
-        fine = integrator.run(prepared.start, case.times, tolerance=_FINE, scale=scale, limit=_PATIENCE)
-    except DivergenceError:
-        return  # a model that is too stiff, or not smooth: no telling
-    moved, radius = state.read(prepared.model, case.scene, fine), case.scene.can.radius
-    point.model_error = distance(moved.phi, moved.u, truth.phi, truth.u, radius)
-    point.integrator_error = distance(run.phi, run.u, moved.phi, moved.u, radius)
+        A model that is too stiff for that run, or not smooth, is left without.
+        """
+        prepared, case = self.prepared, self.case
+        start, scale = prepared.start(case.phi0, 0.0), scales(prepared.model, case.scene)
+        try:
+            states = Integrator(prepared.model).run(start, case.times, tolerance=_FINE, scale=scale, limit=_PATIENCE)
+        except DivergenceError:
+            return
+        fine, radius = prepared.coordinates(states, case.times), case.scene.can.radius
+        self.point.model_error = distance(fine, truth, radius, relative=False)
+        self.point.integrator_error = distance(motion, fine, radius, relative=False)

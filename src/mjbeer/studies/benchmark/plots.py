@@ -5,8 +5,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from mjbeer.model.setting import ROLLINGS
-from mjbeer.model.usual import USUAL
+from mjbeer.model.setting import ROLLINGS, USUAL
 from mjbeer.output.plots import COLOURS, chart
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier

@@ -5,18 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.model import state
+from mjbeer.model.build import compile_model
+from mjbeer.model.setting import TUNED, USUAL
 from mjbeer.model.softness import softness
-from mjbeer.model.usual import USUAL, build_usual
 from mjbeer.output.table import Grid
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
-from mjbeer.simulation import stepping
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.cases import CASES
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
-from mjbeer.theory.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -107,21 +105,15 @@ def _distance_excess(timestep: float, duration: float) -> float:
 def _sunk(scene: Scene, tuned: bool) -> tuple[float, float]:
     """Penetration [m], and slip over distance, of a can that rolls steadily, in the second half of 2 s."""
     rest = scene.equilibrium()
-    if tuned:
-        run = simulate(scene, 2.0, rest, rolling="contact")
-    else:
-        written = next(name for name, rolling in USUAL.items() if rolling == "contact")
-        model, steps = build_usual(scene, written, "RK4", 1e-3), np.arange(2001)
-        states = stepping.step(model, state.start(model, scene, rest, 0.0)[None], steps)[0]
-        moved = state.read(model, scene, states)
-        run = Trajectory(scene, "contact", "RK4", 1e-3, 1e-3 * steps, **vars(moved))
+    softness = TUNED if tuned else USUAL["contact, defaults"].softness
+    run = simulate(scene, 2.0, rest, rolling="contact", softness=softness)
     half = len(run.time) // 2
     return -float(run.lift[half:].mean()), float((run.slip[-1] - run.slip[half]) / (run.u[-1] - run.u[half]))
 
 
 def _share(scene: Scene) -> float:
     """Of the force of the joint equality as usually written, in the position phi = 0."""
-    model = build_usual(scene, "equality, slide first")
+    model = compile_model(scene, USUAL["equality, slide first"])
     soft = softness(model, np.zeros(model.nq + model.nv))
     assert soft is not None
     return soft.effective_impedance

@@ -2,7 +2,6 @@
 
 import gc
 import pathlib
-import time
 from collections.abc import Iterator, Sequence
 
 from rich.console import Console
@@ -15,17 +14,15 @@ from mjbeer.studies import study
 from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
 from mjbeer.studies.benchmark.curves import TIMESTEP, Curve, aligned
-from mjbeer.studies.benchmark.measure import Prepared, measure, prepare
+from mjbeer.studies.benchmark.measure import Rung
 from mjbeer.studies.benchmark.peers.installed import installed
 from mjbeer.studies.benchmark.peers.peer import Peer
-from mjbeer.studies.benchmark.points import Point, Study, load, missing, same_conditions
+from mjbeer.studies.benchmark.points import Point, Study, load, same_conditions
 from mjbeer.studies.cases import CASES, Case
 from mjbeer.studies.convergence import verdict
 
 REPEATS = 5
 """Run times of each setting; a round times every setting once, so that a slow minute is nobody's alone."""
-_SHORT = 0.05
-"""Runs under this [s] are repeated once, untimed, before they are timed: caches and branch predictors warm."""
 _ENOUGH = 5
 """Fewest rungs before a ladder may end at its floor."""
 
@@ -46,20 +43,22 @@ def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Consol
     files.remove(folder / "summary.md")  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
     with counted(console) as progress:
-        ready: dict[int, Prepared] = {}
+        rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in found.points]
         ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
         task = progress.add_task("errors", total=len(ladders))
         known = {(each.case, each.curve) for each in found.points}
         for case, curve, values in ladders:
             progress.update(task, description=f"errors: {case.name}, {curve.label}", advance=1)
             if (case.name, curve) not in known:
-                found.points += _climb(case, curve, values, peers, ready)
+                climbed = list(_climb(case, curve, values, peers.get(curve.way)))
+                rungs += climbed
+                found.points += [rung.point for rung in climbed]
                 found.save(path)
         task = progress.add_task("run times", total=REPEATS * len(cases))
         for repeat in range(REPEATS):
             for case in cases:
                 progress.update(task, description=f"run times: {case.name}, round {repeat + 1}", advance=1)
-                if _time(case, found.points, repeat + 1, peers, ready):
+                if _time([rung for rung in rungs if rung.case == case], repeat + 1):
                     found.save(path)
         if not found.ablation:
             progress.update(task, description="what each stage of a step costs")
@@ -86,54 +85,40 @@ def _curves(case: Case, peers: dict[str, Peer], quick: bool) -> dict[Curve, tupl
     return found
 
 
-def _climb(
-    case: Case, curve: Curve, values: Sequence[float], peers: dict[str, Peer], ready: dict[int, Prepared]
-) -> Iterator[Point]:
-    """The points of a ladder, down to its floor, or to its second failure."""
+def _climb(case: Case, curve: Curve, values: Sequence[float], peer: Peer | None) -> Iterator[Rung]:
+    """The rungs of a ladder, measured, down to its floor, or to its second failure."""
     truth, failures = case.truth(), 0
     steps: list[float] = []
     errors: list[float] = []
     for value in values:
         point = Point(case.name, curve.way, curve.method, curve.knob, value)
+        rung = Rung(case, point, peer)
         try:
-            ready[id(point)] = prepare(case, curve, value, peers)
-            measure(case, ready[id(point)], point, truth)
+            rung.measure(truth)
         except MjbeerError as error:
             point.failure, failures = str(error), failures + 1
         else:
             if aligned(value) or curve.knob != TIMESTEP:
                 steps.append(value)
                 errors.append(point.error)
-        yield point
+        yield rung
         # What a tolerance leaves may stay the same over some decades: it is met by steps that are finer anyway.
         floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and verdict(steps, errors).kind == "floored"
         if floored or (failures > 1 and errors):
             return
 
 
-def _time(case: Case, points: list[Point], repeat: int, peers: dict[str, Peer], ready: dict[int, Prepared]) -> bool:
-    """Time each setting of a case once more, if it has been timed less often than that; whether there was any."""
-    todo = [each for each in missing(points, repeat) if each.case == case.name]
-    for point in todo:
-        if id(point) not in ready:  # from before an interruption
-            ready[id(point)] = prepare(case, point.curve, point.value, peers)
-            ready[id(point)].run()
+def _time(rungs: Sequence[Rung], repeat: int) -> bool:
+    """Time each rung once more that has been timed less often than that; whether there was any."""
+    todo = [rung for rung in rungs if rung.point.failure is None and len(rung.point.times) < repeat]
+    for rung in todo:
+        if "run" not in vars(rung):  # it was measured before an interruption
+            rung.run()
     gc.collect()
     gc.disable()
     try:
-        for point in todo:
-            point.times.append(seconds(ready[id(point)]))
+        for rung in todo:
+            rung.point.times.append(rung.seconds())
     finally:
         gc.enable()
     return bool(todo)
-
-
-def seconds(prepared: Prepared) -> float:
-    """Run time [s] of one warm run."""
-    for _ in range(2):
-        begin = time.perf_counter()
-        prepared.run()
-        taken = time.perf_counter() - begin
-        if taken > _SHORT:
-            break
-    return taken

@@ -2,8 +2,7 @@
 
 import math
 
-from mjbeer.model.setting import DOP853, ROLLINGS
-from mjbeer.model.usual import USUAL
+from mjbeer.model.setting import DOP853, ROLLINGS, USUAL
 from mjbeer.output.table import Grid
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned

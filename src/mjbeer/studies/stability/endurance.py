@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 import scipy.integrate
 
-from mjbeer.model import state
-from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853
+from mjbeer.model.setting import DOP853, Setting
 from mjbeer.predictions.semi_implicit_euler import energy_per_swing
-from mjbeer.simulation import dop853, stepping
+from mjbeer.simulation.prepare import Prepared
 from mjbeer.studies.study import Task
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, sliding
@@ -97,15 +95,12 @@ class Endurance:
         scene = self.scene
         # In step with the swing, each one would be rounded like the one before.
         timestep = period / (self.steps + (_OUT_OF_STEP if self.exact_steps else 0))
-        model = build(scene, integrator=self.integrator, timestep=timestep)
-        start = state.start(model, scene, scene.equilibrium() + AMPLITUDE, 0.0)
+        prepared = Prepared(scene, Setting(integrator=self.integrator, timestep=timestep))
+        start = prepared.start(scene.equilibrium() + AMPLITUDE, 0.0)
         window = np.arange(self.steps)
         wanted = np.unique(np.concatenate([window, *(self.steps * int(count) + window for count in counts)]))
-        if self.integrator == DOP853:
-            states = dop853.integrate(model, start, timestep * wanted, timestep)
-        else:
-            states = stepping.step(model, start[None], wanted)[0]
-        motion, form = state.read(model, scene, states), scene.oscillator
+        times = timestep * wanted
+        motion, form = prepared.coordinates(prepared.solve(start, times).states, times), scene.oscillator
         kinetic = form.inertia(motion.phi) * motion.phi_dot**2 / 2
         energy = (kinetic - form.drop(motion.phi, float(motion.phi[0]))) / form.drop(scene.equilibrium(), motion.phi[0])
         places = np.searchsorted(wanted, self.steps * counts)

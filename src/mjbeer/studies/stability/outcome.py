@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, MjbeerError
-from mjbeer.theory.diagnostics import ERROR, kinetic_energy
+from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.exact import exact
-from mjbeer.theory.measure import farthest
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.measure import distance
+from mjbeer.theory.trajectory import ERROR, Trajectory
 
 ACCURATE = "stable and accurate"
 INACCURATE = "stable, inaccurate"
@@ -40,7 +40,7 @@ class Outcome:
 def judge(run: Callable[[], Trajectory]) -> Outcome:
     """Make a run and judge it.
 
-    Accurate is an error of phi and u/a of at most `diagnostics.ERROR`, which is also what a trusted run claims.
+    Accurate is an error of phi and u/a of at most `trajectory.ERROR`, which is also what a trusted run claims.
 
     Raises:
       NoLibrationError: if the start lies on the separatrix, where there is no exact motion to judge by.
@@ -53,7 +53,7 @@ def judge(run: Callable[[], Trajectory]) -> Outcome:
         return Outcome(REFUSED, None, None, str(error))
     truth = exact(made.scene, made.time, float(made.phi[0]), float(made.phi_dot[0]))
     radius = made.scene.can.radius
-    error = max(farthest(made.phi, truth.phi), farthest(made.u / radius, truth.u / radius))
+    error = distance(made, truth, radius)
     if made.trusted:
         verdict = ACCURATE if error <= ERROR else SILENT
     elif _explodes(made, truth):
@@ -65,8 +65,8 @@ def judge(run: Callable[[], Trajectory]) -> Outcome:
 
 
 def _explodes(run: Trajectory, truth: Trajectory) -> bool:
-    most = float(kinetic_energy(truth).max()) + 2 * run.scene.oscillator.depth
-    return not float(kinetic_energy(run).max()) <= _GAIN * most
+    most = float(kinetic_energy(run.scene, truth).max()) + 2 * run.scene.oscillator.depth
+    return not float(kinetic_energy(run.scene, run).max()) <= _GAIN * most
 
 
 def _known(value: float) -> float | None:

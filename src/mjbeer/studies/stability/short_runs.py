@@ -11,8 +11,8 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.build import build, specify
-from mjbeer.model.setting import DOP853
+from mjbeer.model.build import build
+from mjbeer.model.setting import DOP853, Softness
 from mjbeer.model.state import places, settle
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
@@ -151,20 +151,16 @@ def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
         if plan.family == "spring":
             _hang(model, scene)
         return model
-    rolling = "contact" if plan.family == "contact" else "equality"
-    spec = specify(scene, rolling, integrator=plan.integrator)
-    row = spec.pair("rolling") if rolling == "contact" else spec.equality("rolling")
     damping = 2 * plan.dampratio * math.sqrt(value)
-    row.solref = [-value, -damping] if plan.family == "direct" else [value, plan.dampratio]
-    row.solimp = [IMPEDANCE, IMPEDANCE, 0.001, 0.5, 2]
-    if plan.refsafe:
-        spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
-    if plan.written != "exact":
-        spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
-    if plan.written == "hinge":
-        row.name1, row.name2 = row.name2, row.name1
-        row.data[:5] = [0, 1 / scene.can.radius, 0, 0, 0]
-    return spec.compile()
+    softness = Softness(
+        solref=(-value, -damping) if plan.family == "direct" else (value, plan.dampratio),
+        impedance=(IMPEDANCE, IMPEDANCE),
+        refsafe=plan.refsafe,
+        exact_diagonal=plan.written == "exact",
+        first="hinge" if plan.written == "hinge" else "slide",
+    )
+    rolling = "contact" if plan.family == "contact" else "equality"
+    return build(scene, rolling, integrator=plan.integrator, softness=softness)
 
 
 def _hang(model: mujoco.MjModel, scene: Scene) -> None:

@@ -8,12 +8,12 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model import state
 from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853
+from mjbeer.model.setting import Setting
 from mjbeer.model.state import settle
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS
-from mjbeer.simulation import dop853, stepping
-from mjbeer.theory.coordinates import Motion
+from mjbeer.simulation.prepare import Prepared
+from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.exact import exact
 from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene
@@ -72,7 +72,7 @@ class Swings:
         omega, rest = self.scene.frequency(), self.scene.equilibrium()
         model = build(self.scene, self.rolling, integrator=self.integrator, timestep=1 / omega)
         lying = settle(model, state.start(model, self.scene, rest, 0.0))
-        depth = -float(state.read(model, self.scene, lying[None]).lift[0])
+        depth = -float(state.read(model, self.scene, lying[None], times=np.zeros(1)).lift[0])
 
         def excess(swing: float) -> float:
             form = self._sunk(depth * swing**2)
@@ -88,15 +88,13 @@ class Swings:
         falls = -self.scene.gravity * math.cos(self.scene.incline) * timestep / 6
         return bool(abs(motion.lift_dot[1] / falls - 1) < _FREE_FALL)
 
-    def _run(self, swing: float, amplitude: float, steps: int) -> Motion:
+    def _run(self, swing: float, amplitude: float, steps: int) -> Coordinates:
         scene, timestep = self.scene, swing / self.scene.frequency()
-        model = build(scene, self.rolling, integrator=self.integrator, timestep=timestep)
-        start = state.start(model, scene, scene.equilibrium() + amplitude, 0.0)
-        start = settle(model, start) if self.settled else start
-        samples = np.arange(steps + 1)
-        if self.integrator == DOP853:
-            return state.read(model, scene, dop853.integrate(model, start, samples * timestep, timestep))
-        return state.read(model, scene, stepping.step(model, start[None], samples)[0])
+        prepared = Prepared(scene, Setting(self.rolling, self.integrator, timestep))
+        start = prepared.start(scene.equilibrium() + amplitude, 0.0)
+        start = settle(prepared.model, start) if self.settled else start
+        times = timestep * np.arange(steps + 1)
+        return prepared.coordinates(prepared.solve(start, times).states, times)
 
     def _sunk(self, depth: float) -> Oscillator:
         """The oscillator of a can that has sunk in by a depth [m]."""

@@ -18,7 +18,6 @@ from mjbeer.studies.convergence import order
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import BEER, Load
-from mjbeer.theory.measure import takeoff
 from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 
 ORDERS = {"RK4": (4, 0.2), DOP853: (8, 0.5)} | {each: (1, 0.1) for each in INTEGRATORS if each != "RK4"}
@@ -51,11 +50,11 @@ def _hops() -> Iterator[Row]:
     )  # fmt: skip
     yield Row(
         "hops missing at M/m = 1/20", "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
-        lambda: float(takeoff(fall_from_top(hops, 1e-4, _GRIP)) is None),
+        lambda: float(fall_from_top(hops, 1e-4, _GRIP).takeoff() is None),
     )  # fmt: skip
     yield Row(
         "hops too many at M/m = 1/10 (above 1/13)", "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
-        lambda: float(takeoff(fall_from_top(rolls, 1e-4, _GRIP)) is not None),
+        lambda: float(fall_from_top(rolls, 1e-4, _GRIP).takeoff() is not None),
     )  # fmt: skip
 
 
@@ -71,7 +70,7 @@ def _others() -> Iterator[Row]:
 
 
 def _lift_off(scene: Scene) -> float:
-    seen = takeoff(fall_from_top(scene, 2e-5, _GRIP))
+    seen = fall_from_top(scene, 2e-5, _GRIP).takeoff()
     return math.degrees(seen) - math.degrees(_theory_lift_off(scene)) if seen is not None else math.nan
 
 

@@ -11,8 +11,8 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Row
 from mjbeer.studies.validation import models
 from mjbeer.theory.can import Can
-from mjbeer.theory.exact import phi_error, relative_phi_error
-from mjbeer.theory.measure import acceleration, swing_period
+from mjbeer.theory.exact import phi_error
+from mjbeer.theory.measure import mean_acceleration
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 _NEEDED = 10.0
@@ -51,7 +51,7 @@ def _oscillations() -> Iterator[Row]:
             f"period, amplitude {amplitude:g} rad", f"sliding, reduced, {integrator}, {1e3 * timestep:g} ms", bound,
             "relative", reason,
             lambda amplitude=amplitude, integrator=integrator, timestep=timestep: (
-                swing_period(simulate(beer, 4, amplitude, integrator=integrator, timestep=timestep))
+                2 * math.pi / simulate(beer, 4, amplitude, integrator=integrator, timestep=timestep).frequency()
                 / beer.period(amplitude) - 1
             ),
         )  # fmt: skip
@@ -109,8 +109,8 @@ def _tolerances() -> Iterator[Row]:
     ):
         yield Row(
             "phi over 2 s, tolerance 1e-10", f"{name}, reduced, DOP853", 1e-10, "rad", "the tolerance",
-            lambda scene=scene, phi0=phi0, phi_dot0=phi_dot0: relative_phi_error(
-                simulate(scene, 2, phi0, phi_dot0, tolerance=1e-10)
+            lambda scene=scene, phi0=phi0, phi_dot0=phi_dot0: phi_error(
+                simulate(scene, 2, phi0, phi_dot0, tolerance=1e-10), relative=True
             ),
         )  # fmt: skip
 
@@ -120,7 +120,7 @@ def _frequency(scene: Scene, amplitude: float) -> float:
 
 
 def _steady(scene: Scene) -> float:
-    return acceleration(simulate(scene, 2, scene.equilibrium()))
+    return mean_acceleration(simulate(scene, 2, scene.equilibrium()))
 
 
 def _creep(scene: Scene, rolling: str) -> float:

@@ -3,19 +3,17 @@
 import math
 from collections.abc import Iterator
 from functools import partial
-from typing import Any
 
 import numpy as np
 
-from mjbeer.model.setting import DOP853, INTEGRATORS
-from mjbeer.simulation.hardness import constrained
-from mjbeer.simulation.simulate import follow, simulate
+from mjbeer.model.setting import DOP853, INTEGRATORS, Softness
+from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.catalogue.case import Attempt, Extreme, attempts
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.scene import frozen, pendulum, sliding
 
 _TIMESTEP = 1e-3
 _TIMECONSTS = (20e-3, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
@@ -38,12 +36,20 @@ def cases() -> Iterator[Extreme]:
     yield from _beside_top()
 
 
-def _hard(label: str, scene: Scene, quick: bool = True, **settings: Any) -> Iterator[Attempt]:
-    """A second of rocking from phi = 0, by equality and in contact, with every integrator."""
+def _rocking(label: str, softness: Softness, quick: bool = True) -> Iterator[Attempt]:
+    """A second of a frozen load's rocking from phi = 0, by equality and in contact, with every integrator."""
     for rolling in ("equality", "contact"):
-        make = constrained(scene, rolling, **settings)
         for integrator in (*INTEGRATORS, DOP853):
-            run = partial(follow, make, scene, 1.0, 0.0, 0.0, rolling, integrator, _TIMESTEP)
+            run = partial(
+                simulate,
+                frozen(),
+                duration=1.0,
+                phi0=0.0,
+                rolling=rolling,
+                integrator=integrator,
+                timestep=_TIMESTEP,
+                softness=softness,
+            )
             yield Attempt(f"{rolling}, {integrator}, 1 ms{label}", run, sample=quick and integrator in _QUICK)
 
 
@@ -53,7 +59,7 @@ def _timeconsts() -> Iterator[Extreme]:
         runs = []
         for refsafe in (False, True):
             label = ", refsafe " + ("on" if refsafe else "off")
-            runs += _hard(label, frozen(), not refsafe, solref=(timeconst, 1.0), refsafe=refsafe)
+            runs += _rocking(label, Softness(solref=(timeconst, 1.0), refsafe=refsafe), quick=not refsafe)
         stable = "inside" if 4 - 4 * ratio - ratio**2 > 0 else "outside"
         yield Extreme(
             "stiff",
@@ -73,7 +79,7 @@ def _stiffnesses() -> Iterator[Extreme]:
             f"direct solref, stiffness {stiffness:.0e} /s^2 at 1 ms",
             "negative solref is taken as it is: refsafe does not look at it",
             f"as a time constant of {1e3 / math.sqrt(stiffness):.2g} ms, critically damped",
-            tuple(_hard("", frozen(), solref=(-stiffness, -damping))),
+            tuple(_rocking("", Softness(solref=(-stiffness, -damping)))),
         )
 
 
@@ -84,10 +90,10 @@ def _impedances() -> Iterator[Extreme]:
             f"solimp {impedance:g}",
             "the share of a force that a constraint does not pass on; MuJoCo's hardest is 0.9999",
             f"the can slips by {1 - impedance:.1g} of what it would without a constraint",
-            tuple(_hard("", frozen(), impedance=impedance)),
+            tuple(_rocking("", Softness(impedance=(impedance, impedance)))),
         )
     for impratio in _IMPRATIOS:
-        runs = [each for each in _hard("", frozen(), impratio=impratio) if each.setting.startswith("contact")]
+        runs = [each for each in _rocking("", Softness(impratio=impratio)) if each.setting.startswith("contact")]
         yield Extreme(
             "stiff",
             f"impratio {impratio:g}",

@@ -1,4 +1,6 @@
-"""Models as usually written have MuJoCo's defaults, the scene's masses, and are as soft as they are said to be."""
+"""Settings: models are as soft as a setting says, and as usually written they have MuJoCo's defaults."""
+
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -6,15 +8,18 @@ import pytest
 
 from mjbeer import build, frozen, sliding
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.model.build import specify
+from mjbeer.model.build import compile_model, specify
+from mjbeer.model.setting import USUAL, Setting, Softness
 from mjbeer.model.softness import softness
 from mjbeer.model.state import start
-from mjbeer.model.usual import USUAL, build_usual
+
+SLIDE_FIRST = USUAL["equality, slide first"]
+REFSAFE = int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
 
 
 @pytest.mark.parametrize("written", USUAL)
 def test_constraints_are_mujoco_s_defaults(written: str) -> None:
-    model, stock = build_usual(frozen(), written), mujoco.MjSpec().option
+    model, stock = compile_model(frozen(), USUAL[written]), mujoco.MjSpec().option
     solref, solimp = (
         (model.eq_solref, model.eq_solimp) if model.neq else (model.pair_solref, model.pair_solimp)
     )  # fmt: skip
@@ -24,11 +29,11 @@ def test_constraints_are_mujoco_s_defaults(written: str) -> None:
         assert getattr(model.opt, name) == getattr(stock, name), name
     assert not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
     assert (model.opt.timestep, model.opt.integrator) == (2e-3, mujoco.mjtIntegrator.mjINT_EULER)
-    assert np.array_equal(model.body_mass, build(frozen(), USUAL[written]).body_mass)
+    assert np.array_equal(model.body_mass, build(frozen(), USUAL[written].rolling).body_mass)
 
 
 def test_either_joint_may_be_named_first() -> None:
-    slide, hinge = (build_usual(frozen(), f"equality, {each} first") for each in ("slide", "hinge"))
+    slide, hinge = (compile_model(frozen(), USUAL[f"equality, {each} first"]) for each in ("slide", "hinge"))
     names = [
         [model.joint(int(each)).name for each in (model.eq_obj1id[0], model.eq_obj2id[0])] for model in (slide, hinge)
     ]
@@ -39,13 +44,13 @@ def test_either_joint_may_be_named_first() -> None:
 
 def test_a_massless_can_around_a_sliding_load_is_refused() -> None:
     with pytest.raises(UnsupportedError, match="massless"):
-        build_usual(sliding(), "contact, defaults")
+        compile_model(sliding(), USUAL["contact, defaults"])
 
 
 def test_refsafe_raises_a_time_constant_under_two_timesteps() -> None:
-    at = start(build_usual(frozen(), "equality, slide first"), frozen(), 0.3, 1.0)
+    at = start(compile_model(frozen(), SLIDE_FIRST), frozen(), 0.3, 1.0)
     for timestep, expected in ((2e-3, 0.02), (16e-3, 0.032)):
-        soft = softness(build_usual(frozen(), "equality, slide first", timestep=timestep), at)
+        soft = softness(compile_model(frozen(), replace(SLIDE_FIRST, timestep=timestep)), at)
         assert soft is not None
         assert soft.effective_timeconst == pytest.approx(expected, rel=1e-12)
         assert soft.changed == (expected != 0.02)
@@ -54,7 +59,7 @@ def test_refsafe_raises_a_time_constant_under_two_timesteps() -> None:
 def test_the_share_is_what_the_solver_lets_through() -> None:
     """Measured on the acceleration itself: the row's, over what it was to be, past what it would be unconstrained."""
     scene = frozen()
-    model = build_usual(scene, "equality, slide first", "RK4", 1e-3)
+    model = compile_model(scene, replace(SLIDE_FIRST, integrator="RK4", timestep=1e-3))
     at = start(model, scene, 0.3, 1.0)
     soft = softness(model, at)
     assert soft is not None
@@ -78,7 +83,33 @@ def test_tuned_models_get_what_they_ask_for() -> None:
 
 
 def test_in_the_air_there_is_no_softness() -> None:
-    model = specify(frozen(), "contact").compile()
+    model = specify(frozen(), Setting("contact")).compile()
     at = start(model, frozen(), 0.3, 0.0)
     at[model.joint("lift").qposadr[0]] = 1.0
     assert softness(model, at) is None
+
+
+@pytest.mark.parametrize("rolling", ["equality", "contact"])
+@pytest.mark.parametrize(("refsafe", "effective"), [(False, 5e-4), (True, 2e-3)])
+def test_time_constants(rolling: str, refsafe: bool, effective: float) -> None:
+    """With refsafe, MuJoCo raises what is under two timesteps to two."""
+    soft = Softness(solref=(5e-4, 1.0), impedance=(0.99, 0.99), refsafe=refsafe)
+    model = build(frozen(), rolling, softness=soft)
+    effect = softness(model, start(model, frozen(), 1.0, 0.0))
+    assert effect is not None
+    assert (effect.timeconst, effect.impedance) == (5e-4, pytest.approx(0.99))
+    assert effect.effective_timeconst == pytest.approx(effective, rel=1e-9)
+
+
+def test_stiffness_is_given_directly() -> None:
+    model = build(frozen(), "equality", softness=Softness(solref=(-1e6, -2e3)))
+    assert model.eq_solref[0].tolist() == [-1e6, -2e3]
+
+
+def test_what_is_not_given_stays_as_it_is_tuned() -> None:
+    model = build(frozen(), "contact", friction=0.3, softness=Softness(impratio=7.0))
+    assert model.opt.impratio == 7.0
+    assert model.pair_friction[0, 0] == 0.3
+    assert model.pair_solref[0].tolist() == [1e-3, 1]
+    assert model.pair_solimp[0, :2].tolist() == [0.9999, 0.9999]
+    assert model.opt.disableflags & REFSAFE
