@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: help report test search lint gl clean
+.PHONY: help report test quick search lint gl clean
 
 help:
 	@sed -n '1,2p' $(MAKEFILE_LIST)
@@ -16,6 +16,10 @@ report: $(STAMP) gl
 
 test: $(STAMP) gl lint
 	$(BIN)/python -m pytest -n auto
+
+# What takes no time, for the loop of an edit: half a minute.
+quick: $(STAMP)
+	$(BIN)/python -m pytest -n auto -m "not slow"
 
 # Two thousand random runs, of which none may be wrong and silent: minutes.
 search: $(STAMP)
@@ -39,4 +43,4 @@ $(STAMP): pyproject.toml
 	@touch $@
 
 clean:
-	rm -rf $(VENV) report benchmark stability dist
+	rm -rf $(VENV) report benchmark stability paper dist

@@ -1,6 +1,8 @@
-"""The theory needs neither a simulator nor a compiler."""
+"""The folders are as `docs/architecture.md` says, and theory needs neither a simulator nor a compiler."""
 
+import ast
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -9,6 +11,10 @@ import pytest
 import mjbeer
 
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
+DOCUMENT = (pathlib.Path(__file__).parents[1] / "docs" / "architecture.md").read_text()
+FOLDERS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and any(path.glob("*.py")))
+EVERYBODY = {"require", "exceptions"}
+"""Modules that all may import."""
 THEORY = [
     ".".join(("mjbeer", *path.relative_to(PACKAGE).with_suffix("").parts))
     for folder in ("theory", "predictions", "paper/equations")
@@ -20,17 +26,70 @@ USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trus
 LOADED = "import sys; print(sorted({'mujoco', 'numba', 'llvmlite', 'mediapy', 'OpenGL'} & set(sys.modules)))"
 
 
-@pytest.mark.parametrize(
-    "code",
-    [
-        "import mjbeer",
-        "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.letters", "mjbeer.paper.audit.claim")),
-        USE,
-    ],
-)
+@pytest.mark.parametrize("code", ["import mjbeer", IMPORTS, USE])
 def test_theory_imports_no_simulator(code: str) -> None:
     ran = subprocess.run([sys.executable, "-c", f"{code}; {LOADED}"], capture_output=True, text=True, check=False)
     assert (ran.stdout.strip(), ran.stderr) == ("[]", "")
+
+
+def imported(folder: str) -> set[str]:
+    """The other folders and modules of mjbeer that the modules of a folder import anything from."""
+    names = set()
+    for path in (PACKAGE / folder).rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and node.module == "mjbeer":
+                names |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and (module := node.module or "").startswith("mjbeer."):
+                names.add(module.split(".")[1])
+    return names - {folder}
+
+
+def test_the_document_has_the_folders_and_what_they_import() -> None:
+    rows = re.findall(r"^\| `(\w+)/` \| .* \| (.*) \|$", DOCUMENT, re.MULTILINE)
+    assert sorted(folder for folder, _ in rows) == FOLDERS
+    for folder, named in rows:
+        documented = set(named.replace("nothing", "").replace(",", " ").split())
+        assert documented == imported(folder) - EVERYBODY - {"report"}, folder
+
+
+def test_the_picture_s_arrows_are_imports_and_all_folders_stand_in_it() -> None:
+    drawn = set(re.findall(r"(\w+)(?:\[[^]]*\])? --> (\w+)", DOCUMENT))
+    assert {name for arrow in drawn for name in arrow} == {*FOLDERS, "report"}
+    for above, below in drawn - {arrow for arrow in drawn if "report" in arrow}:
+        assert below in imported(above), (above, below)
+
+
+def test_few_files_stand_beside_the_folders() -> None:
+    assert len([path for path in PACKAGE.iterdir() if path.is_file()]) <= 6
+
+
+def test_every_folder_says_in_a_sentence_what_it_is_and_imports_nothing() -> None:
+    for path in PACKAGE.rglob("*/__init__.py"):
+        (only,) = ast.parse(path.read_text()).body
+        assert isinstance(only, ast.Expr), path
+        assert path.read_text().count("\n") == 1, path
+
+
+def test_the_names_of_the_package_are_the_public_ones() -> None:
+    code = "import mjbeer; print(sorted(dir(mjbeer)) == sorted(mjbeer.__all__))"
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout == "True\n"
+    assert all(getattr(mjbeer, name) is not None for name in mjbeer.__all__)
+    assert {"simulate", "build", "render", "exact", "Scene"} <= set(dir(mjbeer))
+
+
+def test_the_version_is_that_of_the_installed_package() -> None:
+    from importlib.metadata import version
+
+    assert mjbeer.__version__ == version("mjbeer")
+
+
+def test_the_package_runs_as_a_module() -> None:
+    ran = subprocess.run(
+        [sys.executable, "-m", "mjbeer", "advise", "frozen"], capture_output=True, text=True, check=False
+    )
+    assert (ran.returncode, ran.stderr) == (0, "")
+    assert ran.stdout.startswith("mjbeer.simulate(")
 
 
 def test_unknown_names_are_attribute_errors() -> None:

@@ -112,7 +112,8 @@ def test_links_and_paths_lead_somewhere() -> None:
         text = path.read_text()
         targets = [each["target"] for each in LINK.finditer(text) if "://" not in each["target"]]
         paths = re.findall(r"(?<![\w/])(?:mjcf|src|tests|renders)/[\w/]*(?:\.\w+)?", text)
-        assert not [each for each in [*targets, *paths] if not (path.parent / each).exists()], path
+        assert not [target for target in targets if not (path.parent / target).exists()], path
+        assert not [named for named in paths if not (CHECKOUT / named).exists()], path
 
 
 def test_run_times_of_the_readme_are_those_of_the_study_that_comes_with_mjbeer() -> None:

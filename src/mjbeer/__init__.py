@@ -46,6 +46,8 @@ _LAZY = {
 def __getattr__(name: str) -> object:
     if name in _LAZY:
         return getattr(import_module(_LAZY[name]), name)
+    if name == "__version__":
+        return import_module("importlib.metadata").version("mjbeer")
     raise AttributeError(f"module 'mjbeer' has no attribute {name!r}")
 
 
