@@ -79,7 +79,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
 
     verdict = check(console)
     files.remove(folder / "summary.md")
-    files.write(folder / "validation.json", tables.validation_json(verdict.checks, verdict.findings))
+    files.write(folder / "validation.json", tables.to_json(verdict.checks, verdict.findings))
     size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
         trajectory = film.trajectory()
@@ -100,6 +100,6 @@ def _summary(verdict: Verdict) -> str:
     for film in _FILMS:
         lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
     lines += ["## The paper's stories", "", "A plot each: [paper/stories.md](paper/stories.md).", ""]
-    lines += ["## Validation against exact theory", "", tables.validation_markdown(checks)]
-    lines += ["## The paper, equation by equation", "", tables.audit_markdown(findings)]
+    lines += ["## Validation against exact theory", "", tables.validation(checks, document=True).markdown(title=False)]
+    lines += ["## The paper, equation by equation", "", tables.audit(findings, document=True).markdown(title=False)]
     return "\n".join(lines)

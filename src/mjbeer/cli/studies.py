@@ -29,7 +29,7 @@ class Validate:
 
         verdict = check(STDERR)
         if self.json:
-            terminal.write(tables.validation_json(verdict.checks, verdict.findings))
+            terminal.write(tables.to_json(verdict.checks, verdict.findings))
         else:
             show(tables.validation(verdict.checks), tables.audit(verdict.findings))
         return 0 if verdict.passed else _FAILED
@@ -75,8 +75,7 @@ class Benchmark:
         with claimed(self.output):
             study = benchmark.run(self.scenes, self.output, self.quick, STDERR)
             report.write(study, self.output)
-        for grid in tables.tables(study):
-            show(grid.rich())
+        show(*tables.tables(study))
         say(f"the study is in {self.output / 'summary.md'}")
         return 0
 
@@ -124,7 +123,7 @@ class Stability:
         if self.json:
             terminal.write(found.json())
         else:
-            show(*(grid.rich() for grid in tables.tables(found)))
+            show(*tables.tables(found))
         for each in found.unexpected:
             say(f"not as theory expects: {each}", "red")
         say(f"the study is in {self.output / 'summary.md'}")

@@ -5,7 +5,7 @@ import pytest
 
 from mjbeer import Can, sliding
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
-from mjbeer.studies.benchmark.predicted import all_of_them, grid
+from mjbeer.studies.benchmark.predicted import all_of_them, table
 from mjbeer.studies.cases import CASES
 
 # What each prediction leaves out, relative to it.
@@ -68,4 +68,4 @@ def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
 
 
 def test_the_table_has_a_row_each() -> None:
-    assert len(grid().rows) == len(all_of_them())
+    assert len(table().rows) == len(all_of_them())

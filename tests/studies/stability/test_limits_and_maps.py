@@ -139,7 +139,7 @@ def test_limits_agree() -> None:
     assert [each["agrees"] for each in found] == [True] * 3
     assert found[2]["accurate"] < 0.25 * accurate_limit("DOP853")  # softness, and not the integrator
     assert json.loads(json.dumps(found)) == found
-    assert "NO" not in limits.grid(found).markdown()
+    assert "NO" not in limits.table(found).markdown()
 
 
 def test_a_wrong_limit_does_not_agree(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -147,7 +147,7 @@ def test_a_wrong_limit_does_not_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(linear_stability, "stable_limit", lambda _: 1.06 * right)
     found = limits.measure("frozen", "reduced", "RK4")
     assert not found["agrees"]
-    assert "NO" in limits.grid([found]).markdown()
+    assert "NO" in limits.table([found]).markdown()
 
 
 def test_a_contact_that_is_not_settled_loses_a_stage() -> None:
@@ -173,7 +173,7 @@ def test_plots_are_drawn(measured_maps: list[dict], tmp_path: pathlib.Path) -> N
     )
     assert plots.LIMITS in names
     assert len(names) == 3
-    assert "100.0%" in maps.grid(measured_maps).markdown()
+    assert "100.0%" in maps.table(measured_maps).markdown()
 
 
 def test_the_table_of_the_document_is_that_of_theory() -> None:

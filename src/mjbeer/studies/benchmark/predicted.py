@@ -8,7 +8,7 @@ import numpy as np
 from mjbeer.model import state
 from mjbeer.model.softness import softness
 from mjbeer.model.usual import USUAL, build_usual
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
 from mjbeer.simulation import stepping
 from mjbeer.simulation.simulate import simulate
@@ -79,14 +79,14 @@ def all_of_them() -> list[Prediction]:
     return found
 
 
-def grid() -> Grid:
+def table() -> Table:
     """Predictions and measurements."""
     rows = []
     for each in all_of_them():
         predicted, measured = each.predict(), each.measure()
         rows.append((each.what, each.of, f"{predicted:.4g}", f"{measured:.4g}", f"{measured / predicted - 1:+.1e}"))
     columns = ("numerical error", "where", "predicted", "measured", "apart")
-    return Grid("Numerical errors that theory gives in advance", columns, rows)
+    return Table("Numerical errors that theory gives in advance", columns, rows)
 
 
 def _largest(values: np.ndarray) -> float:

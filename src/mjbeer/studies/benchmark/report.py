@@ -22,12 +22,12 @@ def write(study: Study, folder: pathlib.Path) -> None:
     """
     files.write(folder / "points.csv", study.csv())
     plots.draw(study, folder / "work_precision")
-    grids = [*tables.tables(study), predicted.grid()]
+    results = [*tables.tables(study), predicted.table()]
     versions = ", ".join(f"{name} {number}" for name, number in study.machine["versions"].items())
     lines = [
         "# mjbeer: error against run time", "",
         f"{study.machine['processor']}, {study.machine['system']}, Python {study.machine['python']}; {versions}.",
         _READ, "![Work-precision diagram](work_precision.svg)", "",
-        *(grid.markdown() for grid in grids),
+        *(table.markdown() for table in results),
     ]  # fmt: skip
     files.write(folder / "summary.md", "\n".join(lines))

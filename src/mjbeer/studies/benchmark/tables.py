@@ -4,7 +4,7 @@ import math
 
 from mjbeer.model.setting import DOP853, ROLLINGS
 from mjbeer.model.usual import USUAL
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned
 from mjbeer.studies.benchmark.points import Point, Study
@@ -14,7 +14,7 @@ COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which others are compared with the best setting."""
 
 
-def tables(study: Study) -> list[Grid]:
+def tables(study: Study) -> list[Table]:
     """All of them."""
     found = [cheapest(study, case) for case in study.cases]
     found += [others(study), tolerances(study), usual(study)]
@@ -33,7 +33,7 @@ def milliseconds(time: float) -> str:
     return f"{1e3 * time:.3g} ms"
 
 
-def cheapest(study: Study, case: str) -> Grid:
+def cheapest(study: Study, case: str) -> Table:
     """For each error and way of rolling, the cheapest setting, and the front of them all."""
     points = study.of(case)
     ways = [way for way in ROLLINGS if any(each.way == way for each in points)]
@@ -44,10 +44,10 @@ def cheapest(study: Study, case: str) -> Grid:
             point = frontier.cheapest((each for each in points if each.way == way), level)
             cells.append("not reached" if point is None else f"{setting(point)}: {milliseconds(point.time)}")
         rows.append(tuple(cells))
-    return Grid(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
+    return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
 
 
-def others(study: Study) -> Grid:
+def others(study: Study) -> Table:
     """Run time of others over that of the best reduced setting, at equal error."""
     names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
     rows = []
@@ -61,10 +61,10 @@ def others(study: Study) -> Grid:
             ratios = [frontier.time_for(curves[name], level) / best for name in names]
             rows.append((f"{case}, {level:.0e} rad", milliseconds(best), *(_ratio(each) for each in ratios)))
     columns = ("error", "best reduced", *names)
-    return Grid("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
+    return Table("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
 
 
-def tolerances(study: Study) -> Grid:
+def tolerances(study: Study) -> Table:
     """What it costs not to know the timestep."""
     rows = []
     for case in study.cases:
@@ -74,10 +74,10 @@ def tolerances(study: Study) -> Grid:
                 row = (f"{case}, 1e-{digits}", milliseconds(fixed.time), milliseconds(asked.time))
                 rows.append((*row, f"{asked.time / fixed.time:.2f}", f"{asked.error:.1e}"))
     columns = ("tolerance [rad]", "fixed timestep", "to the tolerance", "ratio", "its error [rad]")
-    return Grid("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
+    return Table("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
 
 
-def usual(study: Study) -> Grid:
+def usual(study: Study) -> Table:
     """Models as people usually write them, and their tuned twins in the same time."""
     rows = []
     for case in study.cases:
@@ -91,10 +91,10 @@ def usual(study: Study) -> Grid:
             cells = f"{point.error:.1e}", milliseconds(point.time), share, f"{gain:.1e}"
             rows.append((f"{case}: {written}", *cells))
     columns = ("as usually written, Euler, 2 ms", "error [rad]", "run time", "share of the force", "tuned is better by")
-    return Grid("Models as usually written, and their tuned twins at equal run time", columns, rows)
+    return Table("Models as usually written, and their tuned twins at equal run time", columns, rows)
 
 
-def verdicts(study: Study, case: str) -> Grid:
+def verdicts(study: Study, case: str) -> Table:
     """What each ladder of timesteps shows, and where its error comes from at the finest rung that can tell."""
     rows = []
     for curve in dict.fromkeys(each.curve for each in study.points if each.case == case):
@@ -107,7 +107,7 @@ def verdicts(study: Study, case: str) -> Grid:
         split += ["" if each is None else f"{each:.1e}" for each in (last.model_error, last.integrator_error)]
         rows.append((curve.label, str(verdict_of(points)), *split))
     columns = ("curve", "verdict", "at a rung: error [rad]", "of the model", "of the integrator")
-    return Grid(f"{case}: verdicts", columns, rows)
+    return Table(f"{case}: verdicts", columns, rows)
 
 
 def verdict_of(points: list[Point]) -> Verdict:
@@ -116,7 +116,7 @@ def verdict_of(points: list[Point]) -> Verdict:
     return verdict([each.value for each in even], [each.error for each in even])
 
 
-def stages(study: Study) -> Grid:
+def stages(study: Study) -> Table:
     """What the stages of a step cost a scene that does not need them."""
     names = list(dict.fromkeys(name for row in study.ablation for name in row if name not in ("case", "integrator")))
     rows = []
@@ -126,7 +126,7 @@ def stages(study: Study) -> Grid:
         ]
         rows.append((f"{row['case']}, {row['integrator']}", *cells))
     columns = ("reduced model", "a step", *(f"with {name}" for name in names if name != "step"))
-    return Grid("Time of a step with one stage more over that of a step without", columns, rows)
+    return Table("Time of a step with one stage more over that of a step without", columns, rows)
 
 
 def _ratio(value: float) -> str:

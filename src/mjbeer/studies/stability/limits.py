@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.studies.cases import CASES
@@ -71,7 +71,7 @@ def tasks(quick: bool = False) -> list[Task]:
     return found
 
 
-def grid(results: list[dict[str, Any]]) -> Grid:
+def table(results: list[dict[str, Any]]) -> Table:
     """The limits as a table, measured over predicted in brackets."""
     rows = []
     for each in results:
@@ -85,7 +85,7 @@ def grid(results: list[dict[str, Any]]) -> Grid:
             "a stage of RK4 loses the contact" if each.get("lost_a_stage") else verdict,
         ))  # fmt: skip
     columns = ("scene", "integrator", "stable to ωh (over theory)", "accurate to ωh (over theory)", "agrees")
-    return Grid("Largest timesteps of a small swing", columns, rows)
+    return Table("Largest timesteps of a small swing", columns, rows)
 
 
 def _combinations() -> list[tuple[str, str, str, bool]]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer.model.setting import DOP853, INTEGRATORS
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.studies.stability.short_runs import UNSTABLE, Bench, Plan
 from mjbeer.studies.study import Task
 
@@ -82,13 +82,13 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
     }
 
 
-def grid(results: list[dict[str, Any]]) -> Grid:
+def table(results: list[dict[str, Any]]) -> Table:
     """How well the maps agree with theory."""
     rows: list[tuple[str, ...]] = [
         (each["name"], f"{each['same']:.1%}", f"{each['worst']:.1%}", "yes" if each["agrees"] else "NO")
         for each in results
     ]
-    return Grid("Maps of timestep and stiffness", ("map", "cells as predicted", "boundary off by", "agrees"), rows)
+    return Table("Maps of timestep and stiffness", ("map", "cells as predicted", "boundary off by", "agrees"), rows)
 
 
 def _boundary(judge: Callable[[float], int], timesteps: list[float], known: list[int]) -> float | None:

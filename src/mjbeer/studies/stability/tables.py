@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from mjbeer.model.setting import ROLLINGS
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.studies.stability import limits, maps
 from mjbeer.studies.stability.outcome import ACCURATE, SILENT, VERDICTS
 from mjbeer.studies.stability.run import Stability
@@ -15,19 +15,19 @@ from mjbeer.studies.stability.run import Stability
 _RUN = ("kind", "case", "setting", "verdict", "error", "admitted", "says", "expected", "as_expected")
 
 
-def tables(found: Stability) -> list[Grid]:
+def tables(found: Stability) -> list[Table]:
     """The tables for the terminal; those with a line for each case are only in the summary."""
     return [
         verdicts(found),
         laws(found),
-        limits.grid(found.of("limits")),
-        maps.grid(found.of("maps")),
+        limits.table(found.of("limits")),
+        maps.table(found.of("maps")),
         search(found),
         endurance(found),
     ]
 
 
-def verdicts(found: Stability) -> Grid:
+def verdicts(found: Stability) -> Table:
     """How many runs ended in which way."""
     counts: dict[str, Counter[str]] = {}
     for case in found.of("catalogue"):
@@ -35,22 +35,22 @@ def verdicts(found: Stability) -> Grid:
     for batch in found.of("search"):
         counts.setdefault("random", Counter()).update(batch["verdicts"])
     rows = [(kind, *(str(of[each]) for each in VERDICTS)) for kind, of in counts.items()]
-    return Grid("How runs ended", ("cases", *VERDICTS), rows)
+    return Table("How runs ended", ("cases", *VERDICTS), rows)
 
 
-def catalogue(found: Stability) -> Grid:
+def catalogue(found: Stability) -> Table:
     """A line a case: what came of it in each way of rolling."""
     rows = []
     for case in found.of("catalogue"):
         runs = {way: [each for each in case["runs"] if each["setting"].startswith(way)] for way in ROLLINGS}
         rows.append((f"{case['kind']}: {case['name']}", *(_seen(runs[way]) for way in ROLLINGS)))
-    return Grid("Stiff and extreme cases: runs, and the largest error [rad]", ("case", *ROLLINGS), rows)
+    return Table("Stiff and extreme cases: runs, and the largest error [rad]", ("case", *ROLLINGS), rows)
 
 
-def reasons(found: Stability) -> Grid:
+def reasons(found: Stability) -> Table:
     """A line a case: why it is one, and what theory expects."""
     rows = [(each["name"], each["why"], each["theory"]) for each in found.of("catalogue")]
-    return Grid("Why they are stiff or extreme", ("case", "why", "what theory expects"), rows)
+    return Table("Why they are stiff or extreme", ("case", "why", "what theory expects"), rows)
 
 
 def _seen(runs: list[dict[str, Any]]) -> str:
@@ -65,7 +65,7 @@ def _seen(runs: list[dict[str, Any]]) -> str:
     return ", ".join(parts) + (f"; {odd} UNEXPECTED" if odd else "")
 
 
-def search(found: Stability) -> Grid:
+def search(found: Stability) -> Table:
     """What the random search found."""
     batches = found.of("search")
     total = Counter[str]()
@@ -80,10 +80,10 @@ def search(found: Stability) -> Grid:
         ("trusted with more of an error than they admit", f"{len(over)} (largest error {worst:.0e} rad)"),
     ]
     rows += [(f"{SILENT}: seed {batch['seed']}", each["trial"]) for batch in batches for each in batch["silent"]]
-    return Grid("Random search", ("", "runs"), rows)
+    return Table("Random search", ("", "runs"), rows)
 
 
-def endurance(found: Stability) -> Grid:
+def endurance(found: Stability) -> Table:
     """How energy drifts over many swings."""
     rows = []
     for each in found.of("endurance"):
@@ -96,16 +96,16 @@ def endurance(found: Stability) -> Grid:
         setting = f"{each['name']}, {each['integrator']}, T/{each['steps']}"
         rows.append((setting, f"{each['swings']:,}", f"{end:.1e}", exponent, law, share))
     heads = ("swing of 1 rad", "swings", "drift at the end", "exponent", "law", "share a swing: measured, theory")
-    return Grid("Drift of the swing's energy, as a share of it", heads, rows)
+    return Table("Drift of the swing's energy, as a share of it", heads, rows)
 
 
-def laws(found: Stability) -> Grid:
+def laws(found: Stability) -> Table:
     """The laws towards the extremes."""
     rows = [
         (each["quantity"], each["by"], f"{each['error']:.1e}", f"{each['bound']:.0e} {each['unit']}".strip())
         for each in found.of("laws")
     ]
-    return Grid("Laws towards the extremes", ("law", "by", "error", "at most"), rows)
+    return Table("Laws towards the extremes", ("law", "by", "error", "at most"), rows)
 
 
 def runs(found: Stability) -> str:
