@@ -127,7 +127,7 @@ def test_the_table_of_the_readme_is_that_of_the_program() -> None:
         "| check | by | error | at most | what dominates the error |\n|---|---|---:|---:|---|\n"
     )
     table = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()]
-    rows = motions.rows()
+    rows = motions.checks()
     bounds = [f"{row.bound:.1e} {row.unit}".strip() for row in rows]
     assert start
     assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in table] == [

@@ -11,7 +11,7 @@ from mjbeer.output import files
 from mjbeer.paper.stories import report
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.validation import tables
-from mjbeer.studies.validation.run import Verdict, check
+from mjbeer.studies.validation.run import Validation, validate
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
@@ -64,7 +64,7 @@ _FILMS = (
 )
 
 
-def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
+def write(folder: pathlib.Path, quick: bool, console: Console) -> Validation:
     """Write validation.json, a video and a picture of each scene, the paper's stories and summary.md into a folder.
 
     Quickly, the videos are smaller and the stories have plots and no films.
@@ -77,9 +77,9 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
     """
     from mjbeer.drawing.video import render, save_frame
 
-    verdict = check(console)
+    validation = validate(console)
     files.remove(folder / "summary.md")
-    files.write(folder / "validation.json", tables.to_json(verdict.checks, verdict.findings))
+    files.write(folder / "validation.json", tables.to_json(validation))
     size = (640, 360, 15) if quick else (1280, 720, 30)
     for film in _FILMS:
         trajectory = film.trajectory()
@@ -88,18 +88,18 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
         console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
     report.write(folder / "paper", not quick, console)
     console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-    files.write(folder / "summary.md", _summary(verdict))
-    return verdict
+    files.write(folder / "summary.md", _summary(validation))
+    return validation
 
 
-def _summary(verdict: Verdict) -> str:
-    checks, findings = verdict.checks, verdict.findings
+def _summary(validation: Validation) -> str:
+    results, findings = validation.results, validation.findings
     lines = ["# mjbeer: report", ""]
-    lines += [f"{sum(each.passed for each in checks)} of {len(checks)} checks passed.", ""]
-    lines += [f"{sum(each.passed for each in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
+    lines += [f"{sum(result.passed for result in results)} of {len(results)} checks passed.", ""]
+    lines += [f"{sum(finding.passed for finding in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
     for film in _FILMS:
         lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
     lines += ["## The paper's stories", "", "A plot each: [paper/stories.md](paper/stories.md).", ""]
-    lines += ["## Validation against exact theory", "", tables.validation(checks, document=True).markdown(title=False)]
+    lines += ["## Validation against exact theory", "", tables.validation(results, document=True).markdown(title=False)]
     lines += ["## The paper, equation by equation", "", tables.audit(findings, document=True).markdown(title=False)]
     return "\n".join(lines)

@@ -25,14 +25,14 @@ class Validate:
     def run(self) -> int:
         """Do it; the exit status."""
         from mjbeer.studies.validation import tables
-        from mjbeer.studies.validation.run import check
+        from mjbeer.studies.validation.run import validate
 
-        verdict = check(STDERR)
+        validation = validate(STDERR)
         if self.json:
-            terminal.write(tables.to_json(verdict.checks, verdict.findings))
+            terminal.write(tables.to_json(validation))
         else:
-            show(tables.validation(verdict.checks), tables.audit(verdict.findings))
-        return 0 if verdict.passed else _FAILED
+            show(tables.validation(validation.results), tables.audit(validation.findings))
+        return 0 if validation.passed else _FAILED
 
 
 @dataclass(frozen=True)
@@ -50,10 +50,10 @@ class Report:
         from mjbeer.studies.validation import tables
 
         with claimed(self.output), claimed(self.output / "paper"):
-            verdict = report.write(self.output, self.quick, STDERR)
-        show(tables.validation(verdict.checks), tables.audit(verdict.findings))
+            validation = report.write(self.output, self.quick, STDERR)
+        show(tables.validation(validation.results), tables.audit(validation.findings))
         say(f"the report is in {self.output / 'summary.md'}")
-        return 0 if verdict.passed else _FAILED
+        return 0 if validation.passed else _FAILED
 
 
 @dataclass(frozen=True)

@@ -3,27 +3,30 @@
 import dataclasses
 import json
 import math
+from importlib.metadata import version
+from typing import Any
 
 from mjbeer.output.table import Table
 from mjbeer.paper.audit.claim import Finding
-from mjbeer.studies.check import Check
+from mjbeer.studies.check import Result
+from mjbeer.studies.validation.run import Validation
 
 _VERDICTS = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
 _FAILED = " **FAIL**"
 _SHORT = ("printed", "right", "at most", "row")
 
 
-def validation(checks: list[Check], document: bool = False) -> Table:
+def validation(results: list[Result], document: bool = False) -> Table:
     """Return the table of checks: with a verdict for the terminal, with what dominates the error for a `document`."""
     rows = [
         (
-            check.quantity,
-            check.by,
-            f"{check.error:.1e}" + ("" if check.passed or not document else _FAILED),
-            f"{check.bound:.1e} {check.unit}".strip(),
-            check.reason if document else _VERDICTS[check.passed],
+            result.quantity,
+            result.by,
+            f"{result.error:.1e}" + ("" if result.passed or not document else _FAILED),
+            f"{result.bound:.1e} {result.unit}".strip(),
+            result.reason if document else _VERDICTS[result.passed],
         )
-        for check in checks
+        for result in results
     ]
     last = "what dominates the error" if document else "verdict"
     return Table("Validation against exact theory", ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))
@@ -49,26 +52,20 @@ def audit(findings: list[Finding], document: bool = False) -> Table:
     return Table("The paper, equation by equation", columns, rows, left=(0, 1, 2, 3, 7))
 
 
-def to_json(checks: list[Check], findings: list[Finding]) -> str:
-    """The validation table and the audit as JSON, with the versions that they were measured with."""
-    from importlib.metadata import version
-
-    versions = {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
-    rows = [{**dataclasses.asdict(check), "error": _number(check.error), "passed": check.passed} for check in checks]
-    numbers = ("printed", "right", "bound", "misses_by")
-    audited = [
-        {
-            **dataclasses.asdict(each),
-            **{name: None if getattr(each, name) is None else _number(getattr(each, name)) for name in numbers},
-            "passed": each.passed,
-        }
-        for each in findings
-    ]
-    passed = all(each.passed for each in (*checks, *findings))
-    content = {"versions": versions, "passed": passed, "checks": rows, "audit": audited}
+def to_json(validation: Validation) -> str:
+    """Return the results and the findings as JSON, with the versions that they were measured with."""
+    versions = {name: version(name) for name in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
+    content = {
+        "versions": versions,
+        "passed": validation.passed,
+        "checks": [_record(result) for result in validation.results],
+        "audit": [_record(finding) for finding in validation.findings],
+    }
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _number(value: float) -> float | None:
-    """JSON has no number for what is infinite or none."""
-    return value if math.isfinite(value) else None
+def _record(row: Result | Finding) -> dict[str, Any]:
+    """The fields of a row; JSON has no number for what is infinite or none."""
+    fields = dataclasses.asdict(row) | {"passed": row.passed}
+    unknown = {name for name, value in fields.items() if isinstance(value, float) and not math.isfinite(value)}
+    return fields | dict.fromkeys(unknown)
