@@ -54,7 +54,7 @@ def on(points: list[Point], *curve: str) -> list[Point]:
     [("reduced", "Euler", 1), ("reduced", "RK4", 4), ("equality", "RK4", 4)],
 )
 def test_fitted_orders_are_the_methods(measured: Study, way: str, method: str, order: int) -> None:
-    found = tables.verdict_of(on(measured.points, way, method, "timestep"))
+    found = tables.convergence_of(on(measured.points, way, method, "timestep"))
     assert found.order == pytest.approx(order, abs=ORDER_MARGIN)
 
 
@@ -71,7 +71,7 @@ def test_every_order_of_the_stored_study_is_the_method_s_or_the_softness_s() -> 
     fitted = 0
     for case in stored.cases:
         for curve in dict.fromkeys(each.curve for each in stored.of(case) if each.knob == "timestep"):
-            found = tables.verdict_of([each for each in stored.of(case) if each.curve == curve]).order
+            found = tables.convergence_of([each for each in stored.of(case) if each.curve == curve]).order
             order = methods.get(curve.method, 1)
             soft = [1, 2] if curve.way == "contact" and order > 2 else []
             assert found is None or min(abs(found - each) for each in (order, *soft)) <= ORDER_MARGIN, curve
@@ -82,7 +82,7 @@ def test_every_order_of_the_stored_study_is_the_method_s_or_the_softness_s() -> 
 def test_a_soft_contact_errs_as_the_square_of_its_time_constant(measured: Study) -> None:
     """tau = h, and what a tuned contact lets through is tau^2 of it: the model's error, whatever integrates it."""
     points = on(measured.points, "contact", "DOP853", "timestep")
-    assert tables.verdict_of(points).order == pytest.approx(2, abs=ORDER_MARGIN)
+    assert tables.convergence_of(points).order == pytest.approx(2, abs=ORDER_MARGIN)
     assert known(points[-1].model_error) == pytest.approx(points[-1].error, rel=1e-2)
     assert known(points[-1].integrator_error) < 0.01 * points[-1].error
 

@@ -20,7 +20,7 @@ from mjbeer.studies.benchmark.peers.installed import installed
 from mjbeer.studies.benchmark.peers.peer import Peer
 from mjbeer.studies.benchmark.points import Point, Study, load, missing, same_conditions
 from mjbeer.studies.cases import CASES, Case
-from mjbeer.studies.convergence import verdict
+from mjbeer.studies.convergence import convergence
 
 REPEATS = 5
 """Run times of each setting; a round times every setting once, so that a slow minute is nobody's alone."""
@@ -106,7 +106,7 @@ def _climb(
                 errors.append(point.error)
         yield point
         # What a tolerance leaves may stay the same over some decades: it is met by steps that are finer anyway.
-        floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and verdict(steps, errors).kind == "floored"
+        floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and convergence(steps, errors).kind == "floored"
         if floored or (failures > 1 and errors):
             return
 

@@ -1,4 +1,4 @@
-"""The tables of a study: cheapest settings, comparisons, verdicts, predictions, stages of a step."""
+"""The tables of a study: cheapest settings, comparisons, convergence, stages of a step."""
 
 import math
 
@@ -8,7 +8,7 @@ from mjbeer.output.table import Table
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned
 from mjbeer.studies.benchmark.points import Point, Study
-from mjbeer.studies.convergence import Verdict, verdict
+from mjbeer.studies.convergence import Convergence, convergence
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which others are compared with the best setting."""
@@ -18,7 +18,7 @@ def tables(study: Study) -> list[Table]:
     """All of them."""
     found = [cheapest(study, case) for case in study.cases]
     found += [others(study), tolerances(study), usual(study)]
-    found += [verdicts(study, case) for case in study.cases]
+    found += [ladders(study, case) for case in study.cases]
     return [*found, stages(study)]
 
 
@@ -94,7 +94,7 @@ def usual(study: Study) -> Table:
     return Table("Models as usually written, and their tuned twins at equal run time", columns, rows)
 
 
-def verdicts(study: Study, case: str) -> Table:
+def ladders(study: Study, case: str) -> Table:
     """What each ladder of timesteps shows, and where its error comes from at the finest rung that can tell."""
     rows = []
     for curve in dict.fromkeys(each.curve for each in study.points if each.case == case):
@@ -105,15 +105,15 @@ def verdicts(study: Study, case: str) -> Table:
         last = told[-1] if told else points[-1]
         split = [f"{milliseconds(last.value)}: {last.error:.1e}"]
         split += ["" if each is None else f"{each:.1e}" for each in (last.model_error, last.integrator_error)]
-        rows.append((curve.label, str(verdict_of(points)), *split))
+        rows.append((curve.label, str(convergence_of(points)), *split))
     columns = ("curve", "verdict", "at a rung: error [rad]", "of the model", "of the integrator")
     return Table(f"{case}: verdicts", columns, rows)
 
 
-def verdict_of(points: list[Point]) -> Verdict:
-    """The verdict on a curve, from the rungs that need no interpolation."""
-    even = [each for each in points if each.method != DOP853 or aligned(each.value)]
-    return verdict([each.value for each in even], [each.error for each in even])
+def convergence_of(points: list[Point]) -> Convergence:
+    """Return what the points of a curve show, by the rungs that need no interpolation."""
+    even = [point for point in points if point.method != DOP853 or aligned(point.value)]
+    return convergence([point.value for point in even], [point.error for point in even])
 
 
 def stages(study: Study) -> Table:
