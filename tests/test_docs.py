@@ -10,7 +10,8 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CORRECTED, LIMIT
-from mjbeer.studies.benchmark import advice, points, tables
+from mjbeer.studies.benchmark import advice, tables
+from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.validation import motions
 from tests.support import stubs
 
@@ -116,7 +117,7 @@ def test_links_and_paths_lead_somewhere() -> None:
 
 
 def test_run_times_of_the_readme_are_those_of_the_study_that_comes_with_mjbeer() -> None:
-    stored, text = points.load(advice.SHIPPED), README.read_text()
+    stored, text = Benchmark.load(advice.SHIPPED), README.read_text()
     for table in (tables.cheapest(stored, "frozen"), tables.others(stored), tables.usual(stored)):
         assert table.markdown(title=False).strip() in text, table.title
 

@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from mjbeer.output import interruption
-from mjbeer.studies.benchmark import points
+from mjbeer.studies.benchmark.points import Benchmark
 from tests.support.processes import SHORT, interrupt, start
 
 TWICE = """
@@ -64,7 +64,7 @@ def test_a_benchmark_keeps_what_was_measured(tmp_path: pathlib.Path) -> None:
     ended, _ = interrupt(start(words, SHORT), (tmp_path / "study.json").exists, signal.SIGTERM)
     assert ended == 143
     assert os.listdir(tmp_path) == ["study.json"]
-    assert points.load(tmp_path / "study.json").points
+    assert Benchmark.load(tmp_path / "study.json").points
 
 
 def test_a_report_that_validates_has_written_nothing(tmp_path: pathlib.Path) -> None:

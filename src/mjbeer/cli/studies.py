@@ -73,7 +73,7 @@ class Benchmark:
         from mjbeer.studies.benchmark import run as benchmark
 
         with claimed(self.output):
-            study = benchmark.run(self.scenes, self.output, self.quick, STDERR)
+            study = benchmark.conduct(self.scenes, self.output, self.quick, STDERR)
             report.write(study, self.output)
         show(*tables.tables(study))
         say(f"the study is in {self.output / 'summary.md'}")
@@ -118,7 +118,7 @@ class Stability:
         from mjbeer.studies.stability import run as stability
 
         with claimed(self.output):
-            found = stability.run(self.output, not self.long, STDERR)
+            found = stability.conduct(self.output, not self.long, STDERR)
             report.write(found, self.output)
         if self.json:
             terminal.write(found.json())

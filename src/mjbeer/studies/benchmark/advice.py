@@ -3,9 +3,9 @@
 import pathlib
 
 from mjbeer import require
-from mjbeer.studies.benchmark import frontier, points
+from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TOLERANCE
-from mjbeer.studies.benchmark.points import Point
+from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import milliseconds
 from mjbeer.studies.cases import CASES
 
@@ -20,7 +20,7 @@ def advise(name: str, tolerance: float, rolling: str | None = None, path: pathli
       ParameterError: if the study has no such scene, or no setting meets the tolerance.
     """
     require.positive("tolerance", tolerance, "rad")
-    stored = points.load(SHIPPED if path is None else path)
+    stored = Benchmark.load(SHIPPED if path is None else path)
     require.choice("scene", name, stored.cases)
     point = frontier.advise(stored.of(name), tolerance, rolling)
     case = CASES[name]

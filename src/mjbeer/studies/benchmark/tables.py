@@ -7,14 +7,14 @@ from mjbeer.model.usual import USUAL
 from mjbeer.output.table import Table
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned
-from mjbeer.studies.benchmark.points import Point, Study
+from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.convergence import Convergence, convergence
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which others are compared with the best setting."""
 
 
-def tables(study: Study) -> list[Table]:
+def tables(study: Benchmark) -> list[Table]:
     """All of them."""
     found = [cheapest(study, case) for case in study.cases]
     found += [others(study), tolerances(study), usual(study)]
@@ -33,7 +33,7 @@ def milliseconds(time: float) -> str:
     return f"{1e3 * time:.3g} ms"
 
 
-def cheapest(study: Study, case: str) -> Table:
+def cheapest(study: Benchmark, case: str) -> Table:
     """For each error and way of rolling, the cheapest setting, and the front of them all."""
     points = study.of(case)
     ways = [way for way in ROLLINGS if any(each.way == way for each in points)]
@@ -47,7 +47,7 @@ def cheapest(study: Study, case: str) -> Table:
     return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
 
 
-def others(study: Study) -> Table:
+def others(study: Benchmark) -> Table:
     """Run time of others over that of the best reduced setting, at equal error."""
     names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
     rows = []
@@ -64,7 +64,7 @@ def others(study: Study) -> Table:
     return Table("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
 
 
-def tolerances(study: Study) -> Table:
+def tolerances(study: Benchmark) -> Table:
     """What it costs not to know the timestep."""
     rows = []
     for case in study.cases:
@@ -77,7 +77,7 @@ def tolerances(study: Study) -> Table:
     return Table("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
 
 
-def usual(study: Study) -> Table:
+def usual(study: Benchmark) -> Table:
     """Models as people usually write them, and their tuned twins in the same time."""
     rows = []
     for case in study.cases:
@@ -94,7 +94,7 @@ def usual(study: Study) -> Table:
     return Table("Models as usually written, and their tuned twins at equal run time", columns, rows)
 
 
-def ladders(study: Study, case: str) -> Table:
+def ladders(study: Benchmark, case: str) -> Table:
     """What each ladder of timesteps shows, and where its error comes from at the finest rung that can tell."""
     rows = []
     for curve in dict.fromkeys(each.curve for each in study.points if each.case == case):
@@ -116,7 +116,7 @@ def convergence_of(points: list[Point]) -> Convergence:
     return convergence([point.value for point in even], [point.error for point in even])
 
 
-def stages(study: Study) -> Table:
+def stages(study: Benchmark) -> Table:
     """What the stages of a step cost a scene that does not need them."""
     names = list(dict.fromkeys(name for row in study.ablation for name in row if name not in ("case", "integrator")))
     rows = []
