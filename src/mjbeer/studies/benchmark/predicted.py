@@ -21,7 +21,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Prediction:
-    """A numerical error by theory and by measurement."""
+    """A numerical error as theory predicts it, and as simulations have it."""
 
     what: str
     of: str
@@ -29,8 +29,8 @@ class Prediction:
     measure: Callable[[], float]
 
 
-def all_of_them() -> list[Prediction]:
-    """Each of them."""
+def predictions() -> list[Prediction]:
+    """Return every numerical error that theory gives in advance, with functions that predict and measure it."""
     found = [
         Prediction(
             "frequency too high by (omega h)^2/24", f"{name}, Euler, 4 ms",
@@ -80,11 +80,12 @@ def all_of_them() -> list[Prediction]:
 
 
 def table() -> Table:
-    """Predictions and measurements."""
+    """Return the predicted errors beside the measured ones."""
     rows = []
-    for each in all_of_them():
-        predicted, measured = each.predict(), each.measure()
-        rows.append((each.what, each.of, f"{predicted:.4g}", f"{measured:.4g}", f"{measured / predicted - 1:+.1e}"))
+    for prediction in predictions():
+        predicted, measured = prediction.predict(), prediction.measure()
+        apart = f"{measured / predicted - 1:+.1e}"
+        rows.append((prediction.what, prediction.of, f"{predicted:.4g}", f"{measured:.4g}", apart))
     columns = ("numerical error", "where", "predicted", "measured", "apart")
     return Table("Numerical errors that theory gives in advance", columns, rows)
 

@@ -22,7 +22,7 @@ from mjbeer.studies.cases import CASES, Case
 from mjbeer.studies.convergence import convergence
 
 REPEATS = 5
-"""Run times of each setting; a round times every setting once, so that a slow minute is nobody's alone."""
+"""Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all settings alike."""
 _SHORT = 0.05
 """Runs under this [s] are repeated once, untimed, before they are timed: caches and branch predictors warm."""
 _ENOUGH = 5

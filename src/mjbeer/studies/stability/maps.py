@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer.model.setting import DOP853, INTEGRATORS
 from mjbeer.output.table import Table
-from mjbeer.studies.stability.short_runs import UNSTABLE, Bench, Plan
+from mjbeer.studies.stability.short_runs import UNSTABLE, Plan, ShortRuns
 from mjbeer.studies.study import Task
 
 AGREEMENT = 0.05
@@ -61,14 +61,14 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
     times, stiffnesses = (np.geomspace(*span, cells).tolist() for span in SPANS[plan.family])
     measured, predicted, boundaries = [], [], []
     for value in stiffnesses:
-        bench = Bench(plan, value)
-        seen, said = ([judge(h) for h in times] for judge in (bench.measure, bench.predict))
+        runs = ShortRuns(plan, value)
+        seen, said = ([judge(h) for h in times] for judge in (runs.measure, runs.predict))
         measured.append(seen)
         predicted.append(said)
         boundaries.append({
             "value": value,
-            "measured": _boundary(bench.measure, times, seen),
-            "predicted": _boundary(bench.predict, times, said),
+            "measured": _boundary(runs.measure, times, seen),
+            "predicted": _boundary(runs.predict, times, said),
         })  # fmt: skip
     off = [_off(each["measured"], each["predicted"]) for each in boundaries]
     return {

@@ -10,7 +10,7 @@ import numpy as np
 from mjbeer.model.setting import DOP853, INTEGRATORS
 from mjbeer.simulation.hardness import constrained
 from mjbeer.simulation.simulate import follow, simulate
-from mjbeer.studies.stability.catalogue.case import Attempt, Extreme, attempts
+from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase, attempts
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
@@ -28,8 +28,8 @@ _BESIDE_TOP = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
 _QUICK = ("Euler", "RK4")
 
 
-def cases() -> Iterator[Extreme]:
-    """The cases."""
+def cases() -> Iterator[CatalogueCase]:
+    """Yield the cases."""
     yield from _timeconsts()
     yield from _stiffnesses()
     yield from _impedances()
@@ -47,7 +47,7 @@ def _hard(label: str, scene: Scene, quick: bool = True, **settings: Any) -> Iter
             yield Attempt(f"{rolling}, {integrator}, 1 ms{label}", run, sample=quick and integrator in _QUICK)
 
 
-def _timeconsts() -> Iterator[Extreme]:
+def _timeconsts() -> Iterator[CatalogueCase]:
     for timeconst in _TIMECONSTS:
         ratio = _TIMESTEP / timeconst
         runs = []
@@ -55,7 +55,7 @@ def _timeconsts() -> Iterator[Extreme]:
             label = ", refsafe " + ("on" if refsafe else "off")
             runs += _hard(label, frozen(), not refsafe, solref=(timeconst, 1.0), refsafe=refsafe)
         stable = "inside" if 4 - 4 * ratio - ratio**2 > 0 else "outside"
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"solref time constant {1e3 * timeconst:g} ms at 1 ms",
             f"the constraint's own time is {1 / ratio:g} timesteps",
@@ -65,10 +65,10 @@ def _timeconsts() -> Iterator[Extreme]:
         )
 
 
-def _stiffnesses() -> Iterator[Extreme]:
+def _stiffnesses() -> Iterator[CatalogueCase]:
     for stiffness in _STIFFNESSES:
         damping = 2 * math.sqrt(stiffness)
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"direct solref, stiffness {stiffness:.0e} /s^2 at 1 ms",
             "negative solref is taken as it is: refsafe does not look at it",
@@ -77,9 +77,9 @@ def _stiffnesses() -> Iterator[Extreme]:
         )
 
 
-def _impedances() -> Iterator[Extreme]:
+def _impedances() -> Iterator[CatalogueCase]:
     for impedance in _IMPEDANCES:
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"solimp {impedance:g}",
             "the share of a force that a constraint does not pass on; MuJoCo's hardest is 0.9999",
@@ -88,7 +88,7 @@ def _impedances() -> Iterator[Extreme]:
         )
     for impratio in _IMPRATIOS:
         runs = [each for each in _hard("", frozen(), impratio=impratio) if each.setting.startswith("contact")]
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"impratio {impratio:g}",
             "friction so much harder than the normal force",
@@ -97,7 +97,7 @@ def _impedances() -> Iterator[Extreme]:
         )
 
 
-def _frictions() -> Iterator[Extreme]:
+def _frictions() -> Iterator[CatalogueCase]:
     scene = frozen()
     needed = float(exact(scene, np.linspace(0, 1, 2001), 0.0).forces.needed.max())
     for friction in _FRICTIONS:
@@ -107,7 +107,7 @@ def _frictions() -> Iterator[Extreme]:
             good = (ACCURATE,) if integrator in ("RK4", DOP853) else ()
             expected = good if friction > needed else (INACCURATE,)
             runs.append(Attempt(f"contact, {integrator}, 1 ms", go, expected, sample=integrator in _QUICK))
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"friction {friction:g}",
             "a can needs friction to roll" if friction < needed else "friction that does not give way",
@@ -116,19 +116,19 @@ def _frictions() -> Iterator[Extreme]:
         )
 
 
-def _mass_ratios() -> Iterator[Extreme]:
+def _mass_ratios() -> Iterator[CatalogueCase]:
     for ratio in _RATIOS:
         for name, make in (("sliding", sliding), ("frozen", frozen)):
             beer = Load.segment().mass
             can = Can.hoop(mass=ratio * beer)
-            yield Extreme(
+            yield CatalogueCase(
                 "stiff",
                 f"{name}, can {ratio:.0e} times the load",
                 "the mass matrix is as ill-conditioned as the masses are unequal",
                 "only ratios of masses enter, and none of them does harm: J is a sum of positive parts",
                 attempts(make(can=can), 1.0),
             )
-    yield Extreme(
+    yield CatalogueCase(
         "stiff",
         "pendulum on a wheel of 0.1 g",
         "a point load of 100 g has hardly any inertia about the axis but what the wheel gives it",
@@ -137,9 +137,9 @@ def _mass_ratios() -> Iterator[Extreme]:
     )
 
 
-def _beside_top() -> Iterator[Extreme]:
+def _beside_top() -> Iterator[CatalogueCase]:
     for beside in _BESIDE_TOP:
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"frozen, let go {beside:g} rad beside pi",
             "the chord tendon that makes J has no length at pi, and no direction",
