@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from mjbeer.model.setting import DOP853
-from mjbeer.paper.closed_forms import corrected_55, eq_10, eq_53, printed_55
+from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_frequency_55
+from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Check
 from mjbeer.studies.validation import models
@@ -34,7 +35,7 @@ def _oscillations() -> Iterator[Check]:
     small = "1e-3 rad"
     yield Check(
         f"frequency, eq. (10), amplitude {small}", "sliding, reduced, RK4, 1 ms", bound=3e-7, unit="relative",
-        reason="the amplitude itself: 2e-7", deviation=lambda: _frequency(beer, 1e-3) / eq_10(beer) - 1,
+        reason="the amplitude itself: 2e-7", deviation=lambda: _frequency(beer, 1e-3) / frequency_10(beer) - 1,
     )  # fmt: skip
     own = "RK4's own error, (omega h)^4/120 = 1.26e-9 for a small swing"
     for amplitude, integrator, timestep, bound, reason in (
@@ -57,12 +58,12 @@ def _oscillations() -> Iterator[Check]:
         )  # fmt: skip
     yield Check(
         f"frequency, corrected eq. (55), amplitude {small}", "frozen, reduced, RK4, 1 ms", bound=1e-6, unit="relative",
-        reason="the amplitude itself", deviation=lambda: _frequency(ice, 1e-3) / corrected_55(ice) - 1,
+        reason="the amplitude itself", deviation=lambda: _frequency(ice, 1e-3) / frequency_55(ice) - 1,
     )  # fmt: skip
     yield Check(
         "printed eq. (55) misses by 21 %: distance from that", "frozen, reduced, RK4, 1 ms",
         bound=5e-3, unit="relative", reason="21 % is rounded to a whole per cent",
-        deviation=lambda: 1 - printed_55(ice) / _frequency(ice, 1e-3) - 0.21,
+        deviation=lambda: 1 - printed_frequency_55(ice) / _frequency(ice, 1e-3) - 0.21,
     )  # fmt: skip
     for name, scene in (("massless can, eq. (1)", beer), ("metal can, footnote 4", metal(sliding))):
         yield Check(
@@ -127,7 +128,7 @@ def _steady(scene: Scene) -> float:
 
 
 def _creep(scene: Scene, rolling: str) -> float:
-    rest = eq_53(scene)
+    rest = equilibrium_53(scene)
     return float(np.abs(simulate(scene, 5, rest, rolling=rolling).phi - rest).max())
 
 
