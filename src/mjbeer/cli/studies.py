@@ -23,7 +23,7 @@ class Validate:
     """Print the table as JSON."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer.studies.validation import tables
         from mjbeer.studies.validation.run import validate
 
@@ -45,7 +45,7 @@ class Report:
     """Smaller videos with fewer frames."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer import report
         from mjbeer.studies.validation import tables
 
@@ -68,7 +68,7 @@ class Benchmark:
     """Shorter ladders: about a minute."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.studies.benchmark import report, tables
         from mjbeer.studies.benchmark import run as benchmark
 
@@ -94,7 +94,7 @@ class Advise:
     """A study.json that `mjbeer benchmark` wrote; the one that came with mjbeer if not given."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.studies.benchmark import advice
 
         terminal.write(advice.advise(self.scene, self.tolerance, self.rolling, self.study) + "\n")
@@ -113,7 +113,7 @@ class Stability:
     """Print the results as JSON."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer.studies.stability import report, tables
         from mjbeer.studies.stability import run as stability
 
@@ -140,7 +140,7 @@ class Paper:
     """Films of what moves, too."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.paper.stories import report
 
         with claimed(self.output):
