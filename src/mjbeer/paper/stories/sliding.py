@@ -25,7 +25,7 @@ _METAL = Can.sheet_metal()
 
 
 def stories() -> Iterator[Story]:
-    """The stories."""
+    """Yield the stories of the chapter."""
     yield Story(
         "trivial",
         "Beer let go with its surface parallel to the incline stays so, and the can runs down with g sin(alpha), "

@@ -15,7 +15,7 @@ COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 
 
 def tables(study: Benchmark) -> list[Table]:
-    """All of them."""
+    """Return the tables of a study, in the order in which they are shown."""
     found = [cheapest(study, case) for case in study.cases]
     found += [others(study), tolerances(study), usual(study)]
     found += [ladders(study, case) for case in study.cases]
@@ -23,49 +23,49 @@ def tables(study: Benchmark) -> list[Table]:
 
 
 def setting(point: Point) -> str:
-    """A setting in a few words."""
+    """Return a setting in a few words."""
     knob = f"{point.value:g}" if point.knob == TOLERANCE else milliseconds(point.value)
     return f"{point.method} {'to ' if point.knob == TOLERANCE else ''}{knob}".strip()
 
 
 def milliseconds(time: float) -> str:
-    """A time [s] as text, in milliseconds."""
+    """Return a time [s] as text, in milliseconds."""
     return f"{1e3 * time:.3g} ms"
 
 
 def cheapest(study: Benchmark, case: str) -> Table:
-    """For each error and way of rolling, the cheapest setting, and the front of them all."""
+    """Return the cheapest setting of a case for each error and way of rolling, with its run time."""
     points = study.of(case)
-    ways = [way for way in ROLLINGS if any(each.way == way for each in points)]
+    ways = [way for way in ROLLINGS if any(point.way == way for point in points)]
     rows = []
     for level in frontier.LEVELS:
         cells = [f"{level:.0e} rad"]
         for way in ways:
-            point = frontier.cheapest((each for each in points if each.way == way), level)
-            cells.append("not reached" if point is None else f"{setting(point)}: {milliseconds(point.time)}")
+            best = frontier.cheapest([point for point in points if point.way == way], level)
+            cells.append("not reached" if best is None else f"{setting(best)}: {milliseconds(best.time)}")
         rows.append(tuple(cells))
     return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
 
 
 def others(study: Benchmark) -> Table:
-    """Run time of others over that of the best reduced setting, at equal error."""
+    """Return run times of others over that of the best reduced setting, at equal error."""
     names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
     rows = []
     for case in study.cases:
         points = study.of(case)
-        mine = [each for each in points if each.way == "reduced"]
-        curves = {"MuJoCo RK4": [each for each in mine if each.method == "RK4"]}
-        curves |= {name: [each for each in points if each.way == name] for name in names[1:]}
+        reduced = [point for point in points if point.way == "reduced"]
+        curves = {"MuJoCo RK4": [point for point in reduced if point.method == "RK4"]}
+        curves |= {name: [point for point in points if point.way == name] for name in names[1:]}
         for level in COMPARED:
-            best = frontier.time_for(mine, level)
+            best = frontier.time_for(reduced, level)
             ratios = [frontier.time_for(curves[name], level) / best for name in names]
-            rows.append((f"{case}, {level:.0e} rad", milliseconds(best), *(_ratio(each) for each in ratios)))
+            rows.append((f"{case}, {level:.0e} rad", milliseconds(best), *(_ratio(ratio) for ratio in ratios)))
     columns = ("error", "best reduced", *names)
     return Table("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
 
 
 def tolerances(study: Benchmark) -> Table:
-    """What it costs not to know the timestep."""
+    """Return what it costs not to know the timestep: runs to a tolerance beside the best fixed timesteps."""
     rows = []
     for case in study.cases:
         for digits in range(3, 13):
@@ -78,7 +78,7 @@ def tolerances(study: Benchmark) -> Table:
 
 
 def usual(study: Benchmark) -> Table:
-    """Models as people usually write them, and their tuned twins in the same time."""
+    """Return the errors of models as people usually write them, beside their tuned twins in the same time."""
     rows = []
     for case in study.cases:
         points = study.of(case)
@@ -86,7 +86,7 @@ def usual(study: Benchmark) -> Table:
             gain = frontier.gain_over_usual(points, written)
             if gain is None:
                 continue
-            point = next(each for each in points if each.way == written)
+            point = next(point for point in points if point.way == written)
             share = "" if point.effective_impedance is None else f"{point.effective_impedance:.3g}"
             cells = f"{point.error:.1e}", milliseconds(point.time), share, f"{gain:.1e}"
             rows.append((f"{case}: {written}", *cells))
@@ -95,16 +95,15 @@ def usual(study: Benchmark) -> Table:
 
 
 def ladders(study: Benchmark, case: str) -> Table:
-    """What each ladder of timesteps shows, and where its error comes from at the finest rung that can tell."""
+    """Return what each ladder of timesteps shows, and where the error of its finest rung comes from, if known."""
     rows = []
-    for curve in dict.fromkeys(each.curve for each in study.points if each.case == case):
-        points = [each for each in study.of(case) if each.curve == curve]
+    for curve in dict.fromkeys(point.curve for point in study.points if point.case == case):
+        points = [point for point in study.of(case) if point.curve == curve]
         if not points or curve.knob != TIMESTEP or curve.way in USUAL:
             continue
-        told = [each for each in points if each.model_error is not None]
-        last = told[-1] if told else points[-1]
+        last = ([point for point in points if point.model_error is not None] or points)[-1]
         split = [f"{milliseconds(last.value)}: {last.error:.1e}"]
-        split += ["" if each is None else f"{each:.1e}" for each in (last.model_error, last.integrator_error)]
+        split += ["" if error is None else f"{error:.1e}" for error in (last.model_error, last.integrator_error)]
         rows.append((curve.label, str(convergence_of(points)), *split))
     columns = ("curve", "verdict", "at a rung: error [rad]", "of the model", "of the integrator")
     return Table(f"{case}: verdicts", columns, rows)
@@ -117,7 +116,7 @@ def convergence_of(points: list[Point]) -> Convergence:
 
 
 def stages(study: Benchmark) -> Table:
-    """What the stages of a step cost a scene that does not need them."""
+    """Return what the stages of a step cost a scene that does not need them."""
     names = list(dict.fromkeys(name for row in study.ablation for name in row if name not in ("case", "integrator")))
     rows = []
     for row in study.ablation:

@@ -46,13 +46,13 @@ _RESOLUTION = 1.01
 
 
 def tasks(quick: bool = False) -> list[Task]:
-    """One a map; a `quick` study has fewer and coarser ones."""
+    """Return one task a map; a `quick` study has fewer and coarser ones."""
     plans, cells = (_QUICK, QUICK_CELLS) if quick else (PLANS, CELLS)
     return [Task("maps", plan.name, lambda plan=plan: measure(plan, cells)) for plan in plans]
 
 
 def measure(plan: Plan, cells: int) -> dict[str, Any]:
-    """A map of `cells` timesteps by as many stiffnesses, each cell measured and predicted, and its boundary.
+    """Return a map of `cells` timesteps by as many stiffnesses, each cell measured and predicted, and its boundary.
 
     "boundaries" has, for each stiffness, the timestep [s] up to which the motion is stable, measured and predicted, or
     None where it is throughout. "agrees" says whether all are within `AGREEMENT`; "same" is the share of cells that
@@ -83,7 +83,7 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
 
 
 def table(results: list[dict[str, Any]]) -> Table:
-    """How well the maps agree with theory."""
+    """Return how well the maps agree with theory."""
     rows: list[tuple[str, ...]] = [
         (each["name"], f"{each['same']:.1%}", f"{each['worst']:.1%}", "yes" if each["agrees"] else "NO")
         for each in results
