@@ -10,7 +10,8 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CORRECTED, LIMIT
-from mjbeer.studies.benchmark import advice, points, tables
+from mjbeer.studies.benchmark import advice, tables
+from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.validation import motions
 from tests.support import stubs
 
@@ -117,22 +118,18 @@ def test_links_and_paths_lead_somewhere() -> None:
 
 
 def test_run_times_of_the_readme_are_those_of_the_study_that_comes_with_mjbeer() -> None:
-    stored, text = points.load(advice.SHIPPED), README.read_text()
-    for grid in (
-        tables.cheapest(stored, "frozen"),
-        tables.others(stored),
-        tables.usual(stored),
-    ):
-        assert grid.markdown().partition("\n\n")[2].strip() in text, grid.title
+    stored, text = Benchmark.load(advice.SHIPPED), README.read_text()
+    for table in (tables.cheapest(stored, "frozen"), tables.others(stored), tables.usual(stored)):
+        assert table.markdown(title=False).strip() in text, table.title
 
 
 def test_the_table_of_the_readme_is_that_of_the_program() -> None:
     text = README.read_text()
     _, start, after = text.partition(
-        "| check | by | error | at most | what dominates the error |\n|---|---|---|---|---|\n"
+        "| check | by | error | at most | what dominates the error |\n|---|---|---:|---:|---|\n"
     )
     table = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()]
-    rows = motions.rows()
+    rows = motions.checks()
     bounds = [f"{row.bound:.1e} {row.unit}".strip() for row in rows]
     assert start
     assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in table] == [

@@ -2,69 +2,51 @@
 
 import math
 import pathlib
-from collections.abc import Callable
-from dataclasses import dataclass
 
 from rich.console import Console
 
+from mjbeer.drawing.film import Film
 from mjbeer.output import files
 from mjbeer.paper.stories import report
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.validation import tables
-from mjbeer.studies.validation.run import Verdict, check
+from mjbeer.studies.validation.run import Validation, validate
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
-from mjbeer.theory.trajectory import Trajectory
 
-
-@dataclass(frozen=True)
-class Film:
-    """A scene of the gallery."""
-
-    name: str
-    caption: str
-    speed: float
-    still: float
-    """When the picture is taken [s]."""
-    trajectory: Callable[[], Trajectory]
-
-
-_FILMS = (
-    Film(
-        "sliding",
-        "Half a can of beer, let go at 60 degrees. The beer slides in its can without friction and swings; the can "
-        "rolls away under it, hesitating with every swing. Half of real time.",
-        0.5,
-        0.6,
-        lambda: simulate(sliding(can=Can.sheet_metal()), 2.0, math.radians(60), tolerance=1e-9),
+_FILMS = {
+    "sliding": Film(
+        speed=0.5,
+        trajectory=lambda: simulate(sliding(can=Can.sheet_metal()), 2.0, math.radians(60), tolerance=1e-9),
+        caption="Half a can of beer, let go at 60 degrees. The beer slides in its can without friction and swings; the "
+        "can rolls away under it, hesitating with every swing. Half of real time.",
+        still=0.6,
     ),
-    Film(
-        "frozen",
-        "The beer is frozen to the can, let go with the beer on top: it rolls down ever faster, in jerks. It ends "
-        "just before the can would leave the incline. A quarter of real time.",
-        0.25,
-        0.25,
-        lambda: simulate(frozen(), 0.82, math.pi, tolerance=1e-9),
+    "frozen": Film(
+        speed=0.25,
+        trajectory=lambda: simulate(frozen(), 0.82, math.pi, tolerance=1e-9),
+        caption="The beer is frozen to the can, let go with the beer on top: it rolls down ever faster, in jerks. It "
+        "ends just before the can would leave the incline. A quarter of real time.",
+        still=0.25,
     ),
-    Film(
-        "pendulum",
-        "A hoop wheel with a pendulum on its axle, let go at 60 degrees. Half of real time.",
-        0.5,
-        0.6,
-        lambda: simulate(pendulum(), 2.0, math.radians(60), tolerance=1e-9),
+    "pendulum": Film(
+        speed=0.5,
+        trajectory=lambda: simulate(pendulum(), 2.0, math.radians(60), tolerance=1e-9),
+        caption="A hoop wheel with a pendulum on its axle, let go at 60 degrees. Half of real time.",
+        still=0.6,
     ),
-    Film(
-        "hoop",
-        "A light hoop with a heavy bar on its rim, pushed with the bar on top, on level ground. It rolls over once, "
-        "and hops a radius high when the bar comes up: nothing holds it down but its weight. A tenth of real time.",
-        0.1,
-        0.24,
-        lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
+    "hoop": Film(
+        speed=0.1,
+        trajectory=lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
+        caption="A light hoop with a heavy bar on its rim, pushed with the bar on top, on level ground. It rolls over "
+        "once, and hops a radius high when the bar comes up: nothing holds it down but its weight. A tenth of real "
+        "time.",
+        still=0.24,
     ),
-)
+}
 
 
-def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
+def write(folder: pathlib.Path, quick: bool, console: Console) -> Validation:
     """Write validation.json, a video and a picture of each scene, the paper's stories and summary.md into a folder.
 
     Quickly, the videos are smaller and the stories have plots and no films.
@@ -77,29 +59,29 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
     """
     from mjbeer.drawing.video import render, save_frame
 
-    verdict = check(console)
+    validation = validate(console)
     files.remove(folder / "summary.md")
-    files.write(folder / "validation.json", tables.validation_json(verdict.checks, verdict.findings))
+    files.write(folder / "validation.json", tables.to_json(validation))
     size = (640, 360, 15) if quick else (1280, 720, 30)
-    for film in _FILMS:
+    for name, film in _FILMS.items():
         trajectory = film.trajectory()
-        render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
-        save_frame(trajectory, film.still, folder / f"{film.name}.png")
-        console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
+        render(trajectory, folder / f"{name}.mp4", *size, film.speed)
+        save_frame(trajectory, film.still, folder / f"{name}.png")
+        console.print(f"wrote {folder / name}.mp4", highlight=False, markup=False, soft_wrap=True)
     report.write(folder / "paper", not quick, console)
     console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-    files.write(folder / "summary.md", _summary(verdict))
-    return verdict
+    files.write(folder / "summary.md", _summary(validation))
+    return validation
 
 
-def _summary(verdict: Verdict) -> str:
-    checks, findings = verdict.checks, verdict.findings
+def _summary(validation: Validation) -> str:
+    results, findings = validation.results, validation.findings
     lines = ["# mjbeer: report", ""]
-    lines += [f"{sum(each.passed for each in checks)} of {len(checks)} checks passed.", ""]
-    lines += [f"{sum(each.passed for each in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
-    for film in _FILMS:
-        lines += [f"## {film.name}", "", f"[![{film.name}]({film.name}.png)]({film.name}.mp4)", "", film.caption, ""]
+    lines += [f"{sum(result.passed for result in results)} of {len(results)} checks passed.", ""]
+    lines += [f"{sum(finding.passed for finding in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
+    for name, film in _FILMS.items():
+        lines += [f"## {name}", "", f"[![{name}]({name}.png)]({name}.mp4)", "", film.caption, ""]
     lines += ["## The paper's stories", "", "A plot each: [paper/stories.md](paper/stories.md).", ""]
-    lines += ["## Validation against exact theory", "", tables.validation_markdown(checks)]
-    lines += ["## The paper, equation by equation", "", tables.audit_markdown(findings)]
+    lines += ["## Validation against exact theory", "", tables.validation(results, document=True).markdown(title=False)]
+    lines += ["## The paper, equation by equation", "", tables.audit(findings, document=True).markdown(title=False)]
     return "\n".join(lines)

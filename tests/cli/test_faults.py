@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from mjbeer.cli.app import main
-from mjbeer.studies.benchmark import points
+from mjbeer.studies.benchmark.points import Benchmark
 from tests.support.processes import SHORT, little_disk, run
 
 FROZEN = ("frozen", "--duration", "0.5")
@@ -46,7 +46,7 @@ def test_a_study_that_cannot_be_saved_again_stays_as_it_was(tmp_path: pathlib.Pa
     status, _, err = run(["benchmark", "frozen", "--output", str(tmp_path)], SHORT, preexec_fn=little_disk)
     assert status == 2
     assert err.endswith(f"mjbeer: cannot write {tmp_path / 'study.json'}: File too large\n")
-    assert len({each.curve for each in points.load(tmp_path / "study.json").points}) >= 1
+    assert len({each.curve for each in Benchmark.load(tmp_path / "study.json").points}) >= 1
     assert os.listdir(tmp_path) == ["study.json"]
 
 

@@ -8,7 +8,7 @@ import threading
 import pytest
 
 from mjbeer.output import interruption
-from mjbeer.studies.benchmark import points
+from mjbeer.studies.benchmark.points import Benchmark
 from tests.support.processes import SHORT, interrupt, start
 
 TWICE = """
@@ -64,13 +64,13 @@ def test_a_benchmark_keeps_what_was_measured(tmp_path: pathlib.Path) -> None:
     ended, _ = interrupt(start(words, SHORT), (tmp_path / "study.json").exists, signal.SIGTERM)
     assert ended == 143
     assert os.listdir(tmp_path) == ["study.json"]
-    assert points.load(tmp_path / "study.json").points
+    assert Benchmark.load(tmp_path / "study.json").points
 
 
 def test_a_report_that_validates_has_written_nothing(tmp_path: pathlib.Path) -> None:
     code = (
-        "import sys; from mjbeer.studies.validation import motions; from mjbeer.studies.check import Row; import time; "
-        "motions.rows = lambda: [Row('q', 'b', 1, 'rad', 'r', "
+        "import sys, time; from mjbeer.studies.validation import motions; from mjbeer.studies.check import Check; "
+        "motions.checks = lambda: [Check('q', 'b', 1, 'rad', 'r', "
         "lambda: (print('measuring', flush=True), time.sleep(60)))]; from mjbeer.cli.app import main; sys.exit(main())"
     )
     process = start(["report", "--output", str(tmp_path / "new")], code)

@@ -64,7 +64,7 @@ def test_every_command_that_writes_a_folder_claims_it(
                 seen.append(True)
         raise OutputError("enough")
 
-    for name in ("report.write", "studies.benchmark.run.run", "paper.stories.report.write"):
+    for name in ("report.write", "studies.benchmark.run.conduct", "paper.stories.report.write"):
         monkeypatch.setattr(f"mjbeer.{name}", work)
     assert main([command, "--output", str(tmp_path)]) == 2
     assert seen == [True, command == "report"]

@@ -7,26 +7,26 @@ from importlib.metadata import version
 
 import numpy as np
 import pytest
-from rich.console import Console
-from rich.table import Table
+from rich.console import Console, RenderableType
 
 from mjbeer import Scene, exact, frozen, hoop, simulate
 from mjbeer.cli import trajectory
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
-from mjbeer.studies.check import Check
+from mjbeer.studies.check import Result
 from mjbeer.studies.validation import tables
+from mjbeer.studies.validation.run import Validation
 from tests.support.scenes import SCENES
 
-PASSED = Check("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
-FAILED = Check("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
-UNKNOWN = Check("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
+PASSED = Result("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
+FAILED = Result("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
+UNKNOWN = Result("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
 
 RIGHT = Finding("(16)", "motion of phi", CONFIRMED, "MuJoCo", 5e-15, None, 1e-12, None, "rounding")
 MISPRINT = Finding("(49)", "motion of phi", CORRECTED, "MuJoCo", 0.0589, 4e-10, 2e-8, 0.059, "drift")
 NO_MISPRINT = Finding("(50)", "rolling", CORRECTED, "MuJoCo", 1e-9, math.nan, 2e-8, 0.059, "drift")
 
 
-def shown(content: Table) -> str:
+def shown(content: RenderableType) -> str:
     text = io.StringIO()
     Console(file=text, width=200).print(content)
     return text.getvalue()
@@ -93,16 +93,16 @@ def test_the_terminal_table_has_a_verdict_for_every_row() -> None:
 
 
 def test_markdown() -> None:
-    assert tables.validation_markdown([PASSED, FAILED]) == (
+    assert tables.validation([PASSED, FAILED], document=True).markdown(title=False) == (
         "| check | by | error | at most | what dominates the error |\n"
-        "|---|---|---|---|---|\n"
+        "|---|---|---:|---:|---|\n"
         "| phi over 2 s | frozen, reduced | 1.5e-09 | 1.0e-07 rad | RK4 |\n"
         "| hops | hoop, contact | 2.0e+00 **FAIL** | 0.0e+00 | it hops or not |\n"
     )
 
 
 def test_json_has_versions_verdict_and_rows() -> None:
-    content = json.loads(tables.validation_json([PASSED, FAILED], []))
+    content = json.loads(tables.to_json(Validation([PASSED, FAILED], [])))
     assert content["versions"] == {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
     assert content["passed"] is False
     assert content["checks"] == [
@@ -115,12 +115,12 @@ def test_json_has_versions_verdict_and_rows() -> None:
             "reason": "it hops or not", "passed": False,
         },
     ]  # fmt: skip
-    assert json.loads(tables.validation_json([PASSED], []))["passed"] is True
+    assert json.loads(tables.to_json(Validation([PASSED], [])))["passed"] is True
 
 
 def test_json_of_an_error_that_is_no_number_is_still_json() -> None:
     # Python would write NaN, which no other reader of JSON takes.
-    text = tables.validation_json([UNKNOWN], [])
+    text = tables.to_json(Validation([UNKNOWN], []))
     (row,) = json.loads(text, parse_constant=pytest.fail)["checks"]
     assert row["error"] is None
     assert row["passed"] is False
@@ -135,16 +135,16 @@ def test_the_audit_for_the_terminal() -> None:
 
 
 def test_the_audit_as_markdown() -> None:
-    assert tables.audit_markdown([RIGHT, NO_MISPRINT]) == (
+    assert tables.audit([RIGHT, NO_MISPRINT], document=True).markdown(title=False) == (
         "| equation | quantity | verdict | witness | error, printed | error, right | at most | what dominates |\n"
-        "|---|---|---|---|---|---|---|---|\n"
+        "|---|---|---|---|---:|---:|---:|---|\n"
         "| (16) | motion of phi | confirmed | MuJoCo | 5.0e-15 |  | 1.0e-12 | rounding |\n"
         "| (50) | rolling | confirmed after correction | MuJoCo | 1e-09 | nan | 2.0e-08 **FAIL** | drift |\n"
     )
 
 
 def test_json_has_the_audit_and_a_misprint_decides() -> None:
-    content = json.loads(tables.validation_json([PASSED], [RIGHT, NO_MISPRINT]), parse_constant=pytest.fail)
+    content = json.loads(tables.to_json(Validation([PASSED], [RIGHT, NO_MISPRINT])), parse_constant=pytest.fail)
     assert content["passed"] is False
     right, none = content["audit"]
     assert right == {
@@ -152,4 +152,4 @@ def test_json_has_the_audit_and_a_misprint_decides() -> None:
         "right": None, "bound": 1e-12, "misses_by": None, "reason": "rounding", "passed": True,
     }  # fmt: skip
     assert (none["right"], none["passed"]) == (None, False)
-    assert json.loads(tables.validation_json([PASSED], [RIGHT, MISPRINT]))["passed"] is True
+    assert json.loads(tables.to_json(Validation([PASSED], [RIGHT, MISPRINT])))["passed"] is True

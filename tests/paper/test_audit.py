@@ -25,7 +25,7 @@ BROKEN = 0.01
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=NAMES)
 def test_row(claim: Claim) -> None:
-    finding = claim.run()
+    finding = claim.measure()
     assert finding.passed, f"{finding.printed}, {finding.right} for {finding.misses_by} and {finding.bound}"
 
 
@@ -52,8 +52,8 @@ def test_every_misprint_says_what_it_misses_by() -> None:
 @pytest.mark.parametrize("claim", [each for each in CLAIMS if each.right is not None])
 def test_a_misprint_that_is_none_is_found_out(claim: Claim) -> None:
     """The row would fail if the printed form were right, and if the right form were the printed one."""
-    assert not dataclasses.replace(claim, printed=claim.right).run().passed
-    assert not dataclasses.replace(claim, right=claim.printed).run().passed
+    assert not dataclasses.replace(claim, printed=claim.right).measure().passed
+    assert not dataclasses.replace(claim, right=claim.printed).measure().passed
 
 
 def broken(claim: Claim, index: int, factor: float) -> Terms:

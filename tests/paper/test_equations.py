@@ -6,8 +6,6 @@ from collections.abc import Callable
 import pytest
 import sympy as sp
 
-from mjbeer import frozen
-from mjbeer.paper import closed_forms
 from mjbeer.paper.equations import frozen as equations
 from mjbeer.paper.equations import massive_can, pendulum, sliding
 from mjbeer.paper.letters import Quantities, Terms
@@ -231,8 +229,3 @@ def test_fast_loops() -> None:
     assert sp.simplify(sp.series(at_omega / e, delta, 0, 2).removeO() - (1 - 3 * delta / 8)) == 0
     sway = sp.series(sp.sin(w + eta * sp.sin(2 * w)), delta, 0, 2).removeO()
     assert sp.simplify(sp.integrate(sway * sp.sin(w), (w, 0, 2 * sp.pi)) / sp.pi - (1 + delta / 8)) == 0
-
-
-def test_closed_forms_of_a_scene_have_no_other_formula() -> None:
-    ice = frozen()
-    assert closed_forms.corrected_55(ice) == pytest.approx(ice.frequency(), rel=1e-15)

@@ -128,7 +128,7 @@ def test_discrete_bears_every_row(timestep: float) -> None:
 def test_a_row_at_the_end_of_the_step_is_the_implicit_equation() -> None:
     """With all of its force it is backward Euler."""
     row, h = soft_constraint.spring(3e-3, 0.6, 1.0), 1e-2
-    implicit = soft_constraint.Row(row.stiffness, row.damping, 1.0).at_end_of_step(h)
+    implicit = soft_constraint.SoftRow(row.stiffness, row.damping, 1.0).at_end_of_step(h)
     r, v = 0.3, -2.0
     matrix = np.array([[1.0, -h], [h * row.stiffness, 1 + h * row.damping]])
     new = np.linalg.solve(matrix, [r, v])

@@ -81,7 +81,7 @@ def test_single_precision_parameters_are_taken_as_doubles() -> None:
 
 
 FOUND = [
-    (case.name, attempt.run)
+    (case.name, attempt.simulate)
     for case in cases()
     for attempt in case.attempts
     if "tolerance" in attempt.setting and ACCURATE in attempt.expected and REFUSED not in attempt.expected

@@ -20,7 +20,7 @@ from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark import run as benchmark_run
 from mjbeer.studies.benchmark.curves import Curve
 from mjbeer.studies.benchmark.peers import with_scipy
-from mjbeer.studies.check import Row
+from mjbeer.studies.check import Check
 from mjbeer.studies.stability import run as stability_run
 from mjbeer.studies.stability.run import tasks
 from mjbeer.studies.study import Task
@@ -61,8 +61,8 @@ def stability(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
-    rows = [Row(name, "a stub", 1e-3, "rad", "none", lambda error=error: error) for name, error in errors.items()]
-    monkeypatch.setattr(motions, "rows", lambda: rows)
+    checks = [Check(name, "a stub", 1e-3, "rad", "none", lambda error=error: error) for name, error in errors.items()]
+    monkeypatch.setattr(motions, "checks", lambda: checks)
     monkeypatch.setattr(chapters, "claims", list)
 
 

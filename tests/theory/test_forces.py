@@ -12,7 +12,7 @@ from mjbeer.paper.equations import massive_can
 from mjbeer.paper.equations.frozen import eq_52
 from mjbeer.paper.equations.pendulum import eq_57, eq_58, eq_60, eq_61, printed_61
 from mjbeer.paper.equations.sliding import eq_16
-from mjbeer.paper.letters import Quantities, letters
+from mjbeer.paper.letters import Quantities
 from mjbeer.theory.forces import accelerations, rolling_forces
 from tests.support.scenes import METAL, SCENES
 from tests.theory.test_motion import Motion, Witness, mp, mpf
@@ -28,8 +28,8 @@ def test_motion_obeys_the_corrected_equations(scene: Scene, phi: float, rate: fl
     u2, phi2 = (float(each) for each in accelerations(scene, phi, rate))
     a, b, sin, cos = scene.can.radius, scene.load.offset, math.sin(phi), math.cos(phi)
     theta = scene.incline + phi
-    q = Quantities(
-        **letters(scene), s=0, s_dot=0, s_ddot=u2 - b * (cos * phi2 - sin * rate**2), u=0, u_dot=0, u_ddot=u2, phi=phi,
+    q = Quantities.of(
+        scene, s=0, s_dot=0, s_ddot=u2 - b * (cos * phi2 - sin * rate**2), u=0, u_dot=0, u_ddot=u2, phi=phi,
         phi_dot=rate, phi_ddot=phi2, sin_phi=sin, cos_phi=cos, sin_theta=math.sin(theta), cos_theta=math.cos(theta),
     )  # fmt: skip
     if scene.attachment == "frozen":

@@ -17,7 +17,7 @@ class Simulate(Run):
     """CSV file to write; "-" for standard output."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.cli.trajectory import csv, summary
 
         file = None if str(self.output) == "-" else self.output
@@ -52,7 +52,7 @@ class Render(Run):
     """Height [pixels]."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.drawing.video import render
 
         files.check(self.output)
@@ -84,7 +84,7 @@ class Export:
     """Friction coefficient of a contact."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.model.export import export
 
         start = radians("phi0", self.phi0), radians("phi_dot0", self.phi_dot0, "degrees/s")

@@ -24,16 +24,16 @@ class Validate:
     """Print the table as JSON."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer.studies.validation import tables
-        from mjbeer.studies.validation.run import check
+        from mjbeer.studies.validation.run import validate
 
-        verdict = check(STDERR)
+        validation = validate(STDERR)
         if self.json:
-            terminal.write(tables.validation_json(verdict.checks, verdict.findings))
+            terminal.write(tables.to_json(validation))
         else:
-            show(tables.validation(verdict.checks), tables.audit(verdict.findings))
-        return 0 if verdict.passed else _FAILED
+            show(tables.validation(validation.results), tables.audit(validation.findings))
+        return 0 if validation.passed else _FAILED
 
 
 @dataclass(frozen=True)
@@ -46,15 +46,15 @@ class Report:
     """Smaller videos with fewer frames."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer import report
         from mjbeer.studies.validation import tables
 
         with claimed(self.output), claimed(self.output / "paper"):
-            verdict = report.write(self.output, self.quick, STDERR)
-        show(tables.validation(verdict.checks), tables.audit(verdict.findings))
+            validation = report.write(self.output, self.quick, STDERR)
+        show(tables.validation(validation.results), tables.audit(validation.findings))
         say(f"the report is in {self.output / 'summary.md'}")
-        return 0 if verdict.passed else _FAILED
+        return 0 if validation.passed else _FAILED
 
 
 @dataclass(frozen=True)
@@ -69,15 +69,14 @@ class Benchmark:
     """Shorter ladders: about a minute."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.studies.benchmark import report, tables
         from mjbeer.studies.benchmark import run as benchmark
 
         with claimed(self.output):
-            study = benchmark.run(self.scenes, self.output, self.quick, STDERR)
+            study = benchmark.conduct(self.scenes, self.output, self.quick, STDERR)
             report.write(study, self.output)
-        for grid in tables.tables(study):
-            show(grid.rich())
+        show(*tables.tables(study))
         say(f"the study is in {self.output / 'summary.md'}")
         return 0
 
@@ -96,7 +95,7 @@ class Advise:
     """A study.json that `mjbeer benchmark` wrote; the one that came with mjbeer if not given."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.studies.benchmark import advice
 
         terminal.write(advice.advise(self.scene, self.tolerance, self.rolling, self.study) + "\n")
@@ -115,17 +114,17 @@ class Stability:
     """Print the results as JSON."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer.studies.stability import report, tables
         from mjbeer.studies.stability import run as stability
 
         with claimed(self.output):
-            found = stability.run(self.output, not self.long, STDERR)
+            found = stability.conduct(self.output, not self.long, STDERR)
             report.write(found, self.output)
         if self.json:
             terminal.write(found.json())
         else:
-            show(*(grid.rich() for grid in tables.tables(found)))
+            show(*tables.tables(found))
         for each in found.unexpected:
             say(f"not as theory expects: {each}", "red")
         say(f"the study is in {self.output / 'summary.md'}")
@@ -142,7 +141,7 @@ class Paper:
     """Films of what moves, too."""
 
     def run(self) -> int:
-        """Do it; the exit status."""
+        """Run the command and return its exit status, 0."""
         from mjbeer.paper.stories import report
 
         with claimed(self.output):

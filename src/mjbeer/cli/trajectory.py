@@ -10,7 +10,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 
 def csv(trajectory: Trajectory) -> str:
-    """A line a sample, units in the header, every number with all its digits."""
+    """Return a line a sample, units in the header, every number with all its digits."""
     columns = {
         "time [s]": trajectory.time,
         "u [m]": trajectory.u,
@@ -32,7 +32,7 @@ def csv(trajectory: Trajectory) -> str:
 
 
 def summary(trajectory: Trajectory) -> Table:
-    """What a run says about itself."""
+    """Return what is known of a run, for the terminal."""
     table = Table(show_header=False, box=None)
     radius = trajectory.scene.can.radius
     parted, needed = trajectory.rolls_until(), trajectory.forces.needed

@@ -1,4 +1,4 @@
-"""A film: a motion, its speed and a caption."""
+"""A film: a motion, how fast it is shown, and what is said of it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,3 +13,7 @@ class Film:
     speed: float
     """Playback speed."""
     trajectory: Callable[[], Trajectory]
+    """Makes the motion."""
+    caption: str = ""
+    still: float = 0.0
+    """When the picture beside the film is taken [s]."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 if TYPE_CHECKING:
     from mjbeer.theory.scene import Scene
@@ -33,6 +34,15 @@ class Letters:
     sin_alpha: Any
     cos_alpha: Any
     """Of the incline."""
+
+    @classmethod
+    def of(cls, scene: Scene, **motion: Any) -> Self:
+        """Return the letters of a scene; with the fields of `Quantities` beyond those, of a motion."""
+        can, load = scene.can, scene.load
+        return cls(
+            a=can.radius, b=load.offset, m=load.mass, inertia=load.inertia, can_mass=can.mass, can_inertia=can.inertia,
+            g=scene.gravity, sin_alpha=math.sin(scene.incline), cos_alpha=math.cos(scene.incline), **motion,
+        )  # fmt: skip
 
     @property
     def axial(self) -> Any:
@@ -68,21 +78,3 @@ class Quantities(Letters):
     cos_phi: Any
     sin_theta: Any
     cos_theta: Any
-
-
-def letters(scene: Scene) -> dict[str, float]:
-    """The fields of `Letters` for a scene."""
-    import math
-
-    can, load = scene.can, scene.load
-    return {
-        "a": can.radius,
-        "b": load.offset,
-        "m": load.mass,
-        "inertia": load.inertia,
-        "can_mass": can.mass,
-        "can_inertia": can.inertia,
-        "g": scene.gravity,
-        "sin_alpha": math.sin(scene.incline),
-        "cos_alpha": math.cos(scene.incline),
-    }

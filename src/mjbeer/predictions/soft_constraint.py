@@ -64,7 +64,7 @@ _BOUNDED = 1 + 1e-9
 
 
 @dataclass(frozen=True)
-class Row:
+class SoftRow:
     """A row's reference acceleration -b r' - k r, and its impedance."""
 
     stiffness: float
@@ -74,7 +74,7 @@ class Row:
     impedance: float
     """d, the share of the reference that an exact row gets."""
 
-    def at_end_of_step(self, timestep: float) -> "Row":
+    def at_end_of_step(self, timestep: float) -> "SoftRow":
         """What "discrete" makes of it: the reference of the end of the step, as a row of its start.
 
         Put r' + h r'' and r + h r' + h^2 r'' into -b r' - k r: with S = 1 + h b + h^2 k the row is
@@ -83,18 +83,18 @@ class Row:
         h = timestep
         scale = 1 + h * self.damping + h**2 * self.stiffness
         impedance = min(softened(self.impedance, 1 / scale), MAX_IMPEDANCE)
-        return Row(self.stiffness / scale, (self.damping + h * self.stiffness) / scale, impedance)
+        return SoftRow(self.stiffness / scale, (self.damping + h * self.stiffness) / scale, impedance)
 
 
-def spring(timeconst: float, dampratio: float, impedance: float) -> Row:
+def spring(timeconst: float, dampratio: float, impedance: float) -> SoftRow:
     """The row of solref = (timeconst [s], dampratio)."""
     damping = 2 / (impedance * timeconst)
-    return Row(damping**2 * impedance / (4 * dampratio**2), damping, impedance)
+    return SoftRow(damping**2 * impedance / (4 * dampratio**2), damping, impedance)
 
 
-def direct(stiffness: float, damping: float, impedance: float) -> Row:
+def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
     """The row of solref = (-stiffness [1/s^2], -damping [1/s])."""
-    return Row(stiffness / impedance, damping / impedance, impedance)
+    return SoftRow(stiffness / impedance, damping / impedance, impedance)
 
 
 def safe(timeconst: float, timestep: float) -> float:
@@ -115,7 +115,7 @@ def resolved(timeconst: float, dampratio: float, impedance: float, timestep: flo
     return max(timeconst, timestep / (dampratio * math.sqrt(impedance)))
 
 
-def radius(integrator: str, row: Row, timestep: float, excess: float = 1.0) -> float:
+def radius(integrator: str, row: SoftRow, timestep: float, excess: float = 1.0) -> float:
     """Spectral radius of a step of a row that is alone, with its diagonal overestimated by a factor `excess`."""
     if integrator == "discrete":
         row = row.at_end_of_step(timestep)
@@ -124,7 +124,7 @@ def radius(integrator: str, row: Row, timestep: float, excess: float = 1.0) -> f
     return spectral_radius(amplification(integrator, *scaled))
 
 
-def stable_timestep(integrator: str, row: Row, excess: float = 1.0) -> float:
+def stable_timestep(integrator: str, row: SoftRow, excess: float = 1.0) -> float:
     """Largest timestep [s] with a bounded row; infinite under "discrete", whatever the row.
 
     Under semi-implicit Euler 4 > 2 h b + h^2 k with the shares of b and k (Jury's criterion, with h b < 2).

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.predictions.linear_stability import amplification
-from mjbeer.predictions.soft_constraint import Row
+from mjbeer.predictions.soft_constraint import SoftRow
 from mjbeer.theory.scene import Scene
 
 
@@ -29,10 +29,10 @@ class System:
     impratio: float = 1.0
     """How much harder the friction rows are than the normal ones."""
 
-    def step(self, integrator: str, row: Row, timestep: float) -> np.ndarray:
+    def step(self, integrator: str, row: SoftRow, timestep: float) -> np.ndarray:
         """The matrix of one step of (q, h q')."""
         solved = row.at_end_of_step(timestep) if integrator == "discrete" else row
-        slipping = Row(0.0, row.damping, row.impedance)
+        slipping = SoftRow(0.0, row.damping, row.impedance)
         slipped = slipping.at_end_of_step(timestep) if integrator == "discrete" else slipping
         jacobian = np.array([each for each, _ in self.rows])
         across = np.linalg.solve(self.mass, jacobian.T)

@@ -31,11 +31,11 @@ class Case:
 
     @property
     def times(self) -> np.ndarray:
-        """The samples [s]."""
+        """The times of the samples [s]."""
         return np.linspace(0, DURATION, SAMPLES)
 
     def truth(self) -> Trajectory:
-        """The exact motion at the samples."""
+        """Return the exact motion at the samples."""
         return exact(self.scene, self.times, self.phi0)
 
 

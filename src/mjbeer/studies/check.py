@@ -1,12 +1,12 @@
-"""A row of the validation table: what is checked, by which means, and how far off it may be."""
+"""What studies check against a bound: by which means, and how far off it may be."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Check:
-    """One row of the table, measured."""
+class Result:
+    """A check that was measured."""
 
     quantity: str
     by: str
@@ -23,16 +23,18 @@ class Check:
 
 
 @dataclass(frozen=True)
-class Row:
-    """One row of the table, to be measured."""
+class Check:
+    """A quantity to be measured, and its bound."""
 
     quantity: str
     by: str
     bound: float
     unit: str
     reason: str
-    measure: Callable[[], float]
+    deviation: Callable[[], float]
+    """Measures by how much the quantity is off, with its sign."""
 
-    def run(self) -> Check:
-        """Measure it."""
-        return Check(self.quantity, self.by, abs(float(self.measure())), self.bound, self.unit, self.reason)
+    def measure(self) -> Result:
+        """Measure the quantity and return its error beside its bound."""
+        error = abs(float(self.deviation()))
+        return Result(self.quantity, self.by, error=error, bound=self.bound, unit=self.unit, reason=self.reason)

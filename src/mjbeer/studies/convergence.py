@@ -12,18 +12,18 @@ from mjbeer.theory.scene import Scene
 
 
 def observed_order(steps: np.ndarray, errors: np.ndarray) -> float:
-    """Slope of log(error) over log(step)."""
+    """Return the slope of log(error) over log(step)."""
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
 def ladder(scene: Scene, integrator: str, steps: np.ndarray, duration: float, phi0: float) -> np.ndarray:
-    """Errors of phi [rad] at a ladder of timesteps [s], reduced."""
+    """Simulate a scene, reduced, at each of a ladder of timesteps [s], and return the errors of phi [rad]."""
     runs = (simulate(scene, duration, phi0, integrator=integrator, timestep=float(h)) for h in steps)
-    return np.array([phi_error(each) for each in runs])
+    return np.array([phi_error(run) for run in runs])
 
 
 def order(scene: Scene, integrator: str) -> float:
-    """Observed order of an integrator on a swing of 0.3 rad, over six halvings of the timestep.
+    """Return the observed order of an integrator on a swing of 0.3 rad, over six halvings of the timestep.
 
     At order eight six halvings span 14 digits, more than a double has: there the slope is over those
     rungs of the six halvings, at ratio sqrt(2), whose error is between 1e-3 rad and 1e-13 rad.
@@ -50,8 +50,8 @@ _TOO_LARGE = 0.3
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """The verdict on a curve."""
+class Convergence:
+    """What the errors of a ladder do as it gets finer."""
 
     kind: str
     """"converging", "floored" or "undecided"."""
@@ -69,8 +69,8 @@ class Verdict:
         return self.kind + order
 
 
-def verdict(steps: ArrayLike, errors: ArrayLike) -> Verdict:
-    """The verdict on the errors [rad] of a ladder of decreasing timesteps or tolerances.
+def convergence(steps: ArrayLike, errors: ArrayLike) -> Convergence:
+    """Return what the errors [rad] of a ladder of decreasing timesteps or tolerances show.
 
     An order is fitted to the longest stretch of at least four rungs whose local orders, log(e1/e2)/log(h1/h2), are
     within 0.1 of their mean; of two as long, to the finer one. A floor needs two rungs that bring nothing.
@@ -81,8 +81,8 @@ def verdict(steps: ArrayLike, errors: ArrayLike) -> Verdict:
     floor = _floor(errors)
     order = _order(steps[: floor + 1], errors[: floor + 1]) if floor is not None else _order(steps, errors)
     if floor is not None:
-        return Verdict("floored", order, float(errors[floor:].min()), float(steps[floor]))
-    return Verdict("converging" if order is not None and order > 0.5 else "undecided", order)
+        return Convergence("floored", order, floor=float(errors[floor:].min()), since=float(steps[floor]))
+    return Convergence("converging" if order is not None and order > 0.5 else "undecided", order)
 
 
 def _floor(errors: np.ndarray) -> int | None:

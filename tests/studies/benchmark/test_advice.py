@@ -9,7 +9,7 @@ from mjbeer import exact
 from mjbeer.cli.app import main, parse
 from mjbeer.cli.motions import Simulate
 from mjbeer.exceptions import ParameterError
-from mjbeer.studies.benchmark import advice, points
+from mjbeer.studies.benchmark import advice
 from mjbeer.studies.cases import CASES, DEFAULT
 from mjbeer.theory.exact import phi_error
 
@@ -50,7 +50,7 @@ def test_contact_says_what_build_sets() -> None:
     [
         (["frozen", "--tolerance", "-1"], "tolerance must be greater than 0 [rad], got -1.0"),
         (["hoop"], "scene must be one of 'sliding', 'sliding-metal', 'frozen', 'pendulum'; got 'hoop'"),
-        (["frozen", "--study", "nowhere.json"], "nowhere.json is no study that `mjbeer benchmark` wrote"),
+        (["frozen", "--study", "nowhere.json"], "nowhere.json was not written by `mjbeer benchmark`"),
     ],
 )
 def test_bad_input_is_an_error(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -61,11 +61,11 @@ def test_bad_input_is_an_error(arguments: list[str], message: str, capsys: pytes
 def test_the_study_that_comes_with_mjbeer_is_whole() -> None:
     """Its errors are those of this code, on a few of its points, to the digits that rounding leaves."""
     from mjbeer.studies.benchmark.measure import Rung
-    from mjbeer.studies.benchmark.points import Point
+    from mjbeer.studies.benchmark.points import Benchmark, Point
 
-    stored = points.load(advice.SHIPPED)
+    stored = Benchmark.load(advice.SHIPPED)
     assert stored.cases == list(DEFAULT)
-    assert {len(each.times) for each in stored.points if each.failure is None} == {stored.settings["repeats"]}
+    assert {len(point.times) for point in stored.points if point.failure is None} == {1}
     for old in stored.points[:: len(stored.points) // 12]:
         if old.failure or not 1e-10 < old.error < 1e-2 or not old.method:
             continue

@@ -5,12 +5,13 @@ import re
 
 import pytest
 
-from mjbeer.studies.benchmark import ablation, advice, plots, points
+from mjbeer.studies.benchmark import ablation, advice, plots
+from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.cases import CASES
 
 
 def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path) -> None:
-    stored = points.load(advice.SHIPPED)
+    stored = Benchmark.load(advice.SHIPPED)
     plots.draw(stored, tmp_path / "diagram")
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "diagram.svg").read_text())
     for case in stored.cases:

@@ -5,7 +5,7 @@ import pytest
 
 from mjbeer import Can, sliding
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
-from mjbeer.studies.benchmark.predicted import all_of_them, grid
+from mjbeer.studies.benchmark.predicted import predictions, table
 from mjbeer.studies.cases import CASES
 
 # What each prediction leaves out, relative to it.
@@ -15,7 +15,7 @@ ROUNDING = 1e-9  # distance and shares are exact
 MARGINS = {"frequency": NEXT_ORDER, "largest": NEXT_ORDER, "slip": SETTLING, "distance": ROUNDING, "share": ROUNDING}
 
 
-@pytest.mark.parametrize("prediction", all_of_them(), ids=lambda each: f"{each.what}: {each.of}")
+@pytest.mark.parametrize("prediction", predictions(), ids=lambda each: f"{each.what}: {each.of}")
 def test_it_is_as_predicted(prediction) -> None:
     margin = MARGINS[prediction.what.split()[0]]
     assert prediction.measure() == pytest.approx(prediction.predict(), rel=margin)
@@ -68,4 +68,4 @@ def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
 
 
 def test_the_table_has_a_row_each() -> None:
-    assert len(grid().rows) == len(all_of_them())
+    assert len(table().rows) == len(predictions())

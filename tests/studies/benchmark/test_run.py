@@ -14,10 +14,9 @@ from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies import study
 from mjbeer.studies.benchmark import advice, run, tables
-from mjbeer.studies.benchmark import points as benchmark
 from mjbeer.studies.benchmark.curves import Curve, aligned, curves
 from mjbeer.studies.benchmark.measure import Rung
-from mjbeer.studies.benchmark.points import Point, Study
+from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.cases import CASES, INTERVAL
 from tests.support import stubs
 
@@ -31,10 +30,10 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory: pytest.TempPathFactory) -> Study:
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Benchmark:
     with pytest.MonkeyPatch.context() as monkeypatch:
         stubs.benchmark(monkeypatch)
-        return run.run(["frozen"], tmp_path_factory.mktemp("study"), False, quiet())
+        return run.conduct(["frozen"], tmp_path_factory.mktemp("study"), False, quiet())
 
 
 def quiet() -> Console:
@@ -54,12 +53,12 @@ def on(points: list[Point], *curve: str) -> list[Point]:
     ("way", "method", "order"),
     [("reduced", "Euler", 1), ("reduced", "RK4", 4), ("equality", "RK4", 4)],
 )
-def test_fitted_orders_are_the_methods(measured: Study, way: str, method: str, order: int) -> None:
-    found = tables.verdict_of(on(measured.points, way, method, "timestep"))
+def test_fitted_orders_are_the_methods(measured: Benchmark, way: str, method: str, order: int) -> None:
+    found = tables.convergence_of(on(measured.points, way, method, "timestep"))
     assert found.order == pytest.approx(order, abs=ORDER_MARGIN)
 
 
-def test_dop853_gains_eight_orders_a_rung_before_its_floor(measured: Study) -> None:
+def test_dop853_gains_eight_orders_a_rung_before_its_floor(measured: Benchmark) -> None:
     """From 32 to 8 ms; coarser rungs have not settled, and from 8 ms on there is rounding."""
     errors = {each.value: each.error for each in on(measured.points, "reduced", "DOP853", "timestep")}
     assert math.log(errors[32e-3] / errors[8e-3], 4) == pytest.approx(8, abs=ORDER_MARGIN)
@@ -67,12 +66,12 @@ def test_dop853_gains_eight_orders_a_rung_before_its_floor(measured: Study) -> N
 
 def test_every_order_of_the_stored_study_is_the_method_s_or_the_softness_s() -> None:
     """Contacts tuned to the timestep err as tau^2 = h^2 or, where friction creeps, as h, once the method errs less."""
-    stored = benchmark.load(advice.SHIPPED)
+    stored = Benchmark.load(advice.SHIPPED)
     methods = {"RK4": 4, "DOP853": 8, "": 2}  # EXUDYN's is the trapezoidal rule
     fitted = 0
     for case in stored.cases:
         for curve in dict.fromkeys(each.curve for each in stored.of(case) if each.knob == "timestep"):
-            found = tables.verdict_of([each for each in stored.of(case) if each.curve == curve]).order
+            found = tables.convergence_of([each for each in stored.of(case) if each.curve == curve]).order
             order = methods.get(curve.method, 1)
             soft = [1, 2] if curve.way == "contact" and order > 2 else []
             assert found is None or min(abs(found - each) for each in (order, *soft)) <= ORDER_MARGIN, curve
@@ -80,22 +79,22 @@ def test_every_order_of_the_stored_study_is_the_method_s_or_the_softness_s() -> 
     assert fitted > 40
 
 
-def test_a_soft_contact_errs_as_the_square_of_its_time_constant(measured: Study) -> None:
+def test_a_soft_contact_errs_as_the_square_of_its_time_constant(measured: Benchmark) -> None:
     """tau = h, and what a tuned contact lets through is tau^2 of it: the model's error, whatever integrates it."""
     points = on(measured.points, "contact", "DOP853", "timestep")
-    assert tables.verdict_of(points).order == pytest.approx(2, abs=ORDER_MARGIN)
+    assert tables.convergence_of(points).order == pytest.approx(2, abs=ORDER_MARGIN)
     assert known(points[-1].model_error) == pytest.approx(points[-1].error, rel=1e-2)
     assert known(points[-1].integrator_error) < 0.01 * points[-1].error
 
 
-def test_a_ladder_ends_at_its_floor(measured: Study) -> None:
+def test_a_ladder_ends_at_its_floor(measured: Benchmark) -> None:
     points = on(measured.points, "reduced", "DOP853", "timestep")
     assert min(each.error for each in points) < 1e-13
     assert known(points[0].integrator_error) == pytest.approx(points[0].error, rel=1e-3)
     assert known(points[0].model_error) < 1e-11
 
 
-def test_the_usual_ways_are_far_off_and_say_why(measured: Study) -> None:
+def test_the_usual_ways_are_far_off_and_say_why(measured: Benchmark) -> None:
     slide, hinge, contact = (
         next(each for each in measured.points if each.way == way)
         for way in ("equality, slide first", "equality, hinge first", "contact, defaults")
@@ -107,7 +106,7 @@ def test_the_usual_ways_are_far_off_and_say_why(measured: Study) -> None:
     assert known(slide.slip_integral) > 1
 
 
-def test_every_point_is_whole(measured: Study) -> None:
+def test_every_point_is_whole(measured: Benchmark) -> None:
     for point in measured.points:
         assert point.failure is None, point
         assert point.error >= max(point.phi_end, point.u_end)
@@ -120,9 +119,9 @@ def test_every_point_is_whole(measured: Study) -> None:
     assert all(each.slip_max == 0 for each in reduced)
 
 
-def test_a_study_reads_back(measured: Study, tmp_path: pathlib.Path) -> None:
+def test_a_study_reads_back(measured: Benchmark, tmp_path: pathlib.Path) -> None:
     measured.save(tmp_path / "study.json")
-    again = benchmark.load(tmp_path / "study.json")
+    again = Benchmark.load(tmp_path / "study.json")
     assert [(each.curve, each.value, each.error) for each in again.points] == [
         (each.curve, each.value, each.error) for each in measured.points
     ]
@@ -149,18 +148,18 @@ def test_an_interrupted_study_goes_on(short: None, tmp_path: pathlib.Path, monke
 
     monkeypatch.setattr(run, "_climb", stop(3, climb))
     with pytest.raises(KeyboardInterrupt):
-        run.run(["frozen"], tmp_path, False, quiet())
+        run.conduct(["frozen"], tmp_path, False, quiet())
     monkeypatch.setattr(run, "_climb", climb)
-    first = benchmark.load(tmp_path / "study.json").points
+    first = Benchmark.load(tmp_path / "study.json").points
     assert len({each.curve for each in first}) == 3
     monkeypatch.setattr(Rung, "seconds", stop(70, seconds))
     with pytest.raises(KeyboardInterrupt):
-        run.run(["frozen"], tmp_path, False, quiet())
+        run.conduct(["frozen"], tmp_path, False, quiet())
     monkeypatch.setattr(Rung, "seconds", seconds)
-    second = benchmark.load(tmp_path / "study.json").points
+    second = Benchmark.load(tmp_path / "study.json").points
     assert {len(each.times) for each in second} == {1}
     said = io.StringIO()
-    done = run.run(["frozen"], tmp_path, False, Console(file=said))
+    done = run.conduct(["frozen"], tmp_path, False, Console(file=said))
     assert "going on from" in said.getvalue()
     assert {len(each.times) for each in done.points} == {2}
     assert [each.error for each in done.points][: len(first)] == [each.error for each in first]
@@ -168,14 +167,14 @@ def test_an_interrupted_study_goes_on(short: None, tmp_path: pathlib.Path, monke
 
 
 def test_another_question_starts_anew(short: None, tmp_path: pathlib.Path) -> None:
-    Study({"cases": ["sliding"]}, study.machine(), [Point("sliding", "reduced", "RK4", "timestep", 1.0)]).save(
+    Benchmark({"cases": ["sliding"]}, study.machine(), [Point("sliding", "reduced", "RK4", "timestep", 1.0)]).save(
         tmp_path / "study.json"
     )
-    assert {each.case for each in run.run(["frozen"], tmp_path, False, quiet()).points} == {"frozen"}
+    assert {each.case for each in run.conduct(["frozen"], tmp_path, False, quiet()).points} == {"frozen"}
 
 
 def test_a_setting_that_fails_is_a_point_with_a_reason(short: None, tmp_path: pathlib.Path) -> None:
-    done = run.run(["hoop"], tmp_path, False, quiet())
+    done = run.conduct(["hoop"], tmp_path, False, quiet())
     failed = [each for each in done.points if each.failure]
     assert failed
     assert all(math.isinf(each.error) and not each.times for each in failed)
@@ -185,14 +184,14 @@ def test_a_setting_that_fails_is_a_point_with_a_reason(short: None, tmp_path: pa
 
 def test_unknown_scenes_are_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ParameterError, match=r"scene must be one of 'sliding', .*; got 'bottle'"):
-        run.run(["bottle"], tmp_path, True, quiet())
+        run.conduct(["bottle"], tmp_path, True, quiet())
     assert not list(tmp_path.iterdir())
 
 
 def test_a_file_that_is_no_study_is_refused(tmp_path: pathlib.Path) -> None:
     (tmp_path / "study.json").write_text("{}")
-    with pytest.raises(ParameterError, match="is no study that `mjbeer benchmark` wrote"):
-        run.run(["frozen"], tmp_path, True, quiet())
+    with pytest.raises(ParameterError, match=r"study\.json was not written by `mjbeer benchmark`"):
+        run.conduct(["frozen"], tmp_path, True, quiet())
 
 
 def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:

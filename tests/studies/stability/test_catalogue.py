@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import Scene, exact, frozen, simulate, sliding
 from mjbeer.studies.stability.catalogue import cases
-from mjbeer.studies.stability.catalogue.case import Attempt, Extreme, attempts, natural_period
+from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase, attempts, natural_period
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED, SILENT
 
 CASES = cases.cases()
@@ -19,7 +19,7 @@ SAMPLE += [each for each in CASES if each.kind == "found" and each not in SAMPLE
 
 
 @pytest.mark.parametrize("case", SAMPLE, ids=lambda case: f"{case.kind}: {case.name}")
-def test_a_sample_comes_out_as_expected(case: Extreme) -> None:
+def test_a_sample_comes_out_as_expected(case: CatalogueCase) -> None:
     found = case.measure(quick=True)
     assert found["runs"]
     for each in found["runs"]:
@@ -48,7 +48,7 @@ def test_expectations_are_what_is_compared() -> None:
         Attempt("c", good),
         Attempt("d", partial(simulate, frozen(), 2.0, 1.0, 0.0, "reduced", "Euler", 8e-3), (ACCURATE,), sample=False),
     )
-    case = Extreme("stiff", "name", "why", "theory", tries)
+    case = CatalogueCase("stiff", "name", "why", "theory", tries)
     assert [each["as_expected"] for each in case.measure(quick=False)["runs"]] == [False, True, True, False]
     assert [each["setting"] for each in case.measure(quick=True)["runs"]] == ["a", "b", "c"]
     assert json.loads(json.dumps(case.measure(quick=True), allow_nan=False))["why"] == "why"

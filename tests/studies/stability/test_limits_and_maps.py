@@ -14,9 +14,9 @@ from mjbeer.model.build import specify
 from mjbeer.model.setting import Setting
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import accurate_limit
-from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, Row
+from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow
 from mjbeer.studies.stability import limits, maps, plots, short_runs
-from mjbeer.studies.stability.short_runs import Bench, Plan
+from mjbeer.studies.stability.short_runs import Plan, ShortRuns
 
 COARSE = 5
 SAMPLE = [
@@ -57,7 +57,7 @@ def test_maps_have_something_to_tell(measured_maps: list[dict]) -> None:
     [
         (Plan("equality", "Euler", written="slide"), short_runs, "diagonal_excess", lambda _: 1.0),
         (Plan("equality", "Euler", refsafe=True), soft_constraint, "safe", lambda timeconst, _: timeconst),
-        (Plan("equality", "discrete"), Row, "at_end_of_step", lambda self, _: self),
+        (Plan("equality", "discrete"), SoftRow, "at_end_of_step", lambda self, _: self),
         (
             Plan("equality", "Euler"),
             soft_constraint,
@@ -75,14 +75,14 @@ def test_a_wrong_theory_does_not_agree(
 
 
 def test_friction_is_what_limits_rk4_in_contact(monkeypatch: pytest.MonkeyPatch) -> None:
-    bench = Bench(Plan("contact", "RK4"), 1e-2)
-    assert bench.measure(1.2e-2) != short_runs.UNSTABLE
-    assert bench.measure(1.3e-2) == bench.predict(1.3e-2) == short_runs.UNSTABLE
+    runs = ShortRuns(Plan("contact", "RK4"), 1e-2)
+    assert runs.measure(1.2e-2) != short_runs.UNSTABLE
+    assert runs.measure(1.3e-2) == runs.predict(1.3e-2) == short_runs.UNSTABLE
     without = functools.partial(soft_rolling.by_contact, impratio=1e-12)
     monkeypatch.setattr(
         soft_rolling, "by_contact", lambda scene, depth, points, impratio: without(scene, depth, points)
     )
-    assert bench.predict(1.3e-2) != short_runs.UNSTABLE
+    assert runs.predict(1.3e-2) != short_runs.UNSTABLE
 
 
 @pytest.mark.parametrize("timeconst", [1e-2, 1e-4, 1e-5])
@@ -140,7 +140,7 @@ def test_limits_agree() -> None:
     assert [each["agrees"] for each in found] == [True] * 3
     assert found[2]["accurate"] < 0.25 * accurate_limit("DOP853")  # softness, and not the integrator
     assert json.loads(json.dumps(found)) == found
-    assert "NO" not in limits.grid(found).markdown()
+    assert "NO" not in limits.table(found).markdown()
 
 
 def test_a_wrong_limit_does_not_agree(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,7 +148,7 @@ def test_a_wrong_limit_does_not_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(linear_stability, "stable_limit", lambda _: 1.06 * right)
     found = limits.measure("frozen", "reduced", "RK4")
     assert not found["agrees"]
-    assert "NO" in limits.grid([found]).markdown()
+    assert "NO" in limits.table([found]).markdown()
 
 
 def test_a_contact_that_is_not_settled_loses_a_stage() -> None:
@@ -174,7 +174,7 @@ def test_plots_are_drawn(measured_maps: list[dict], tmp_path: pathlib.Path) -> N
     )
     assert plots.LIMITS in names
     assert len(names) == 3
-    assert "100.0%" in maps.grid(measured_maps).markdown()
+    assert "100.0%" in maps.table(measured_maps).markdown()
 
 
 def test_the_table_of_the_document_is_that_of_theory() -> None:

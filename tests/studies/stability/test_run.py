@@ -48,35 +48,35 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 def test_an_interrupted_study_goes_on(counted: list[str], tmp_path: pathlib.Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        run.run(tmp_path, True, QUIET)
-    assert list(run.load(tmp_path / "stability.json").results["laws"]) == ["a"]
-    found = run.run(tmp_path, True, QUIET)
+        run.conduct(tmp_path, True, QUIET)
+    assert list(run.Stability.load(tmp_path / "stability.json").results["laws"]) == ["a"]
+    found = run.conduct(tmp_path, True, QUIET)
     assert counted == ["a", "b", "b", "c"]
     assert [each["of"] for each in found.of("laws")] == ["a", "b", "c"]
-    assert run.load(tmp_path / "stability.json") == found
+    assert run.Stability.load(tmp_path / "stability.json") == found
 
 
 def test_another_study_does_not_go_on_with_it(counted: list[str], tmp_path: pathlib.Path) -> None:
     counted.append("b")
-    run.run(tmp_path, True, QUIET)
+    run.conduct(tmp_path, True, QUIET)
     before = len(counted)
-    run.run(tmp_path, False, QUIET)
+    run.conduct(tmp_path, False, QUIET)
     assert len(counted) == 2 * before - 1
-    run.run(tmp_path, False, QUIET)
+    run.conduct(tmp_path, False, QUIET)
     assert len(counted) == 2 * before - 1
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"results": {}}'])
 def test_what_is_no_study_is_refused(text: str, tmp_path: pathlib.Path) -> None:
     (tmp_path / "stability.json").write_text(text)
-    with pytest.raises(ParameterError, match=r"stability\.json is no study that `mjbeer stability` wrote"):
-        run.run(tmp_path, True, QUIET)
+    with pytest.raises(ParameterError, match=r"stability\.json was not written by `mjbeer stability`"):
+        run.conduct(tmp_path, True, QUIET)
 
 
 def test_a_folder_that_is_a_file_is_an_output_error(counted: list[str], tmp_path: pathlib.Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(OutputError, match="cannot write"):
-        run.run(tmp_path / "file", True, QUIET)
+        run.conduct(tmp_path / "file", True, QUIET)
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_tasks_have_names_of_their_own(quick: bool) -> None:
 def test_the_report_is_written(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One task of each group, for real; the maps have a test of their own."""
     stubs.stability(monkeypatch)
-    found = run.run(tmp_path, True, QUIET)
+    found = run.conduct(tmp_path, True, QUIET)
     report.write(found, tmp_path)
     summary = (tmp_path / "summary.md").read_text()
     assert "All came out as theory expects." in summary

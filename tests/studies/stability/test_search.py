@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies.stability import search
 from mjbeer.studies.stability.outcome import ACCURATE, SILENT, Outcome
-from mjbeer.studies.stability.search import NUMBERS, Trial, trial
+from mjbeer.studies.stability.search import NUMBERS, RandomRun, random_run
 
 EXAMPLES = os.environ.get("MJBEER_EXAMPLES")
 """How many new runs `make search` asks for."""
@@ -32,19 +32,19 @@ EXAMPLES = os.environ.get("MJBEER_EXAMPLES")
 )
 def test_no_run_is_wrong_and_silent(numbers: list[float]) -> None:
     try:
-        drawn = trial(numbers)
+        run = random_run(numbers)
     except ParameterError:
         assume(False)
-    outcome = search.attempt(drawn)
-    assert outcome.verdict != SILENT, (drawn, outcome)
+    outcome = search.check(run)
+    assert outcome.verdict != SILENT, (run, outcome)
 
 
-def test_a_trial_takes_all_its_numbers() -> None:
+def test_a_random_run_takes_all_its_numbers() -> None:
     """With one fewer it cannot be made; each but some that its own choices leave unused makes a difference."""
     generator = np.random.default_rng(3)
     numbers, changed = generator.random(NUMBERS).tolist(), set[int]()
     with pytest.raises(StopIteration):
-        trial(numbers[:-1])
+        random_run(numbers[:-1])
     for _ in range(60):
         numbers = generator.random(NUMBERS).tolist()
         for place in range(NUMBERS):
@@ -54,27 +54,27 @@ def test_a_trial_takes_all_its_numbers() -> None:
     assert changed == set(range(NUMBERS))
 
 
-def _made(numbers: Iterable[float]) -> Trial | None:
+def _made(numbers: Iterable[float]) -> RandomRun | None:
     try:
-        return trial(list(numbers))
+        return random_run(list(numbers))
     except ParameterError:
         return None
 
 
-def test_trials_reach_the_extremes() -> None:
+def test_random_runs_reach_the_extremes() -> None:
     generator = np.random.default_rng(0)
-    trials = [each for _ in range(500) if (each := _made(generator.random(NUMBERS)))]
-    scenes = [each.scene for each in trials]
-    assert {each.rolling for each in trials} == {"reduced", "equality", "contact"}
-    assert len({each.integrator for each in trials}) == 6
-    assert any(each.tolerance for each in trials)
+    runs = [each for _ in range(500) if (each := _made(generator.random(NUMBERS)))]
+    scenes = [each.scene for each in runs]
+    assert {each.rolling for each in runs} == {"reduced", "equality", "contact"}
+    assert len({each.integrator for each in runs}) == 6
+    assert any(each.tolerance for each in runs)
     assert any(each.gravity == 0 for each in scenes)
     assert any(each.load.offset == 0 for each in scenes)
     assert any(each.load.offset == each.can.radius for each in scenes)
     assert any(each.load.inertia == 0 for each in scenes)
     assert min(each.can.radius for each in scenes) < 1e-5
     assert max(each.can.radius for each in scenes) > 10
-    assert max(abs(each.phi_dot0) for each in trials) > 1e4
+    assert max(abs(each.phi_dot0) for each in runs) > 1e4
 
 
 def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -86,7 +86,7 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
             Outcome(SILENT, 1.0, 1e-4, ""),
         ]
     )
-    monkeypatch.setattr(search, "attempt", lambda _: next(ends))
+    monkeypatch.setattr(search, "check", lambda _: next(ends))
     found = search.batch(5, 4)
     assert {name: count for name, count in found["verdicts"].items() if count} == {ACCURATE: 3, SILENT: 1}
     assert [each["number"] for each in found["silent"]] == [3]

@@ -8,36 +8,37 @@ import pytest
 
 from mjbeer import exact, frozen, hoop, simulate, sliding
 from mjbeer.model import mesh
-from mjbeer.paper.closed_forms import corrected_55, eq_10, eq_53, printed_55
+from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_frequency_55
+from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.studies import convergence
-from mjbeer.studies.check import Check
+from mjbeer.studies.check import Check, Result
 from mjbeer.studies.validation import models, motions
 from mjbeer.theory import exact as theory
 from mjbeer.theory import measure
 
-ROWS = motions.rows()
+CHECKS = motions.checks()
 
 
-@pytest.mark.parametrize("row", ROWS, ids=[f"{row.quantity} - {row.by}" for row in ROWS])
-def test_row(row: motions.Row) -> None:
-    check = row.run()
-    assert check.passed, f"{check.error} > {check.bound} {check.unit}"
+@pytest.mark.parametrize("check", CHECKS, ids=[f"{check.quantity} - {check.by}" for check in CHECKS])
+def test_check(check: Check) -> None:
+    result = check.measure()
+    assert result.passed, f"{result.error} > {result.bound} {result.unit}"
 
 
 def test_what_is_not_a_number_does_not_pass() -> None:
-    assert not Check("", "", math.nan, 1.0, "", "").passed
-    assert Check("", "", 1.0, 1.0, "", "").passed
+    assert not Result("", "", math.nan, 1.0, "", "").passed
+    assert Result("", "", 1.0, 1.0, "", "").passed
 
 
-def test_closed_forms_are_theory() -> None:
+def test_the_paper_s_frequencies_and_equilibrium_are_theory() -> None:
     """Three roots of a product of a few numbers each."""
-    assert eq_10(sliding()) == pytest.approx(sliding().frequency(), rel=1e-15)
-    assert corrected_55(frozen()) == pytest.approx(frozen().frequency(), rel=1e-15)
-    assert eq_53(frozen()) == pytest.approx(frozen().equilibrium(), rel=1e-15)
+    assert frequency_10(sliding()) == pytest.approx(sliding().frequency(), rel=1e-15)
+    assert frequency_55(frozen()) == pytest.approx(frozen().frequency(), rel=1e-15)
+    assert equilibrium_53(frozen()) == pytest.approx(frozen().equilibrium(), rel=1e-15)
 
 
 def test_the_misprinted_frequency_is_found_out() -> None:
-    assert abs(printed_55(frozen()) / frozen().frequency() - 1) > 0.2
+    assert abs(printed_frequency_55(frozen()) / frozen().frequency() - 1) > 0.2
 
 
 def test_a_wrong_motion_is_found_out() -> None:

@@ -1,4 +1,4 @@
-"""A row of the audit: what the paper claims, printed and right, and what a witness says to it."""
+"""What the paper claims, printed and right, and what a witness says to it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _AS_STATED = 0.05
 
 @dataclass(frozen=True)
 class Finding:
-    """One row of the audit, measured."""
+    """A claim that was measured: a row of the audit."""
 
     equation: str
     quantity: str
@@ -44,7 +44,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Claim:
-    """One row of the audit, to be measured."""
+    """A claim of the paper, to be measured against a witness."""
 
     equation: str
     quantity: str
@@ -62,12 +62,13 @@ class Claim:
         """Those of what is right."""
         return (self.right or self.printed)()
 
-    def run(self) -> Finding:
-        """Measure it."""
-        printed = miss(self.printed())
-        right = None if self.right is None else miss(self.terms)
-        about = self.equation, self.quantity, self.verdict, self.witness
-        return Finding(*about, printed, right, self.bound, self.misses_by, self.reason)
+    def measure(self) -> Finding:
+        """Measure by how much the printed form misses, and the right one, and return both beside the bound."""
+        return Finding(
+            self.equation, self.quantity, self.verdict, self.witness, printed=miss(self.printed()),
+            right=None if self.right is None else miss(self.terms), bound=self.bound, misses_by=self.misses_by,
+            reason=self.reason,
+        )  # fmt: skip
 
 
 def miss(terms: Terms) -> float:

@@ -25,7 +25,6 @@ from mjbeer.paper.audit.motions import (
     swung,
 )
 from mjbeer.paper.audit.witness import examine
-from mjbeer.paper.closed_forms import corrected_55, printed_55
 from mjbeer.paper.equations import frozen as equations
 from mjbeer.paper.letters import Terms
 from mjbeer.paper.scenarios import balanced, footnote_scene
@@ -114,11 +113,13 @@ def _small() -> Iterator[Claim]:
     measured, rocks = (swung(ice, start, rolling="equality").frequency() for start in (rest + SMALL, 0.0))
     yield corrected(
         "(55)", "omega of small oscillations: 2ab cos(phi_0); printed ab cos(phi_0)", EQUALITY,
-        lambda: (printed_55(ice), -measured), lambda: (corrected_55(ice), -measured), 0.21, 1e-6, "the amplitude: 3e-7",
+        printed=lambda: (equations.printed_frequency_55(ice), -measured),
+        right=lambda: (equations.frequency_55(ice), -measured),
+        misses_by=0.21, bound=1e-6, reason="the amplitude: 3e-7",
     )  # fmt: skip
     yield limit(
         "sec. A.2", "from phi = 0 the can rocks with omega of (55): there, and within, at 1e-3 rad", EQUALITY,
-        lambda: (corrected_55(ice), -rocks), lambda: (corrected_55(ice), -measured), 0.0154, 1e-6,
+        lambda: (equations.frequency_55(ice), -rocks), lambda: (equations.frequency_55(ice), -measured), 0.0154, 1e-6,
         "the amplitude: 3e-7",
     )  # fmt: skip
 

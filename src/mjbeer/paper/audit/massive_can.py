@@ -8,10 +8,9 @@ import numpy as np
 from mjbeer.paper.audit.claim import Claim, confirmed, corrected, limit
 from mjbeer.paper.audit.motions import DRIFT, EQUALITY, EXACT, HELD, ROUNDING, metal, still
 from mjbeer.paper.audit.witness import Witness
-from mjbeer.paper.closed_forms import constants
 from mjbeer.paper.equations import massive_can
 from mjbeer.paper.equations.sliding import kinetic_11, potential_14, potential_17
-from mjbeer.paper.letters import Terms
+from mjbeer.paper.letters import Letters, Terms
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene, sliding
 
@@ -105,18 +104,18 @@ def _steady() -> Iterator[Claim]:
     full, light = sliding(can=Can.sheet_metal()), sliding(fill=1e-4, can=Can.hoop(mass=0.05))
     yield confirmed(
         "footnote 4", "acceleration of a can whose beer does not swing", EQUALITY,
-        lambda: _accelerates(full, massive_can.footnote_4(constants(full))), HELD, DRIFT,
+        lambda: _accelerates(full, massive_can.footnote_4(Letters.of(full))), HELD, DRIFT,
     )  # fmt: skip
     yield limit(
         "footnote 4", "the same with I_can = m_can a^2: beyond, the metal can; within, a hoop", EQUALITY,
-        lambda: _accelerates(full, massive_can.hoop_footnote_4(constants(full))),
-        lambda: _accelerates(light, massive_can.hoop_footnote_4(constants(light))), 4.2e-3, 1e-7, DRIFT,
+        lambda: _accelerates(full, massive_can.hoop_footnote_4(Letters.of(full))),
+        lambda: _accelerates(light, massive_can.hoop_footnote_4(Letters.of(light))), 4.2e-3, 1e-7, DRIFT,
     )  # fmt: skip
     nearly = sliding(fill=1e-4, can=Can.sheet_metal())
     yield limit(
         "sec. 3.1", "(g/2) sin(alpha) of a nearly empty can: beyond, of sheet metal; within, a hoop", EQUALITY,
-        lambda: _accelerates(nearly, nearly.gravity * constants(nearly).sin_alpha / 2),
-        lambda: _accelerates(light, light.gravity * constants(light).sin_alpha / 2), 0.054, 1e-4,
+        lambda: _accelerates(nearly, nearly.gravity * Letters.of(nearly).sin_alpha / 2),
+        lambda: _accelerates(light, light.gravity * Letters.of(light).sin_alpha / 2), 0.054, 1e-4,
         "what beer is left (fill 1e-4)",
     )  # fmt: skip
     yield confirmed(
@@ -147,4 +146,4 @@ def _accelerates(scene: Scene, expected: float) -> Terms:
 def _tilted(scene: Scene) -> Terms:
     """tan(phi), which stays what it is, is that of the closed form."""
     q = _still(scene).quantities
-    return q.sin_phi / q.cos_phi, np.full_like(q.phi, -massive_can.tilt(constants(scene)))
+    return q.sin_phi / q.cos_phi, np.full_like(q.phi, -massive_can.tilt(Letters.of(scene)))

@@ -10,7 +10,6 @@ from mjbeer.model.setting import DOP853
 from mjbeer.paper.audit.claim import Claim, confirmed, corrected, limit
 from mjbeer.paper.audit.motions import LARGE, MODERATE, REDUCED, SMALL, swing, swung
 from mjbeer.paper.audit.witness import watch
-from mjbeer.paper.closed_forms import constants
 from mjbeer.paper.equations import sliding as equations
 from mjbeer.paper.letters import Letters, Terms
 from mjbeer.paper.looping import Looping, cosines, loop
@@ -35,7 +34,7 @@ def claims() -> Iterator[Claim]:
 
 def _frequency() -> Iterator[Claim]:
     beer = sliding()
-    c = constants(beer)
+    c = Letters.of(beer)
     yield limit(
         "(6), (24)", "omega of small oscillations: beyond, a swing of 1 rad; within, of 1e-3 rad", REDUCED,
         lambda: (math.sqrt(equations.eq_6(c)), -swung(beer, MODERATE).frequency()),
@@ -89,7 +88,7 @@ def _hesitation() -> Iterator[Claim]:
 
 
 def _looping() -> Iterator[Claim]:
-    c = constants(sliding())
+    c = Letters.of(sliding())
     yield limit(
         "sec. 2.3.2", "no loop from rest: phi stays within its start; it loops from 1.01 times the separatrix's rate",
         REDUCED, lambda: _furthest(1.01), lambda: _furthest(0.0), 0.67, 1e-9, "DOP853",
@@ -158,7 +157,7 @@ def _loop(phi_dot0: float) -> Looping:
 
 def _epsilon(formula: Callable[[Letters, float], float]) -> Terms:
     seen = _loop(FAST)
-    return seen.phi[1], -formula(constants(sliding()), seen.rate)
+    return seen.phi[1], -formula(Letters.of(sliding()), seen.rate)
 
 
 def _slope(harmonic: int) -> float:

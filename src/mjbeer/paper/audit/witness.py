@@ -9,7 +9,7 @@ from mjbeer.model.build import build
 from mjbeer.model.inertia import mass_unit
 from mjbeer.model.setting import DOP853
 from mjbeer.model.state import places
-from mjbeer.paper.letters import Quantities, letters
+from mjbeer.paper.letters import Quantities
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -61,8 +61,8 @@ def examine(run: Trajectory) -> Witness:
     down = model.opt.gravity / scene.gravity
     phi, (turn, turning) = run.phi, columns["turn"].T
     side = np.array([-down[2], 0, down[0]])  # a quarter turn from gravity, downhill
-    quantities = Quantities(
-        **letters(scene), s=load[:, 0, 0], s_dot=load[:, 1, 0], s_ddot=load[:, 2, 0], u=axis[:, 0, 0],
+    quantities = Quantities.of(
+        scene, s=load[:, 0, 0], s_dot=load[:, 1, 0], s_ddot=load[:, 2, 0], u=axis[:, 0, 0],
         u_dot=axis[:, 1, 0], u_ddot=axis[:, 2, 0], phi=phi, phi_dot=turn, phi_ddot=turning, sin_phi=np.sin(phi),
         cos_phi=np.cos(phi), sin_theta=np.sin(phi + scene.incline), cos_theta=np.cos(phi + scene.incline),
     )  # fmt: skip

@@ -1,14 +1,16 @@
 """Appendix A of the paper: beer frozen to a massless can. Equations (50)-(55), printed and right.
 
-Each returns its terms, as in `paper_sliding`. The load has I_axis = m a^2/2, as a half can has; its b is free.
+Each returns its terms, as those of `sliding` do. The load has I_axis = m a^2/2, as a half can has; its b is free.
 """
 
+import math
 from typing import Any
 
 import numpy as np
 
 from mjbeer.paper.letters import Letters, Quantities, Terms
 from mjbeer.theory.oscillator import Oscillator
+from mjbeer.theory.scene import Scene
 
 
 def eq_50(q: Quantities) -> tuple[Terms, ...]:
@@ -55,6 +57,12 @@ def eq_53(q: Quantities) -> Terms:
     return q.sin_theta, -q.a / q.b * q.sin_alpha
 
 
+def equilibrium_53(scene: Scene) -> float:
+    """Return phi_0 [rad] by eq. (53) with the masses of both: sin(alpha + phi_0) = (m + m_can) a sin(alpha) / (m b)."""
+    sine = scene.mass * scene.can.radius * math.sin(scene.incline) / (scene.load.mass * scene.load.offset)
+    return math.asin(sine) - scene.incline
+
+
 def cosine_54(sin_phi: Any, swing: Any) -> Any:
     """How much cos(phi) changes over a `swing` epsilon cos(wt) [rad], to first order."""
     return -swing * sin_phi
@@ -78,6 +86,18 @@ def eq_55(c: Letters, cos_phi: Any, cos_theta: Any) -> Any:
 def printed_55(c: Letters, cos_phi: Any, cos_theta: Any) -> Any:
     """The same with a b cos(phi_0) in the denominator."""
     return c.g * c.b * cos_theta / (1.5 * c.a**2 - c.a * c.b * cos_phi)
+
+
+def frequency_55(scene: Scene) -> float:
+    """Return omega [rad/s] by eq. (55) with the denominator that eq. (52) gives."""
+    phi = scene.equilibrium()
+    return math.sqrt(eq_55(Letters.of(scene), math.cos(phi), math.cos(scene.incline + phi)))
+
+
+def printed_frequency_55(scene: Scene) -> float:
+    """Return omega [rad/s] by eq. (55) as printed, whose denominator lacks the factor 2 in 2ab cos(phi_0)."""
+    phi = scene.equilibrium()
+    return math.sqrt(printed_55(Letters.of(scene), math.cos(phi), math.cos(scene.incline + phi)))
 
 
 def long_run(form: Oscillator) -> float:

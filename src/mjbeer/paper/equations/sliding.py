@@ -4,9 +4,11 @@ Each returns its terms, all on one side, so that they sum to zero where the equa
 terms that they are the sum of. What is named `printed_` is a misprint.
 """
 
+import math
 from typing import Any
 
 from mjbeer.paper.letters import Letters, Quantities, Terms
+from mjbeer.theory.scene import Scene
 
 
 def eq_1(q: Quantities, time: Any) -> Terms:
@@ -64,6 +66,11 @@ def eq_10(c: Letters, pi: Any) -> Any:
 def printed_10(c: Letters, pi: Any) -> Any:
     """24 pi g cos(alpha) / (9 pi^2 - 32): no radius in it."""
     return 24 * pi * c.g * c.cos_alpha / (9 * pi**2 - 32)
+
+
+def frequency_10(scene: Scene) -> float:
+    """Return omega [rad/s] by eq. (10), corrected."""
+    return math.sqrt(eq_10(Letters.of(scene), math.pi))
 
 
 def eq_24(c: Letters) -> Any:

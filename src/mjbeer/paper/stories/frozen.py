@@ -22,7 +22,7 @@ _MARGIN = 0.02
 
 
 def stories() -> Iterator[Story]:
-    """The stories."""
+    """Yield the stories of the chapter."""
     yield Story(
         "rocking",
         "A can with frozen beer, let go at phi = 0: it rocks about its equilibrium and does not roll off. Footnote 8's "

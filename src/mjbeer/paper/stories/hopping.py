@@ -16,7 +16,7 @@ from mjbeer.theory.scene import hoop
 
 
 def stories() -> Iterator[Story]:
-    """The stories."""
+    """Yield the stories of the chapter."""
     yield Story(
         "hopping",
         "A hoop with a weight on its rim falls from its top without slipping. What the ground pushes with, over the "

@@ -24,7 +24,7 @@ _CANS = {
 
 
 def stories() -> Iterator[Story]:
-    """The stories."""
+    """Yield the stories of the chapter."""
     yield Story(
         "accelerations",
         "How fast a can runs down if its beer does not swing, from nearly empty to full: from the can's own, half of "

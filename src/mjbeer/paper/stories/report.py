@@ -15,7 +15,7 @@ _SIZE = (640, 360, 20)
 
 
 def stories() -> list[Story]:
-    """All of them, in the paper's order."""
+    """Return all stories, in the paper's order."""
     return [story for chapter in _CHAPTERS for story in chapter.stories()]
 
 

@@ -9,8 +9,8 @@ import numpy as np
 from mjbeer.drawing.film import Film
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import chart
-from mjbeer.paper.closed_forms import constants
 from mjbeer.paper.equations import sliding as equations
+from mjbeer.paper.letters import Letters
 from mjbeer.paper.looping import loop
 from mjbeer.paper.scenarios import DECADE
 from mjbeer.paper.stories.story import Story
@@ -25,7 +25,7 @@ _METAL = Can.sheet_metal()
 
 
 def stories() -> Iterator[Story]:
-    """The stories."""
+    """Yield the stories of the chapter."""
     yield Story(
         "trivial",
         "Beer let go with its surface parallel to the incline stays so, and the can runs down with g sin(alpha), "
@@ -124,7 +124,7 @@ def _release(path: pathlib.Path) -> None:
 
 def _looping(path: pathlib.Path) -> None:
     scene = sliding()
-    c = constants(scene)
+    c = Letters.of(scene)
     with chart(path, 1, 2, width=11, height=4.5) as both:
         for axes, start in zip(both, (60.0, 400.0), strict=True):
             seen = loop(scene, start)
@@ -146,7 +146,7 @@ def _looping(path: pathlib.Path) -> None:
 
 def _ripples(path: pathlib.Path) -> None:
     scene: Scene = sliding()
-    c = constants(scene)
+    c = Letters.of(scene)
     seen = [loop(scene, start) for start in np.geomspace(DECADE[0], DECADE[-1], 9)]
     rates = np.array([each.rate for each in seen])
     line = np.geomspace(rates[0], rates[-1], 50)

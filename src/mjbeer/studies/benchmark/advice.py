@@ -3,24 +3,24 @@
 import pathlib
 
 from mjbeer import require
-from mjbeer.studies.benchmark import frontier, points
+from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TOLERANCE
-from mjbeer.studies.benchmark.points import Point
+from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import milliseconds
 from mjbeer.studies.cases import CASES
 
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
-"""The study that comes with mjbeer."""
+"""The study that comes with mjbeer: what advice and tables read, errors to six digits, and of run times the least."""
 
 
 def advise(name: str, tolerance: float, rolling: str | None = None, path: pathlib.Path | None = None) -> str:
-    """The setting to take for a scene and a `tolerance` [rad], as text: one line to use, and what it cost.
+    """Return the setting to take for a scene and a `tolerance` [rad] as text: lines to use, and what it cost.
 
     Raises:
       ParameterError: if the study has no such scene, or no setting meets the tolerance.
     """
     require.positive("tolerance", tolerance, "rad")
-    stored = points.load(SHIPPED if path is None else path)
+    stored = Benchmark.load(SHIPPED if path is None else path)
     require.choice("scene", name, stored.cases)
     point = frontier.advise(stored.of(name), tolerance, rolling)
     case = CASES[name]

@@ -63,7 +63,7 @@ class Rung:
             return
         motion = self.prepared.coordinates(result.states, self.case.times)
         self.point.judge(motion.phi, motion.u, truth)
-        self.point.listen(Trajectory(**vars(motion), scene=self.case.scene))
+        self.point.describe(Trajectory(**vars(motion), scene=self.case.scene))
         self._split_error(motion, truth)
         soft = softness(self.prepared.model, self.prepared.start(self.case.phi0, 0.0))
         if soft:

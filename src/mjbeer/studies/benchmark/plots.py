@@ -10,7 +10,7 @@ from mjbeer.output.plots import COLOURS, chart
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TOLERANCE, Curve
-from mjbeer.studies.benchmark.points import Point, Study
+from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import CASES
 
@@ -22,7 +22,7 @@ _PEERS = "#777777"
 _FLOOR = 1e-15
 
 
-def draw(study: Study, path: pathlib.Path) -> None:
+def draw(study: Benchmark, path: pathlib.Path) -> None:
     """Write `path` with .svg and with .png.
 
     Raises:
@@ -43,7 +43,7 @@ def draw(study: Study, path: pathlib.Path) -> None:
         figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=10)
 
 
-def _panel(axes: Axes, study: Study, case: str) -> None:
+def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     points = study.of(case)
     for curve in dict.fromkeys(each.curve for each in points):
         found = [each for each in points if each.curve == curve]

@@ -1,22 +1,18 @@
-"""The points of a study of error against run time, and how it is kept on disk."""
+"""A study of error against run time: its points, as JSON and as CSV."""
 
 import csv
 import dataclasses
 import io
 import json
 import math
-import os
-import pathlib
 import statistics
-from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from mjbeer.exceptions import ParameterError
-from mjbeer.output import files
 from mjbeer.studies.benchmark.curves import Curve
+from mjbeer.studies.study import Study
 from mjbeer.theory.trajectory import Trajectory
 
 
@@ -93,8 +89,8 @@ class Point:
         self.phi_max, self.phi_end = float(phi_error.max()), float(phi_error[-1])
         self.u_max, self.u_end = float(u_error.max()), float(u_error[-1])
 
-    def listen(self, run: Trajectory) -> None:
-        """Fill in what a run of MuJoCo says about itself."""
+    def describe(self, run: Trajectory) -> None:
+        """Fill in slip, energy drift and whether the can was pressed to the incline throughout."""
         radius = run.scene.can.radius
         slip = np.abs(run.slip) / radius
         self.slip_max, self.slip_integral = float(slip.max()), float(np.trapezoid(slip, run.time))
@@ -104,37 +100,38 @@ class Point:
 
 
 @dataclass
-class Study:
-    """Points of a work-precision study, in the order in which they were measured."""
+class Benchmark(Study):
+    """A study of error against run time: points in the order in which they were measured."""
 
-    settings: dict[str, Any]
-    """What was asked for."""
-    machine: dict[str, Any]
+    command = "mjbeer benchmark"
     points: list[Point] = field(default_factory=list)
     ablation: list[dict[str, Any]] = field(default_factory=list)
     """What each stage of a step costs, as ratios."""
 
+    @classmethod
+    def read(cls, document: dict[str, Any]) -> Self:
+        """Return the study that a JSON document has."""
+        study = super().read(document)
+        study.points = [Point(**point) for point in document["points"]]
+        return study
+
+    def json(self) -> str:
+        """Return the study as a JSON document, a line a point."""
+        head = json.dumps({"settings": self.settings, "machine": self.machine, "ablation": self.ablation}, indent=1)
+        lines = [json.dumps(_known(point), allow_nan=False) for point in self.points]
+        return head[: head.rindex("}")] + ',\n "points": [\n' + ",\n".join(lines) + "\n]}\n"
+
     def of(self, case: str) -> list[Point]:
-        """The points of a case that have an error and a run time."""
-        return [each for each in self.points if each.case == case and math.isfinite(each.error) and each.times]
+        """Return the points of a case that have an error and a run time."""
+        return [point for point in self.points if point.case == case and math.isfinite(point.error) and point.times]
 
     @property
     def cases(self) -> list[str]:
-        """The cases that it has, in their order."""
-        return list(dict.fromkeys(each.case for each in self.points))
-
-    def save(self, path: pathlib.Path) -> None:
-        """Write it as JSON, whole or not at all.
-
-        Raises:
-          OutputError: if it cannot be written.
-        """
-        lines = [json.dumps(_known(each), allow_nan=False) for each in self.points]
-        head = json.dumps({"settings": self.settings, "machine": self.machine, "ablation": self.ablation}, indent=1)
-        files.write(path, head[: head.rindex("}")] + ',\n "points": [\n' + ",\n".join(lines) + "\n]}\n")
+        """The cases of the points, in their order."""
+        return list(dict.fromkeys(point.case for point in self.points))
 
     def csv(self) -> str:
-        """One line a point: its setting, its errors and its least and median run time; empty where unknown."""
+        """Return a line a point: its setting, its errors and its least and median run time; empty where unknown."""
         names = [each.name for each in dataclasses.fields(Point) if each.name != "times"]
         text = io.StringIO()
         writer = csv.DictWriter(text, [*names, "error", "time_min", "time_median", "repeats"], lineterminator="\n")
@@ -147,32 +144,8 @@ class Study:
         return text.getvalue()
 
 
-def load(path: str | os.PathLike[str]) -> Study:
-    """Read a stored study.
-
-    Raises:
-      ParameterError: if the file is missing, or no study of this version.
-    """
-    try:
-        document = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
-        points = [Point(**each) for each in document["points"]]
-        return Study(document["settings"], document["machine"], points, document["ablation"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise ParameterError(f"{path} is no study that `mjbeer benchmark` wrote: {error}") from error
-
-
 def _known(point: Point) -> dict[str, Any]:
-    """What is known of a point; JSON has no number for the rest. Times to a nanosecond."""
+    """Return what is known of a point; JSON has no number for the rest. Times to a nanosecond."""
     values = {name: value for name, value in dataclasses.asdict(point).items() if value is not None}
-    values["times"] = [round(each, 9) for each in point.times]
+    values["times"] = [round(time, 9) for time in point.times]
     return {name: value for name, value in values.items() if not isinstance(value, float) or math.isfinite(value)}
-
-
-def same_conditions(one: Study, settings: dict[str, Any], where: dict[str, Any]) -> bool:
-    """Whether what a study has may stand beside what is measured with these settings on this machine."""
-    return one.settings == settings and one.machine == where
-
-
-def missing(points: Iterable[Point], repeats: int) -> list[Point]:
-    """The points that still lack run times."""
-    return [each for each in points if each.failure is None and len(each.times) < repeats]

@@ -8,7 +8,7 @@ import numpy as np
 from mjbeer.model.build import compile_model
 from mjbeer.model.setting import TUNED, USUAL
 from mjbeer.model.softness import softness
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.cases import CASES
@@ -19,7 +19,7 @@ from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 @dataclass(frozen=True)
 class Prediction:
-    """A numerical error by theory and by measurement."""
+    """A numerical error as theory predicts it, and as simulations have it."""
 
     what: str
     of: str
@@ -27,8 +27,8 @@ class Prediction:
     measure: Callable[[], float]
 
 
-def all_of_them() -> list[Prediction]:
-    """Each of them."""
+def predictions() -> list[Prediction]:
+    """Return every numerical error that theory gives in advance, with functions that predict and measure it."""
     found = [
         Prediction(
             "frequency too high by (omega h)^2/24", f"{name}, Euler, 4 ms",
@@ -77,14 +77,15 @@ def all_of_them() -> list[Prediction]:
     return found
 
 
-def grid() -> Grid:
-    """Predictions and measurements."""
+def table() -> Table:
+    """Return the predicted errors beside the measured ones."""
     rows = []
-    for each in all_of_them():
-        predicted, measured = each.predict(), each.measure()
-        rows.append((each.what, each.of, f"{predicted:.4g}", f"{measured:.4g}", f"{measured / predicted - 1:+.1e}"))
+    for prediction in predictions():
+        predicted, measured = prediction.predict(), prediction.measure()
+        apart = f"{measured / predicted - 1:+.1e}"
+        rows.append((prediction.what, prediction.of, f"{predicted:.4g}", f"{measured:.4g}", apart))
     columns = ("numerical error", "where", "predicted", "measured", "apart")
-    return Grid("Numerical errors that theory gives in advance", columns, rows)
+    return Table("Numerical errors that theory gives in advance", columns, rows)
 
 
 def _largest(values: np.ndarray) -> float:

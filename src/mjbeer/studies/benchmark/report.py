@@ -4,7 +4,7 @@ import pathlib
 
 from mjbeer.output import files
 from mjbeer.studies.benchmark import plots, predicted, tables
-from mjbeer.studies.benchmark.points import Study
+from mjbeer.studies.benchmark.points import Benchmark
 
 _READ = """
 Run time is that of one warm call that returns 65 samples of 2.048 s of motion, in one thread: the least of the
@@ -14,7 +14,7 @@ integrator` the distance of the run from that.
 """
 
 
-def write(study: Study, folder: pathlib.Path) -> None:
+def write(study: Benchmark, folder: pathlib.Path) -> None:
     """Write points.csv, work_precision.svg and .png, and last summary.md.
 
     Raises:
@@ -22,12 +22,12 @@ def write(study: Study, folder: pathlib.Path) -> None:
     """
     files.write(folder / "points.csv", study.csv())
     plots.draw(study, folder / "work_precision")
-    grids = [*tables.tables(study), predicted.grid()]
+    results = [*tables.tables(study), predicted.table()]
     versions = ", ".join(f"{name} {number}" for name, number in study.machine["versions"].items())
     lines = [
         "# mjbeer: error against run time", "",
         f"{study.machine['processor']}, {study.machine['system']}, Python {study.machine['python']}; {versions}.",
         _READ, "![Work-precision diagram](work_precision.svg)", "",
-        *(grid.markdown() for grid in grids),
+        *(table.markdown() for table in results),
     ]  # fmt: skip
     files.write(folder / "summary.md", "\n".join(lines))

@@ -10,36 +10,35 @@ from mjbeer import require
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import files
 from mjbeer.output.terminal import counted
-from mjbeer.studies import study
 from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
 from mjbeer.studies.benchmark.curves import TIMESTEP, Curve, aligned
 from mjbeer.studies.benchmark.measure import Rung
 from mjbeer.studies.benchmark.peers.installed import installed
 from mjbeer.studies.benchmark.peers.peer import Peer
-from mjbeer.studies.benchmark.points import Point, Study, load, same_conditions
+from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.cases import CASES, Case
-from mjbeer.studies.convergence import verdict
+from mjbeer.studies.convergence import convergence
 
 REPEATS = 5
-"""Run times of each setting; a round times every setting once, so that a slow minute is nobody's alone."""
+"""Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all settings alike."""
 _ENOUGH = 5
 """Fewest rungs before a ladder may end at its floor."""
 
 
-def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Console) -> Study:
-    """Measure cases and keep the study in `folder`, as study.json; what is there from a run like this is used.
+def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Console) -> Benchmark:
+    """Measure cases, and return the study kept in `folder` as study.json; what is there of one like it is used.
 
     First each ladder is climbed down once for its errors, to its floor; then every setting is timed, in rounds.
     The file is written after each ladder and each case of a round, so that an interrupted run goes on from there.
 
     Raises:
-      ParameterError: on a case that does not exist.
+      ParameterError: on a case that does not exist, or a study.json that is something else.
       OutputError: if the file cannot be written.
     """
     cases = [CASES[require.choice("scene", name, CASES)] for name in names]
     path = folder / "study.json"
-    found = _begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
+    found = Benchmark.begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
     files.remove(folder / "summary.md")  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
     with counted(console) as progress:
@@ -65,16 +64,6 @@ def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Consol
             found.ablation = ablate()
             found.save(path)
     return found
-
-
-def _begin(path: pathlib.Path, wanted: dict[str, object], console: Console) -> Study:
-    here = study.machine()
-    if path.exists():
-        before = load(path)
-        if same_conditions(before, wanted, here):
-            console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
-            return before
-    return Study(wanted, here)
 
 
 def _curves(case: Case, peers: dict[str, Peer], quick: bool) -> dict[Curve, tuple[float, ...]]:
@@ -103,7 +92,7 @@ def _climb(case: Case, curve: Curve, values: Sequence[float], peer: Peer | None)
                 errors.append(point.error)
         yield rung
         # What a tolerance leaves may stay the same over some decades: it is met by steps that are finer anyway.
-        floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and verdict(steps, errors).kind == "floored"
+        floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and convergence(steps, errors).kind == "floored"
         if floored or (failures > 1 and errors):
             return
 

@@ -1,70 +1,70 @@
-"""The tables of a study: cheapest settings, comparisons, verdicts, predictions, stages of a step."""
+"""The tables of a study: cheapest settings, comparisons, convergence, stages of a step."""
 
 import math
 
 from mjbeer.model.setting import DOP853, ROLLINGS, USUAL
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned
-from mjbeer.studies.benchmark.points import Point, Study
-from mjbeer.studies.convergence import Verdict, verdict
+from mjbeer.studies.benchmark.points import Benchmark, Point
+from mjbeer.studies.convergence import Convergence, convergence
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which others are compared with the best setting."""
 
 
-def tables(study: Study) -> list[Grid]:
-    """All of them."""
+def tables(study: Benchmark) -> list[Table]:
+    """Return the tables of a study, in the order in which they are shown."""
     found = [cheapest(study, case) for case in study.cases]
     found += [others(study), tolerances(study), usual(study)]
-    found += [verdicts(study, case) for case in study.cases]
+    found += [ladders(study, case) for case in study.cases]
     return [*found, stages(study)]
 
 
 def setting(point: Point) -> str:
-    """A setting in a few words."""
+    """Return a setting in a few words."""
     knob = f"{point.value:g}" if point.knob == TOLERANCE else milliseconds(point.value)
     return f"{point.method} {'to ' if point.knob == TOLERANCE else ''}{knob}".strip()
 
 
 def milliseconds(time: float) -> str:
-    """A time [s] as text, in milliseconds."""
+    """Return a time [s] as text, in milliseconds."""
     return f"{1e3 * time:.3g} ms"
 
 
-def cheapest(study: Study, case: str) -> Grid:
-    """For each error and way of rolling, the cheapest setting, and the front of them all."""
+def cheapest(study: Benchmark, case: str) -> Table:
+    """Return the cheapest setting of a case for each error and way of rolling, with its run time."""
     points = study.of(case)
-    ways = [way for way in ROLLINGS if any(each.way == way for each in points)]
+    ways = [way for way in ROLLINGS if any(point.way == way for point in points)]
     rows = []
     for level in frontier.LEVELS:
         cells = [f"{level:.0e} rad"]
         for way in ways:
-            point = frontier.cheapest((each for each in points if each.way == way), level)
-            cells.append("not reached" if point is None else f"{setting(point)}: {milliseconds(point.time)}")
+            best = frontier.cheapest([point for point in points if point.way == way], level)
+            cells.append("not reached" if best is None else f"{setting(best)}: {milliseconds(best.time)}")
         rows.append(tuple(cells))
-    return Grid(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
+    return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
 
 
-def others(study: Study) -> Grid:
-    """Run time of others over that of the best reduced setting, at equal error."""
+def others(study: Benchmark) -> Table:
+    """Return run times of others over that of the best reduced setting, at equal error."""
     names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
     rows = []
     for case in study.cases:
         points = study.of(case)
-        mine = [each for each in points if each.way == "reduced"]
-        curves = {"MuJoCo RK4": [each for each in mine if each.method == "RK4"]}
-        curves |= {name: [each for each in points if each.way == name] for name in names[1:]}
+        reduced = [point for point in points if point.way == "reduced"]
+        curves = {"MuJoCo RK4": [point for point in reduced if point.method == "RK4"]}
+        curves |= {name: [point for point in points if point.way == name] for name in names[1:]}
         for level in COMPARED:
-            best = frontier.time_for(mine, level)
+            best = frontier.time_for(reduced, level)
             ratios = [frontier.time_for(curves[name], level) / best for name in names]
-            rows.append((f"{case}, {level:.0e} rad", milliseconds(best), *(_ratio(each) for each in ratios)))
+            rows.append((f"{case}, {level:.0e} rad", milliseconds(best), *(_ratio(ratio) for ratio in ratios)))
     columns = ("error", "best reduced", *names)
-    return Grid("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
+    return Table("Run time of others over that of the best reduced setting; under 1 they are faster", columns, rows)
 
 
-def tolerances(study: Study) -> Grid:
-    """What it costs not to know the timestep."""
+def tolerances(study: Benchmark) -> Table:
+    """Return what it costs not to know the timestep: runs to a tolerance beside the best fixed timesteps."""
     rows = []
     for case in study.cases:
         for digits in range(3, 13):
@@ -73,11 +73,11 @@ def tolerances(study: Study) -> Grid:
                 row = (f"{case}, 1e-{digits}", milliseconds(fixed.time), milliseconds(asked.time))
                 rows.append((*row, f"{asked.time / fixed.time:.2f}", f"{asked.error:.1e}"))
     columns = ("tolerance [rad]", "fixed timestep", "to the tolerance", "ratio", "its error [rad]")
-    return Grid("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
+    return Table("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
 
 
-def usual(study: Study) -> Grid:
-    """Models as people usually write them, and their tuned twins in the same time."""
+def usual(study: Benchmark) -> Table:
+    """Return the errors of models as people usually write them, beside their tuned twins in the same time."""
     rows = []
     for case in study.cases:
         points = study.of(case)
@@ -85,38 +85,37 @@ def usual(study: Study) -> Grid:
             gain = frontier.gain_over_usual(points, written)
             if gain is None:
                 continue
-            point = next(each for each in points if each.way == written)
+            point = next(point for point in points if point.way == written)
             share = "" if point.effective_impedance is None else f"{point.effective_impedance:.3g}"
             cells = f"{point.error:.1e}", milliseconds(point.time), share, f"{gain:.1e}"
             rows.append((f"{case}: {written}", *cells))
     columns = ("as usually written, Euler, 2 ms", "error [rad]", "run time", "share of the force", "tuned is better by")
-    return Grid("Models as usually written, and their tuned twins at equal run time", columns, rows)
+    return Table("Models as usually written, and their tuned twins at equal run time", columns, rows)
 
 
-def verdicts(study: Study, case: str) -> Grid:
-    """What each ladder of timesteps shows, and where its error comes from at the finest rung that can tell."""
+def ladders(study: Benchmark, case: str) -> Table:
+    """Return what each ladder of timesteps shows, and where the error of its finest rung comes from, if known."""
     rows = []
-    for curve in dict.fromkeys(each.curve for each in study.points if each.case == case):
-        points = [each for each in study.of(case) if each.curve == curve]
+    for curve in dict.fromkeys(point.curve for point in study.points if point.case == case):
+        points = [point for point in study.of(case) if point.curve == curve]
         if not points or curve.knob != TIMESTEP or curve.way in USUAL:
             continue
-        told = [each for each in points if each.model_error is not None]
-        last = told[-1] if told else points[-1]
+        last = ([point for point in points if point.model_error is not None] or points)[-1]
         split = [f"{milliseconds(last.value)}: {last.error:.1e}"]
-        split += ["" if each is None else f"{each:.1e}" for each in (last.model_error, last.integrator_error)]
-        rows.append((curve.label, str(verdict_of(points)), *split))
+        split += ["" if error is None else f"{error:.1e}" for error in (last.model_error, last.integrator_error)]
+        rows.append((curve.label, str(convergence_of(points)), *split))
     columns = ("curve", "verdict", "at a rung: error [rad]", "of the model", "of the integrator")
-    return Grid(f"{case}: verdicts", columns, rows)
+    return Table(f"{case}: verdicts", columns, rows)
 
 
-def verdict_of(points: list[Point]) -> Verdict:
-    """The verdict on a curve, from the rungs that need no interpolation."""
-    even = [each for each in points if each.method != DOP853 or aligned(each.value)]
-    return verdict([each.value for each in even], [each.error for each in even])
+def convergence_of(points: list[Point]) -> Convergence:
+    """Return what the points of a curve show, by the rungs that need no interpolation."""
+    even = [point for point in points if point.method != DOP853 or aligned(point.value)]
+    return convergence([point.value for point in even], [point.error for point in even])
 
 
-def stages(study: Study) -> Grid:
-    """What the stages of a step cost a scene that does not need them."""
+def stages(study: Benchmark) -> Table:
+    """Return what the stages of a step cost a scene that does not need them."""
     names = list(dict.fromkeys(name for row in study.ablation for name in row if name not in ("case", "integrator")))
     rows = []
     for row in study.ablation:
@@ -125,7 +124,7 @@ def stages(study: Study) -> Grid:
         ]
         rows.append((f"{row['case']}, {row['integrator']}", *cells))
     columns = ("reduced model", "a step", *(f"with {name}" for name in names if name != "step"))
-    return Grid("Time of a step with one stage more over that of a step without", columns, rows)
+    return Table("Time of a step with one stage more over that of a step without", columns, rows)
 
 
 def _ratio(value: float) -> str:

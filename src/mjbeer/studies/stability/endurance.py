@@ -51,12 +51,12 @@ class Endurance:
     """Whether the steps are so small that only rounding is left."""
 
     def task(self, quick: bool) -> Task:
-        """Run it, or a thousandth of it."""
+        """Return the task of measuring it, or a thousandth of it."""
         name = f"{self.name}, {self.integrator}, T/{self.steps}"
         return Task("endurance", name, partial(self.measure, self.quick_swings if quick else self.swings))
 
     def measure(self, swings: int) -> dict[str, Any]:
-        """Drift of the energy over the number of swings, its exponent, and the law that it obeys."""
+        """Return the drift of the energy over the number of swings, its exponent, and the law that it obeys."""
         period = self.scene.period(AMPLITUDE)
         counts = _counts(swings)
         drift, width = self._drift(period, counts)
@@ -114,12 +114,12 @@ def _counts(swings: int) -> np.ndarray:
 
 
 def tasks(quick: bool) -> list[Task]:
-    """All of them; quickly, for a thousand swings at most."""
-    return [each.task(quick) for each in cases() if not quick or each.quick_swings]
+    """Return a task a case; quickly, for a thousand swings at most."""
+    return [case.task(quick) for case in cases() if not quick or case.quick_swings]
 
 
 def cases() -> Iterator[Endurance]:
-    """The cases: a swing whose inertia is constant, since its can is too heavy to move, and one whose is not."""
+    """Yield the cases: a swing whose inertia is constant, since its can is too heavy to move, and one whose is not."""
     heavy, light = sliding(0.0, can=Can.hoop(mass=1e9)), sliding(0.0)
     free, moving = "can too heavy to move", "massless can"
     symplectic = "semi-implicit Euler is symplectic where the mass matrix is constant"
@@ -138,7 +138,7 @@ def cases() -> Iterator[Endurance]:
 
 
 def rounded_coefficients(steps: int) -> float:
-    """Share of its energy that a small swing gains in each period because DOP853's coefficients are doubles.
+    """Return the share of its energy that a small swing gains in each period because DOP853's coefficients are doubles.
 
     With errors e of sum(b) = 1 and f of sum(b c) = 1/2, the method's |R(iy)|^2 is 1 + 2 (e - f) y^2, y = 2 pi/`steps`;
     the errors of higher conditions come with higher powers of y.

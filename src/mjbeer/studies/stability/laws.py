@@ -11,7 +11,7 @@ from scipy.interpolate import CubicHermiteSpline
 from mjbeer.model.setting import DOP853
 from mjbeer.predictions.semi_implicit_euler import euler_motion
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.check import Row
+from mjbeer.studies.check import Check
 from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.study import Task
 from mjbeer.theory.can import Can
@@ -25,60 +25,60 @@ _GRAVITIES = (1e-6, 1e6)
 
 
 def tasks() -> list[Task]:
-    """One a law."""
-    return [Task("laws", f"{row.quantity} ({row.by})", lambda row=row: _measured(row)) for row in rows()]
+    """Return one task a law."""
+    return [Task("laws", f"{law.quantity} ({law.by})", lambda law=law: _measure(law)) for law in laws()]
 
 
-def _measured(row: Row) -> dict[str, Any]:
-    check = row.run()
-    return dataclasses.asdict(check) | {"as_expected": check.passed}
+def _measure(law: Check) -> dict[str, Any]:
+    result = law.measure()
+    return dataclasses.asdict(result) | {"as_expected": result.passed}
 
 
-def rows() -> Iterator[Row]:
-    """The laws."""
-    yield Row(
+def laws() -> Iterator[Check]:
+    """Yield the laws."""
+    yield Check(
         "frequency over distance from the fold: exponent less 1/4",
         "frozen, reduced, DOP853",
-        1e-3,
-        "",
-        "the next term, the root of the largest distance, 1e-6",
-        lambda: _fold_exponent() - 0.25,
+        bound=1e-3,
+        unit="",
+        reason="the next term, the root of the largest distance, 1e-6",
+        deviation=lambda: _fold_exponent() - 0.25,
     )
     scenes = {"sliding, metal can": sliding(can=Can.sheet_metal()), "frozen": frozen(), "pendulum": pendulum()}
     for name, scene in scenes.items():
-        yield Row(
+        yield Check(
             "fall from beside the separatrix over the logarithm of the distance: slope",
             f"{name}, reduced, DOP853",
-            1e-5,
-            "relative",
-            "4e-16 rad of rounding at the top, where the smallest distance is 1e-10 rad",
-            lambda scene=scene: _fall_slope(scene) / fall_slope(scene) - 1,
+            bound=1e-5,
+            unit="relative",
+            reason="4e-16 rad of rounding at the top, where the smallest distance is 1e-10 rad",
+            deviation=lambda scene=scene: _fall_slope(scene) / fall_slope(scene) - 1,
         )
     for integrator, duration in (("Euler", 8.0), ("implicit", 2.4)):
-        yield Row(
+        yield Check(
             f"rolling down for {duration} s, by how much the timestep falsifies the turn",
             f"frozen, equality, {integrator}, 1 ms",
-            1e-3,
-            "relative",
-            "second order in the timestep",
-            lambda integrator=integrator, duration=duration: _falsified(integrator, duration),
+            bound=1e-3,
+            unit="relative",
+            reason="second order in the timestep",
+            deviation=lambda integrator=integrator, duration=duration: _falsified(integrator, duration),
         )
     for make, name in ((sliding, "sliding"), (frozen, "frozen")):
-        yield Row(
+        yield Check(
             "similarity: phi over t sqrt(g/a), cans of 1 um to 100 m, 1e-6 to 1e6 m/s^2",
             f"{name}, metal can, reduced, DOP853",
-            1e-10,
-            "rad",
-            "rounding of what the scaled scene is made of",
-            lambda make=make: _dissimilarity(make),
+            bound=1e-10,
+            unit="rad",
+            reason="rounding of what the scaled scene is made of",
+            deviation=lambda make=make: _dissimilarity(make),
         )
-        yield Row(
+        yield Check(
             "full can, let go at 1 rad: how far it comes in 10 s",
             f"{name if make is sliding else 'frozen, on the level'}, reduced, RK4, 1 ms",
-            0.0,
-            "rad",
-            "b = 0, and so is the torque",
-            lambda make=make: _unmoved(make),
+            bound=0.0,
+            unit="rad",
+            reason="b = 0, and so is the torque",
+            deviation=lambda make=make: _unmoved(make),
         )
 
 

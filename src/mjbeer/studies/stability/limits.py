@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
-from mjbeer.output.table import Grid
+from mjbeer.output.table import Table
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.studies.cases import CASES
@@ -31,7 +31,7 @@ _ACCURATE_FROM = {True: 0.1, False: 0.01}
 
 
 def measure(case: str, rolling: str, integrator: str, settled: bool = True) -> dict[str, Any]:
-    """The two limits of one way to simulate one scene, measured and predicted, all as omega h.
+    """Return the two limits of one way to simulate one scene, measured and predicted, all as omega h.
 
     "agrees" says whether they are within `AGREEMENT` of what is predicted. A can in contact that is not `settled`
     starts where `simulate` starts it, 1e-9 radii deep, and only its stability is looked at: "lost_a_stage" says
@@ -57,7 +57,7 @@ def measure(case: str, rolling: str, integrator: str, settled: bool = True) -> d
 
 
 def tasks(quick: bool = False) -> list[Task]:
-    """One a scene, way of rolling and integrator; a `quick` study has a sample of them."""
+    """Return one task a scene, way of rolling and integrator; a `quick` study has a sample of them."""
     found = []
     for case, rolling, integrator, settled in _combinations():
         if quick and not (integrator in ("Euler", "RK4", DOP853) and (case, rolling) in _SAMPLE and settled):
@@ -71,8 +71,8 @@ def tasks(quick: bool = False) -> list[Task]:
     return found
 
 
-def grid(results: list[dict[str, Any]]) -> Grid:
-    """The limits as a table, measured over predicted in brackets."""
+def table(results: list[dict[str, Any]]) -> Table:
+    """Return the limits as a table, measured over predicted in brackets."""
     rows = []
     for each in results:
         accurate = f"{each['accurate']:.3g} ({each['accurate_ratio']:.3f})" if "accurate" in each else "-"
@@ -85,7 +85,7 @@ def grid(results: list[dict[str, Any]]) -> Grid:
             "a stage of RK4 loses the contact" if each.get("lost_a_stage") else verdict,
         ))  # fmt: skip
     columns = ("scene", "integrator", "stable to ωh (over theory)", "accurate to ωh (over theory)", "agrees")
-    return Grid("Largest timesteps of a small swing", columns, rows)
+    return Table("Largest timesteps of a small swing", columns, rows)
 
 
 def _combinations() -> list[tuple[str, str, str, bool]]:

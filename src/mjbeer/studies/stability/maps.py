@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from mjbeer.model.setting import DOP853, INTEGRATORS
-from mjbeer.output.table import Grid
-from mjbeer.studies.stability.short_runs import UNSTABLE, Bench, Plan
+from mjbeer.output.table import Table
+from mjbeer.studies.stability.short_runs import UNSTABLE, Plan, ShortRuns
 from mjbeer.studies.study import Task
 
 AGREEMENT = 0.05
@@ -46,13 +46,13 @@ _RESOLUTION = 1.01
 
 
 def tasks(quick: bool = False) -> list[Task]:
-    """One a map; a `quick` study has fewer and coarser ones."""
+    """Return one task a map; a `quick` study has fewer and coarser ones."""
     plans, cells = (_QUICK, QUICK_CELLS) if quick else (PLANS, CELLS)
     return [Task("maps", plan.name, lambda plan=plan: measure(plan, cells)) for plan in plans]
 
 
 def measure(plan: Plan, cells: int) -> dict[str, Any]:
-    """A map of `cells` timesteps by as many stiffnesses, each cell measured and predicted, and its boundary.
+    """Return a map of `cells` timesteps by as many stiffnesses, each cell measured and predicted, and its boundary.
 
     "boundaries" has, for each stiffness, the timestep [s] up to which the motion is stable, measured and predicted, or
     None where it is throughout. "agrees" says whether all are within `AGREEMENT`; "same" is the share of cells that
@@ -61,14 +61,14 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
     times, stiffnesses = (np.geomspace(*span, cells).tolist() for span in SPANS[plan.family])
     measured, predicted, boundaries = [], [], []
     for value in stiffnesses:
-        bench = Bench(plan, value)
-        seen, said = ([judge(h) for h in times] for judge in (bench.measure, bench.predict))
+        runs = ShortRuns(plan, value)
+        seen, said = ([judge(h) for h in times] for judge in (runs.measure, runs.predict))
         measured.append(seen)
         predicted.append(said)
         boundaries.append({
             "value": value,
-            "measured": _boundary(bench.measure, times, seen),
-            "predicted": _boundary(bench.predict, times, said),
+            "measured": _boundary(runs.measure, times, seen),
+            "predicted": _boundary(runs.predict, times, said),
         })  # fmt: skip
     off = [_off(each["measured"], each["predicted"]) for each in boundaries]
     return {
@@ -82,13 +82,13 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
     }
 
 
-def grid(results: list[dict[str, Any]]) -> Grid:
-    """How well the maps agree with theory."""
+def table(results: list[dict[str, Any]]) -> Table:
+    """Return how well the maps agree with theory."""
     rows: list[tuple[str, ...]] = [
         (each["name"], f"{each['same']:.1%}", f"{each['worst']:.1%}", "yes" if each["agrees"] else "NO")
         for each in results
     ]
-    return Grid("Maps of timestep and stiffness", ("map", "cells as predicted", "boundary off by", "agrees"), rows)
+    return Table("Maps of timestep and stiffness", ("map", "cells as predicted", "boundary off by", "agrees"), rows)
 
 
 def _boundary(judge: Callable[[float], int], timesteps: list[float], known: list[int]) -> float | None:

@@ -37,8 +37,8 @@ class Outcome:
     """The run's warnings, or the error that the user sees; empty if the run is trusted."""
 
 
-def judge(run: Callable[[], Trajectory]) -> Outcome:
-    """Make a run and judge it.
+def judge(simulate: Callable[[], Trajectory]) -> Outcome:
+    """Simulate a motion, and return how that ended.
 
     Accurate is an error of phi and u/a of at most `trajectory.ERROR`, which is also what a trusted run claims.
 
@@ -46,22 +46,22 @@ def judge(run: Callable[[], Trajectory]) -> Outcome:
       NoLibrationError: if the start lies on the separatrix, where there is no exact motion to judge by.
     """
     try:
-        made = run()
+        run = simulate()
     except DivergenceError as error:
         return Outcome(UNSTABLE, None, None, str(error))
     except MjbeerError as error:
         return Outcome(REFUSED, None, None, str(error))
-    truth = exact(made.scene, made.time, float(made.phi[0]), float(made.phi_dot[0]))
-    radius = made.scene.can.radius
-    error = distance(made, truth, radius)
-    if made.trusted:
+    truth = exact(run.scene, run.time, float(run.phi[0]), float(run.phi_dot[0]))
+    radius = run.scene.can.radius
+    error = distance(run, truth, radius)
+    if run.trusted:
         verdict = ACCURATE if error <= ERROR else SILENT
-    elif _explodes(made, truth):
+    elif _explodes(run, truth):
         verdict = UNSTABLE
     else:
         verdict = ACCURATE if error <= ERROR else INACCURATE
-    admitted = (made.error_estimate or 0.0) + float(np.abs(made.slip).max() + np.abs(made.lift).max()) / radius
-    return Outcome(verdict, _known(error), _known(admitted), "; ".join(made.warnings))
+    admitted = (run.error_estimate or 0.0) + float(np.abs(run.slip).max() + np.abs(run.lift).max()) / radius
+    return Outcome(verdict, _known(error), _known(admitted), "; ".join(run.warnings))
 
 
 def _explodes(run: Trajectory, truth: Trajectory) -> bool:

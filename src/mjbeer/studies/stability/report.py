@@ -32,7 +32,7 @@ def write(found: Stability, folder: pathlib.Path) -> None:
     lines += [tables.verdicts(found).markdown()]
     for name, caption in (each.split(": ", 1) for each in pictures):
         lines += [f"![{name}]({name}.svg)", "", f"{caption[0].upper()}{caption[1:]}", ""]
-    lines += [grid.markdown() for grid in tables.tables(found)[1:]]
+    lines += [table.markdown() for table in tables.tables(found)[1:]]
     lines += [tables.catalogue(found).markdown(), tables.reasons(found).markdown()]
     files.write(folder / "summary.md", "\n".join(lines))
 

@@ -21,15 +21,15 @@ from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
 NUMBERS = 36
-"""How many numbers make a trial."""
+"""How many numbers make a random run."""
 _LONGEST = 100.0
 """Turns and falls through the radius that a run may last: exact theory follows each of them."""
 _SAMPLES = 200
 
 
 @dataclass(frozen=True)
-class Trial:
-    """A scene, its start, and how it is run."""
+class RandomRun:
+    """A scene, its start, and how it is simulated."""
 
     scene: Scene
     phi0: float
@@ -47,11 +47,12 @@ class Trial:
         chosen = np.unique(np.linspace(0, self.steps, min(self.steps, _SAMPLES) + 1).astype(int))
         return self.timestep * chosen
 
-    def run(self) -> Trajectory:
-        """Simulate it."""
+    def simulate(self) -> Trajectory:
+        """Return its motion at its samples."""
         return simulate(
-            self.scene, self.timestep * self.steps, self.phi0, self.phi_dot0, self.rolling, self.integrator,
-            self.timestep, self.tolerance, self.times, self.friction,
+            self.scene, self.timestep * self.steps, self.phi0, self.phi_dot0, rolling=self.rolling,
+            integrator=self.integrator, timestep=self.timestep, tolerance=self.tolerance, times=self.times,
+            friction=self.friction,
         )  # fmt: skip
 
 
@@ -74,8 +75,8 @@ class _Numbers:
         return options[min(int(next(self._left) * len(options)), len(options) - 1)]
 
 
-def trial(numbers: Sequence[float]) -> Trial:
-    """The trial that `NUMBERS` numbers between 0 and 1 stand for.
+def random_run(numbers: Sequence[float]) -> RandomRun:
+    """Return the run that `NUMBERS` numbers between 0 and 1 stand for.
 
     Sizes, masses, gravities and timesteps are spread over their decades; what is special (an empty can, the top, a
     fill of one, a point load, no gravity, no incline, a start beside the separatrix) comes up as often as what is not.
@@ -97,7 +98,10 @@ def trial(numbers: Sequence[float]) -> Trial:
     if rolling == "contact":
         tolerance = None  # a stiff contact takes more steps to it than one would wait for
     friction = pick.one(1.0, 1.0, pick.decades(1e-3, 1e3))
-    return Trial(scene, phi0, spin / slow, rolling, integrator, timestep, steps, tolerance, friction)
+    return RandomRun(
+        scene, phi0, phi_dot0=spin / slow, rolling=rolling, integrator=integrator, timestep=timestep, steps=steps,
+        tolerance=tolerance, friction=friction,
+    )  # fmt: skip
 
 
 def _top(scene: Scene) -> float:
@@ -123,21 +127,21 @@ def _scene(pick: _Numbers) -> Scene:
 
 
 _BATCH = 100
-"""Trials of a task: some ten seconds."""
+"""Runs of a task: some ten seconds."""
 _BATCHES, _QUICK_BATCHES = 30, 2
 _ROUNDING = 1e-9
-"""Error that a run need not admit: rounding does not fall with the timestep [rad]."""
+"""Errors below this [rad] do not count as overconfident: a second run at half the timestep cannot see rounding."""
 _IMPOSSIBLE = "no such scene"
 
 
 def tasks(quick: bool) -> list[Task]:
-    """The search, in batches; each has its own seed, so that it does not depend on those before."""
+    """Return the search in batches; each has its own seed, so that it does not depend on those before."""
     count = _QUICK_BATCHES if quick else _BATCHES
     return [Task("search", f"{_BATCH} random runs, seed {seed}", partial(batch, seed)) for seed in range(count)]
 
 
 def batch(seed: int, size: int = _BATCH) -> dict[str, Any]:
-    """How many of a batch of trials ended in which way, and everything about those that were wrong and silent.
+    """Return how many of a batch of runs ended in which way, and all about those that were wrong and silent.
 
     `overconfident` has trusted runs whose error is greater than what the run admits: within what is trusted, but not
     what it said.
@@ -147,14 +151,14 @@ def batch(seed: int, size: int = _BATCH) -> dict[str, Any]:
     for number in range(size):
         numbers = generator.random(NUMBERS).tolist()
         try:
-            drawn = trial(numbers)
+            run = random_run(numbers)
         except ParameterError:
             found[_IMPOSSIBLE] += 1
             continue
-        outcome = attempt(drawn)
+        outcome = check(run)
         found[outcome.verdict] += 1
         flagged += outcome.verdict == ACCURATE and bool(outcome.says)
-        about = {"number": number, **dataclasses.asdict(outcome), "trial": repr(drawn)}
+        about = {"number": number, **dataclasses.asdict(outcome), "trial": repr(run)}
         if outcome.verdict == SILENT:
             silent.append(about)
         elif not outcome.says and (outcome.error or 0) > (outcome.admitted or 0) + _ROUNDING:
@@ -162,9 +166,9 @@ def batch(seed: int, size: int = _BATCH) -> dict[str, Any]:
     return {"seed": seed, "verdicts": dict(found), "flagged": flagged, "silent": silent, "overconfident": overconfident}
 
 
-def attempt(drawn: Trial) -> Outcome:
-    """Make and judge a trial; the one start that has no exact motion, the separatrix itself, is refused."""
+def check(run: RandomRun) -> Outcome:
+    """Simulate a run and return how it ended; the one start without an exact motion, the separatrix, is refused."""
     try:
-        return judge(drawn.run)
+        return judge(run.simulate)
     except NoLibrationError as error:
         return Outcome("refused", None, None, str(error))

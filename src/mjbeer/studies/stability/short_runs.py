@@ -16,7 +16,7 @@ from mjbeer.model.setting import DOP853, Softness
 from mjbeer.model.state import places, settle
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
-from mjbeer.predictions.soft_constraint import Row, diagonal_excess
+from mjbeer.predictions.soft_constraint import SoftRow, diagonal_excess
 from mjbeer.simulation import dop853, stepping
 from mjbeer.theory.scene import Scene, frozen
 
@@ -29,8 +29,8 @@ IMPEDANCE = 0.9
 _SWING = 1e-4
 """Angle from which the can is let go [rad]."""
 _SEED = 1e-7
-"""By which share of that, or of half the contact's depth, the rows are off at the start. A stiff row throws this back
-in a time constant, and the swing with it: 1e-4 would already be an error of 1 % at a time constant of 1 ms."""
+"""Initial violation of the constraint, relative to `_SWING` (or to half the contact's depth). It must be tiny: a stiff
+constraint corrects it within one time constant, and 1e-4 would already disturb the swing by 1 % at tau = 1 ms."""
 _STEPS = 1000
 """Least number of steps of a run: in that time an instability of 2 % a step outgrows any seed."""
 _LEVEL = frozen(incline=0.0)
@@ -59,7 +59,7 @@ class Plan:
         return ", ".join(parts)
 
 
-class Bench:
+class ShortRuns:
     """Runs of one plan and one stiffness: a time constant [s], a direct stiffness [1/s^2] or a gravity [m/s^2]."""
 
     def __init__(self, plan: Plan, value: float) -> None:
@@ -73,7 +73,7 @@ class Bench:
         self._frequency = self._scene.frequency()
 
     def measure(self, timestep: float) -> int:
-        """What MuJoCo's run with a timestep [s] is."""
+        """Return what MuJoCo's run with a timestep [s] is: UNSTABLE, INACCURATE or ACCURATE."""
         rest, start = self._ready(timestep)
         samples = np.arange(self._steps(timestep) + 1)
         try:
@@ -86,7 +86,7 @@ class Bench:
         return self._judge(states - rest, rest, start, timestep)
 
     def predict(self, timestep: float) -> int:
-        """What it is by linear theory: the start is multiplied by the matrix of a step again and again."""
+        """Return the same by linear theory: the start is multiplied by the matrix of a step again and again."""
         rest, start = self._ready(timestep)
         unit = np.repeat([1.0, timestep], len(start) // 2)
         states = linear_stability.motion(self._step(rest, timestep), start * unit, self._steps(timestep))
@@ -96,7 +96,7 @@ class Bench:
     def _step(self, rest: np.ndarray, timestep: float) -> np.ndarray:
         plan, joints = self._plan, places(self._model)
         if plan.family in FREE:
-            spring = Row(self._frequency**2, 0.0, 1.0)
+            spring = SoftRow(self._frequency**2, 0.0, 1.0)
             if plan.family == "spring" and plan.integrator == "discrete":  # implicit in it, as in a row
                 spring = spring.at_end_of_step(timestep)
             return linear_stability.amplification(
@@ -182,7 +182,7 @@ def _touching(model: mujoco.MjModel) -> int:
     return int(data.ncon)
 
 
-def _row(plan: Plan, value: float, timestep: float) -> Row:
+def _row(plan: Plan, value: float, timestep: float) -> SoftRow:
     """The row as MuJoCo has it, after refsafe."""
     if plan.family == "direct":
         return soft_constraint.direct(value, 2 * plan.dampratio * math.sqrt(value), IMPEDANCE)

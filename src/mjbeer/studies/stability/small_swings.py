@@ -23,8 +23,8 @@ STABLE_AMPLITUDE = 1e-4
 ACCURATE_AMPLITUDE = 1e-3
 """Of the swing that has to stay accurate [rad]: what is nonlinear is in the exact motion as well."""
 _FREE_FALL = 1e-2
-"""How far from free fall the part of a step may be that a stage without contact adds, as a share of it; with contact
-it is a thousandth of it."""
+"""Relative tolerance for saying that the last RK4 stage was in free fall. Without contact it adds -g h cos(alpha)/6 to
+lift_dot; with contact, a thousandth of that."""
 
 
 @dataclass(frozen=True)
@@ -38,20 +38,20 @@ class Swings:
     """Whether a can in contact starts at the depth at which it is carried, or 1e-9 radii deep, as in `simulate`."""
 
     def bounded(self, swing: float) -> bool:
-        """Whether the energy stays below `GROWTH` squared times that of the start, over `PERIODS` periods."""
+        """Return whether the energy stays below `GROWTH` squared times that of the start, over `PERIODS` periods."""
         form, rest = self.scene.oscillator, self.scene.equilibrium()
         try:
-            motion = self._run(swing, STABLE_AMPLITUDE, math.floor(PERIODS * 2 * math.pi / swing))
+            motion = self._simulate(swing, STABLE_AMPLITUDE, math.floor(PERIODS * 2 * math.pi / swing))
         except DivergenceError:
             return False
         above = form.inertia(motion.phi) * motion.phi_dot**2 / 2 - form.drop(motion.phi, rest)
         return bool((above < GROWTH**2 * above[0]).all())
 
     def accurate(self, swing: float) -> bool:
-        """Whether the error stays below `ACCURACY` over `ACCURATE_PERIODS` periods."""
+        """Return whether the error stays below `ACCURACY` over `ACCURATE_PERIODS` periods."""
         steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
         try:
-            motion = self._run(swing, ACCURATE_AMPLITUDE, steps)
+            motion = self._simulate(swing, ACCURATE_AMPLITUDE, steps)
         except DivergenceError:
             return False
         omega = self.scene.frequency()
@@ -61,7 +61,7 @@ class Swings:
         return bool(off.max() < ACCURACY * ACCURATE_AMPLITUDE)
 
     def accurate_limit(self) -> float:
-        """The largest omega h of an accurate swing, as theory has it.
+        """Return the largest omega h of an accurate swing, as theory has it.
 
         A contact is soft, the softer the longer the timestep to which it is tuned: the can sinks in by delta, in
         proportion to h^2, and rolls as one of the radius a - delta/2, whose equilibrium and frequency are a little
@@ -82,13 +82,13 @@ class Swings:
         return linear_stability.first(excess, 5e-3, linear_stability.stable_limit(self.integrator))
 
     def loses_a_stage(self, swing: float) -> bool:
-        """Whether the last of RK4's four stages has no contact in the first step: it falls freely, at a sixth."""
+        """Return whether the last of RK4's stages has no contact in the first step: it falls freely, at a sixth."""
         timestep = swing / self.scene.frequency()
-        motion = self._run(swing, STABLE_AMPLITUDE, 1)
+        motion = self._simulate(swing, STABLE_AMPLITUDE, 1)
         falls = -self.scene.gravity * math.cos(self.scene.incline) * timestep / 6
         return bool(abs(motion.lift_dot[1] / falls - 1) < _FREE_FALL)
 
-    def _run(self, swing: float, amplitude: float, steps: int) -> Coordinates:
+    def _simulate(self, swing: float, amplitude: float, steps: int) -> Coordinates:
         scene, timestep = self.scene, swing / self.scene.frequency()
         prepared = Prepared(scene, Setting(self.rolling, self.integrator, timestep))
         start = prepared.start(scene.equilibrium() + amplitude, 0.0)

@@ -1,4 +1,4 @@
-"""Rows of the validation table on what is at the limit: orders, hops, repeatability, meshes."""
+"""Checks of models: orders of integrators, hops, repeatability, meshes."""
 
 import math
 from collections.abc import Iterator
@@ -13,59 +13,63 @@ from mjbeer.model.state import start
 from mjbeer.paper.scenarios import TOP, fall_from_top
 from mjbeer.simulation import stepping
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.check import Row
+from mjbeer.studies.check import Check
 from mjbeer.studies.convergence import order
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 
-ORDERS = {"RK4": (4, 0.2), DOP853: (8, 0.5)} | {each: (1, 0.1) for each in INTEGRATORS if each != "RK4"}
+ORDERS = {"RK4": (4, 0.2), DOP853: (8, 0.5)} | {name: (1, 0.1) for name in INTEGRATORS if name != "RK4"}
 """Order of each integrator, and how far the observed slope may be from it."""
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 _GRIP = 1e6
 """Friction coefficient that stands for "does not slip"."""
 
 
-def rows() -> Iterator[Row]:
-    """The rows."""
+def checks() -> Iterator[Check]:
+    """Yield the checks of models."""
     yield from _orders()
     yield from _hops()
     yield from _others()
 
 
-def _orders() -> Iterator[Row]:
+def _orders() -> Iterator[Check]:
     for integrator, (expected, margin) in ORDERS.items():
-        yield Row(
-            f"observed order less {expected}", f"frozen, reduced, {integrator}", margin, "", "higher orders' terms",
-            lambda integrator=integrator, expected=expected: order(frozen(), integrator) - expected,
+        yield Check(
+            f"observed order less {expected}", f"frozen, reduced, {integrator}",
+            bound=margin, unit="", reason="higher orders' terms",
+            deviation=lambda integrator=integrator, expected=expected: order(frozen(), integrator) - expected,
         )  # fmt: skip
 
 
-def _hops() -> Iterator[Row]:
+def _hops() -> Iterator[Check]:
     light, hops, rolls = hoop(hoop_mass=2e-4), hoop(hoop_mass=0.2 / 20), hoop(hoop_mass=0.2 / 10)
-    yield Row(
-        "lift-off angle at M/m = 1e-3 (Littlewood: 90 degrees)", "hoop, contact, RK4, 20 us", 0.5, "degrees",
-        "penetration of the contact, which unloads late", lambda: _lift_off(light),
+    yield Check(
+        "lift-off angle at M/m = 1e-3 (Littlewood: 90 degrees)", "hoop, contact, RK4, 20 us", bound=0.5, unit="degrees",
+        reason="penetration of the contact, which unloads late", deviation=lambda: _lift_off(light),
     )  # fmt: skip
-    yield Row(
-        "hops missing at M/m = 1/20", "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
-        lambda: float(fall_from_top(hops, 1e-4, _GRIP).takeoff() is None),
+    yield Check(
+        "hops missing at M/m = 1/20", "hoop, contact, RK4, 0.1 ms", bound=0, unit="", reason="it hops or not",
+        deviation=lambda: float(fall_from_top(hops, 1e-4, _GRIP).takeoff() is None),
     )  # fmt: skip
-    yield Row(
-        "hops too many at M/m = 1/10 (above 1/13)", "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
-        lambda: float(fall_from_top(rolls, 1e-4, _GRIP).takeoff() is not None),
+    yield Check(
+        "hops too many at M/m = 1/10 (above 1/13)", "hoop, contact, RK4, 0.1 ms",
+        bound=0, unit="", reason="it hops or not",
+        deviation=lambda: float(fall_from_top(rolls, 1e-4, _GRIP).takeoff() is not None),
     )  # fmt: skip
 
 
-def _others() -> Iterator[Row]:
-    yield Row(
-        "values that differ between two runs", "every scene, rolling and integrator", 0, "", "bit for bit", _repeats
-    )
+def _others() -> Iterator[Check]:
+    yield Check(
+        "values that differ between two runs", "every scene, rolling and integrator",
+        bound=0, unit="", reason="bit for bit", deviation=_repeats,
+    )  # fmt: skip
     for name, index in (("mass", 0), ("centre of mass", 1), ("inertia", 2)):
-        yield Row(
-            f"{name} of the beer's mesh, eqs. (33)-(37)", "fills 0.05 to 0.95", 1e-3, "relative",
-            "the polygon: falls as 1/resolution^2", lambda index=index: max(mesh_errors(fill)[index] for fill in FILLS),
+        yield Check(
+            f"{name} of the beer's mesh, eqs. (33)-(37)", "fills 0.05 to 0.95", bound=1e-3, unit="relative",
+            reason="the polygon: falls as 1/resolution^2",
+            deviation=lambda index=index: max(mesh_errors(fill)[index] for fill in FILLS),
         )  # fmt: skip
 
 

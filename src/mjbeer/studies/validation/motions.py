@@ -1,4 +1,4 @@
-"""The table of checks behind mjbeer's claim to be trusted: quantity by quantity against exact theory."""
+"""Checks of motions: periods, rest, trajectories, tolerances, against exact theory."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from mjbeer.model.setting import DOP853
-from mjbeer.paper.closed_forms import corrected_55, eq_10, eq_53, printed_55
+from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_frequency_55
+from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.check import Row
+from mjbeer.studies.check import Check
 from mjbeer.studies.validation import models
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
@@ -19,9 +20,9 @@ _NEEDED = 10.0
 """Friction coefficient of the contact runs: more than any of them needs (1.2 at most)."""
 
 
-def rows() -> list[Row]:
-    """All rows of the table, in its order."""
-    return [*_oscillations(), *_rest(), *_trajectories(), *_tolerances(), *models.rows()]
+def checks() -> list[Check]:
+    """Return all checks of the validation, in the order of its table."""
+    return [*_oscillations(), *_rest(), *_trajectories(), *_tolerances(), *models.checks()]
 
 
 def metal(constructor: Callable[..., Scene]) -> Scene:
@@ -29,12 +30,12 @@ def metal(constructor: Callable[..., Scene]) -> Scene:
     return constructor(can=Can.sheet_metal())
 
 
-def _oscillations() -> Iterator[Row]:
+def _oscillations() -> Iterator[Check]:
     beer, ice = sliding(), frozen()
     small = "1e-3 rad"
-    yield Row(
-        f"frequency, eq. (10), amplitude {small}", "sliding, reduced, RK4, 1 ms", 3e-7, "relative",
-        "the amplitude itself: 2e-7", lambda: _frequency(beer, 1e-3) / eq_10(beer) - 1,
+    yield Check(
+        f"frequency, eq. (10), amplitude {small}", "sliding, reduced, RK4, 1 ms", bound=3e-7, unit="relative",
+        reason="the amplitude itself: 2e-7", deviation=lambda: _frequency(beer, 1e-3) / frequency_10(beer) - 1,
     )  # fmt: skip
     own = "RK4's own error, (omega h)^4/120 = 1.26e-9 for a small swing"
     for amplitude, integrator, timestep, bound, reason in (
@@ -47,44 +48,46 @@ def _oscillations() -> Iterator[Row]:
         (1.0, DOP853, 1e-3, 1e-12, "rounding"),
         (3.0, DOP853, 1e-3, 1e-12, "rounding"),
     ):
-        yield Row(
-            f"period, amplitude {amplitude:g} rad", f"sliding, reduced, {integrator}, {1e3 * timestep:g} ms", bound,
-            "relative", reason,
-            lambda amplitude=amplitude, integrator=integrator, timestep=timestep: (
+        yield Check(
+            f"period, amplitude {amplitude:g} rad", f"sliding, reduced, {integrator}, {1e3 * timestep:g} ms",
+            bound=bound, unit="relative", reason=reason,
+            deviation=lambda amplitude=amplitude, integrator=integrator, timestep=timestep: (
                 2 * math.pi / simulate(beer, 4, amplitude, integrator=integrator, timestep=timestep).frequency()
                 / beer.period(amplitude) - 1
             ),
         )  # fmt: skip
-    yield Row(
-        f"frequency, corrected eq. (55), amplitude {small}", "frozen, reduced, RK4, 1 ms", 1e-6, "relative",
-        "the amplitude itself", lambda: _frequency(ice, 1e-3) / corrected_55(ice) - 1,
+    yield Check(
+        f"frequency, corrected eq. (55), amplitude {small}", "frozen, reduced, RK4, 1 ms", bound=1e-6, unit="relative",
+        reason="the amplitude itself", deviation=lambda: _frequency(ice, 1e-3) / frequency_55(ice) - 1,
     )  # fmt: skip
-    yield Row(
-        "printed eq. (55) misses by 21 %: distance from that", "frozen, reduced, RK4, 1 ms", 5e-3, "relative",
-        "21 % is rounded to a whole per cent", lambda: 1 - printed_55(ice) / _frequency(ice, 1e-3) - 0.21,
+    yield Check(
+        "printed eq. (55) misses by 21 %: distance from that", "frozen, reduced, RK4, 1 ms",
+        bound=5e-3, unit="relative", reason="21 % is rounded to a whole per cent",
+        deviation=lambda: 1 - printed_frequency_55(ice) / _frequency(ice, 1e-3) - 0.21,
     )  # fmt: skip
     for name, scene in (("massless can, eq. (1)", beer), ("metal can, footnote 4", metal(sliding))):
-        yield Row(
-            f"steady acceleration, {name}", "sliding at equilibrium, reduced, RK4, 1 ms", 1e-10, "relative",
-            "rounding: RK4 is exact for a constant force",
-            lambda scene=scene: _steady(scene) / scene.acceleration() - 1,
+        yield Check(
+            f"steady acceleration, {name}", "sliding at equilibrium, reduced, RK4, 1 ms",
+            bound=1e-10, unit="relative", reason="rounding: RK4 is exact for a constant force",
+            deviation=lambda scene=scene: _steady(scene) / scene.acceleration() - 1,
         )  # fmt: skip
 
 
-def _rest() -> Iterator[Row]:
+def _rest() -> Iterator[Check]:
     for name, scene in (("eq. (53)", frozen()), ("eq. (53), metal can", metal(frozen))):
         for rolling, bound, reason in (
             ("reduced", 1e-12, "rounding of the torques, over 5 s of rest"),
             ("equality", 1e-12, "rounding of the torques, over 5 s of rest"),
             ("contact", 1e-6, "the can settles on its soft contact, rocks and creeps"),
         ):
-            yield Row(
-                f"equilibrium, {name}, 5 s at rest", f"frozen, {rolling}, RK4, 1 ms", bound, "rad", reason,
-                lambda scene=scene, rolling=rolling: _creep(scene, rolling),
+            yield Check(
+                f"equilibrium, {name}, 5 s at rest", f"frozen, {rolling}, RK4, 1 ms",
+                bound=bound, unit="rad", reason=reason,
+                deviation=lambda scene=scene, rolling=rolling: _creep(scene, rolling),
             )  # fmt: skip
 
 
-def _trajectories() -> Iterator[Row]:
+def _trajectories() -> Iterator[Check]:
     bounds = {"reduced": (1e-7, "RK4"), "equality": (1e-7, "RK4"), "contact": (1e-4, "softness, slip")}
     scenes = {
         "sliding": sliding(), "sliding, metal can": metal(sliding), "frozen": frozen(),
@@ -93,13 +96,13 @@ def _trajectories() -> Iterator[Row]:
     for rolling, (bound, reason) in bounds.items():
         for name, scene in scenes.items():
             if rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen":
-                yield Row(
-                    "phi over 2 s from 1 rad", f"{name}, {rolling}, RK4, 1 ms", bound, "rad", reason,
-                    lambda scene=scene, rolling=rolling: _wander(scene, rolling),
+                yield Check(
+                    "phi over 2 s from 1 rad", f"{name}, {rolling}, RK4, 1 ms", bound=bound, unit="rad", reason=reason,
+                    deviation=lambda scene=scene, rolling=rolling: _wander(scene, rolling),
                 )  # fmt: skip
 
 
-def _tolerances() -> Iterator[Row]:
+def _tolerances() -> Iterator[Check]:
     for name, scene, phi0, phi_dot0 in (
         ("sliding", sliding(), 1.0, 0.0),
         ("sliding, metal can, looping", metal(sliding), 0.0, 45.0),
@@ -107,9 +110,10 @@ def _tolerances() -> Iterator[Row]:
         ("frozen, rolling down", frozen(), math.pi, 0.0),
         ("pendulum", pendulum(), 1.0, 0.0),
     ):
-        yield Row(
-            "phi over 2 s, tolerance 1e-10", f"{name}, reduced, DOP853", 1e-10, "rad", "the tolerance",
-            lambda scene=scene, phi0=phi0, phi_dot0=phi_dot0: phi_error(
+        yield Check(
+            "phi over 2 s, tolerance 1e-10", f"{name}, reduced, DOP853",
+            bound=1e-10, unit="rad", reason="the tolerance",
+            deviation=lambda scene=scene, phi0=phi0, phi_dot0=phi_dot0: phi_error(
                 simulate(scene, 2, phi0, phi_dot0, tolerance=1e-10), relative=True
             ),
         )  # fmt: skip
@@ -124,7 +128,7 @@ def _steady(scene: Scene) -> float:
 
 
 def _creep(scene: Scene, rolling: str) -> float:
-    rest = eq_53(scene)
+    rest = equilibrium_53(scene)
     return float(np.abs(simulate(scene, 5, rest, rolling=rolling).phi - rest).max())
 
 

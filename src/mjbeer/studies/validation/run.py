@@ -1,4 +1,4 @@
-"""Run every check of the validation and every row of the audit."""
+"""Every check of the validation, and every claim of the audit, measured."""
 
 from dataclasses import dataclass
 
@@ -7,37 +7,37 @@ from rich.progress import Progress
 
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import Finding
-from mjbeer.studies.check import Check
+from mjbeer.studies.check import Result
 from mjbeer.studies.validation import motions
 
 
 @dataclass(frozen=True)
-class Verdict:
-    """All rows, measured."""
+class Validation:
+    """What was measured."""
 
-    checks: list[Check]
-    """Those of the validation table."""
+    results: list[Result]
+    """Of the checks against exact theory."""
     findings: list[Finding]
-    """Those of the audit of the paper."""
+    """Of the audit of the paper."""
 
     @property
     def passed(self) -> bool:
-        """Whether all of them did."""
-        return all(each.passed for each in (*self.checks, *self.findings))
+        """Whether every result and every finding passed."""
+        return all(row.passed for row in (*self.results, *self.findings))
 
 
-def check(console: Console) -> Verdict:
-    """Run every row of the validation table and of the audit, with a progress bar on `console`."""
-    rows, claims = motions.rows(), chapters.claims()
-    checks, findings = [], []
+def validate(console: Console) -> Validation:
+    """Measure every check and every claim, with a progress bar on `console`, and return the results."""
+    checks, claims = motions.checks(), chapters.claims()
+    results, findings = [], []
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("validating", total=len(rows) + len(claims))
-        for row in rows:
-            progress.update(task, description=f"{row.quantity} ({row.by})")
-            checks.append(row.run())
+        task = progress.add_task("validating", total=len(checks) + len(claims))
+        for check in checks:
+            progress.update(task, description=f"{check.quantity} ({check.by})")
+            results.append(check.measure())
             progress.advance(task)
         for claim in claims:
             progress.update(task, description=f"{claim.equation} {claim.quantity}")
-            findings.append(claim.run())
+            findings.append(claim.measure())
             progress.advance(task)
-    return Verdict(checks, findings)
+    return Validation(results, findings)

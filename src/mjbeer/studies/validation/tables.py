@@ -3,84 +3,69 @@
 import dataclasses
 import json
 import math
+from importlib.metadata import version
+from typing import Any
 
-from rich.table import Table
-
+from mjbeer.output.table import Table
 from mjbeer.paper.audit.claim import Finding
-from mjbeer.studies.check import Check
+from mjbeer.studies.check import Result
+from mjbeer.studies.validation.run import Validation
+
+_VERDICTS = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
+_FAILED = " **FAIL**"
+_SHORT = ("printed", "right", "at most", "row")
 
 
-def validation(checks: list[Check]) -> Table:
-    """The validation table for the terminal."""
-    table = Table(title="Validation against exact theory")
-    for name in ("check", "by", "error", "at most", "verdict"):
-        table.add_column(name, justify="right" if name in ("error", "at most") else "left")
-    for check in checks:
-        verdict = "[green]pass[/]" if check.passed else "[bold red]FAIL[/]"
-        table.add_row(check.quantity, check.by, f"{check.error:.1e}", f"{check.bound:.1e} {check.unit}", verdict)
-    return table
-
-
-def validation_markdown(checks: list[Check]) -> str:
-    """The validation table as Markdown."""
-    lines = ["| check | by | error | at most | what dominates the error |", "|---|---|---|---|---|"]
-    for check in checks:
-        bound = f"{check.bound:.1e} {check.unit}".strip()
-        failed = "" if check.passed else " **FAIL**"
-        lines.append(f"| {check.quantity} | {check.by} | {check.error:.1e}{failed} | {bound} | {check.reason} |")
-    return "\n".join(lines) + "\n"
-
-
-def audit(findings: list[Finding]) -> Table:
-    """The audit of the paper for the terminal."""
-    table = Table(title="The paper, equation by equation")
-    for name in ("equation", "quantity", "verdict", "witness", "printed", "right", "at most", "row"):
-        table.add_column(name, justify="right" if name in ("printed", "right", "at most") else "left")
-    for each in findings:
-        passed = "[green]pass[/]" if each.passed else "[bold red]FAIL[/]"
-        table.add_row(*_audited(each), passed)
-    return table
-
-
-def audit_markdown(findings: list[Finding]) -> str:
-    """The audit of the paper as Markdown."""
-    lines = [
-        "| equation | quantity | verdict | witness | error, printed | error, right | at most | what dominates |",
-        "|---|---|---|---|---|---|---|---|",
+def validation(results: list[Result], document: bool = False) -> Table:
+    """Return the table of checks: with a verdict for the terminal, with what dominates the error for a `document`."""
+    rows = [
+        (
+            result.quantity,
+            result.by,
+            f"{result.error:.1e}" + ("" if result.passed or not document else _FAILED),
+            f"{result.bound:.1e} {result.unit}".strip(),
+            result.reason if document else _VERDICTS[result.passed],
+        )
+        for result in results
     ]
-    for each in findings:
-        failed = "" if each.passed else " **FAIL**"
-        lines.append(f"| {' | '.join(_audited(each))}{failed} | {each.reason} |")
-    return "\n".join(lines) + "\n"
+    last = "what dominates the error" if document else "verdict"
+    return Table("Validation against exact theory", ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))
 
 
-def _audited(finding: Finding) -> tuple[str, ...]:
-    right = "" if finding.right is None else f"{finding.right:.1e}"
-    printed = f"{finding.printed:.1e}" if finding.misses_by is None else f"{finding.printed:.2g}"
-    about = finding.equation, finding.quantity, finding.verdict, finding.witness
-    return (*about, printed, right, f"{finding.bound:.1e}")
+def audit(findings: list[Finding], document: bool = False) -> Table:
+    """Return the audit of the paper: with a verdict on each row for the terminal, with its reason for a `document`."""
+    columns = ("equation", "quantity", "verdict", "witness")
+    columns += ("error, printed", "error, right", "at most", "what dominates") if document else _SHORT
+    rows = []
+    for finding in findings:
+        failed = "" if finding.passed or not document else _FAILED
+        rows.append((
+            finding.equation,
+            finding.quantity,
+            finding.verdict,
+            finding.witness,
+            f"{finding.printed:.1e}" if finding.misses_by is None else f"{finding.printed:.2g}",
+            "" if finding.right is None else f"{finding.right:.1e}",
+            f"{finding.bound:.1e}{failed}",
+            finding.reason if document else _VERDICTS[finding.passed],
+        ))  # fmt: skip
+    return Table("The paper, equation by equation", columns, rows, left=(0, 1, 2, 3, 7))
 
 
-def validation_json(checks: list[Check], findings: list[Finding]) -> str:
-    """The validation table and the audit as JSON, with the versions that they were measured with."""
-    from importlib.metadata import version
-
-    versions = {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
-    rows = [{**dataclasses.asdict(check), "error": _number(check.error), "passed": check.passed} for check in checks]
-    numbers = ("printed", "right", "bound", "misses_by")
-    audited = [
-        {
-            **dataclasses.asdict(each),
-            **{name: None if getattr(each, name) is None else _number(getattr(each, name)) for name in numbers},
-            "passed": each.passed,
-        }
-        for each in findings
-    ]
-    passed = all(each.passed for each in (*checks, *findings))
-    content = {"versions": versions, "passed": passed, "checks": rows, "audit": audited}
+def to_json(validation: Validation) -> str:
+    """Return the results and the findings as JSON, with the versions that they were measured with."""
+    versions = {name: version(name) for name in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
+    content = {
+        "versions": versions,
+        "passed": validation.passed,
+        "checks": [_record(result) for result in validation.results],
+        "audit": [_record(finding) for finding in validation.findings],
+    }
     return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _number(value: float) -> float | None:
-    """JSON has no number for what is infinite or none."""
-    return value if math.isfinite(value) else None
+def _record(row: Result | Finding) -> dict[str, Any]:
+    """The fields of a row; JSON has no number for what is infinite or none."""
+    fields = dataclasses.asdict(row) | {"passed": row.passed}
+    unknown = {name for name, value in fields.items() if isinstance(value, float) and not math.isfinite(value)}
+    return fields | dict.fromkeys(unknown)

@@ -16,7 +16,7 @@ from mjbeer.theory.scene import Scene
 
 Motion = tuple[np.ndarray, np.ndarray]
 """phi [rad] and u [m], one row a sample."""
-Run = Callable[[], Motion]
+Integrate = Callable[[], Motion]
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,10 @@ class Peer:
     """Unit of the knob; a tolerance has none."""
     knobs: tuple[float, ...]
     """The ladder of settings, finest last."""
-    set_up: Callable[[Scene, float, float, np.ndarray, float], Run] = field(repr=False)
+    set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate] = field(repr=False)
     """What `prepare` calls when it has checked its arguments."""
 
-    def prepare(self, scene: Scene, phi0: float, phi_dot0: float, times: ArrayLike, knob: float) -> Run:
+    def prepare(self, scene: Scene, phi0: float, phi_dot0: float, times: ArrayLike, knob: float) -> Integrate:
         """Do once all that a motion needs but its integration: equations, models, compilation.
 
         `phi0` [rad] and `phi_dot0` [rad/s] are the start, `times` [s] the samples, the first at 0, and `knob` the
@@ -48,14 +48,14 @@ class Peer:
         times = _samples(times)
         solve = self.set_up(scene, phi0, phi_dot0, times, require.positive(self.knob, knob, self.unit))
 
-        def run() -> Motion:
+        def integrate() -> Motion:
             phi, u = solve()
             # What is not finite once stays so, and to ask every sample would be a fifth of heyoka's time.
             if phi.shape != times.shape or not (math.isfinite(phi[-1]) and math.isfinite(u[-1])):
                 raise DivergenceError(f"{self.name}: the motion did not stay finite until {times[-1]:g} s")
             return phi, u
 
-        return run
+        return integrate
 
 
 def decades(first: int, last: int) -> tuple[float, ...]:

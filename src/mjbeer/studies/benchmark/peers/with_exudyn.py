@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
-from mjbeer.studies.benchmark.peers.peer import Motion, Peer, Run
+from mjbeer.studies.benchmark.peers.peer import Integrate, Motion, Peer
 from mjbeer.theory.scene import Scene
 
 # What Newton's iteration leaves is then 1 % of the rule's own error at the finest timestep. EXUDYN's defaults, 1e-8 and
@@ -27,13 +27,13 @@ _COARSEST, _RUNGS = 0.016, 10
 _ROUNDING = 1e-9  # of a time, in units of the step
 
 
-def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Run:
+def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Integrate:
     import exudyn
 
     system, sensors = _model(scene, phi0, phi_dot0)
     settings = _settings(times, knob)
 
-    def run() -> Motion:
+    def integrate() -> Motion:
         try:
             with _silence():
                 system.SolveDynamic(settings)
@@ -43,7 +43,7 @@ def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
         axis, turned = (system.GetSensorStoredData(sensor) for sensor in sensors)
         return -turned[:, 3], axis[:, 1]
 
-    return run
+    return integrate
 
 
 def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, Any]]:

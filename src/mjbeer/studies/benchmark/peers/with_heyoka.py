@@ -11,13 +11,13 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.studies.benchmark.peers import equations
-from mjbeer.studies.benchmark.peers.peer import Motion, Peer, Run, decades
+from mjbeer.studies.benchmark.peers.peer import Integrate, Motion, Peer, decades
 from mjbeer.theory.scene import Scene
 
 _MOST_STEPS = 1_000_000  # a run of seconds takes hundreds; without a limit it may go on for ever
 
 
-def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Run:
+def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Integrate:
     import heyoka
 
     start = np.array(equations.start(scene, phi0, phi_dot0))
@@ -29,7 +29,7 @@ def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
             list(zip(variables, rates, strict=True)), start.tolist(), tol=knob, compact_mode=False
         )
 
-    def run() -> Motion:
+    def integrate() -> Motion:
         integrator.time = 0.0
         integrator.state[:] = start
         outcome, _, _, _, _, states = integrator.propagate_grid(grid, max_steps=_MOST_STEPS)
@@ -37,7 +37,7 @@ def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
             raise DivergenceError(f"heyoka: {outcome} at {integrator.time:g} s")
         return equations.coordinates(scene, states)
 
-    return run
+    return integrate
 
 
 @contextmanager

@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.studies.benchmark.peers import equations
-from mjbeer.studies.benchmark.peers.peer import Motion, Peer, Run, decades
+from mjbeer.studies.benchmark.peers.peer import Integrate, Motion, Peer, decades
 from mjbeer.theory.scene import Scene
 
 _FINEST = 2.3e-14  # below 100 eps, SciPy's solve_ivp replaces rtol, with a warning
@@ -16,14 +16,14 @@ _MOST_EVALUATIONS = 1_000_000  # of a run of solve_ivp, which has no limit; runs
 _MOST_STEPS = 100_000  # of odeint between two samples; its default is 500
 
 
-def _solve_ivp(method: str) -> Callable[[Scene, float, float, np.ndarray, float], Run]:
-    def set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Run:
+def _solve_ivp(method: str) -> Callable[[Scene, float, float, np.ndarray, float], Integrate]:
+    def set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Integrate:
         from scipy.integrate import solve_ivp
 
         rates, start = equations.right_hand_side(scene), equations.start(scene, phi0, phi_dot0)
         span, relative = (0.0, float(times[-1])), max(knob, _FINEST)
 
-        def run() -> Motion:
+        def integrate() -> Motion:
             left = iter(range(_MOST_EVALUATIONS))
 
             def counted(time: float, state: np.ndarray) -> tuple[float, ...]:
@@ -41,12 +41,12 @@ def _solve_ivp(method: str) -> Callable[[Scene, float, float, np.ndarray, float]
                 raise DivergenceError(f"SciPy {method}: {solution.message}")
             return equations.coordinates(scene, solution.y.T)
 
-        return run
+        return integrate
 
     return set_up
 
 
-def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Run:
+def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Integrate:
     from scipy.integrate import odeint
 
     rates, start = equations.right_hand_side(scene), equations.start(scene, phi0, phi_dot0)
@@ -54,12 +54,12 @@ def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
     def listed(time: float, state: np.ndarray) -> tuple[float, ...]:
         return rates(time, state.tolist())
 
-    def run() -> Motion:
+    def integrate() -> Motion:
         with _complaints():
             states = odeint(listed, start, times, rtol=knob, atol=knob, tfirst=True, mxstep=_MOST_STEPS)
         return equations.coordinates(scene, states)
 
-    return run
+    return integrate
 
 
 @contextmanager

@@ -31,9 +31,9 @@ class Attempt:
     """One run of a case."""
 
     setting: str
-    run: Callable[[], Trajectory]
+    simulate: Callable[[], Trajectory]
     expected: tuple[str, ...] = ()
-    """Verdicts that theory expects; any but wrong and silent if there are none."""
+    """Outcomes that theory allows. If empty, every outcome but "wrong and silent" is allowed."""
     within: float = math.inf
     """Largest error that is expected of an accurate run [rad]."""
     sample: bool = True
@@ -41,7 +41,7 @@ class Attempt:
 
 
 @dataclass(frozen=True)
-class Extreme:
+class CatalogueCase:
     """A stiff or extreme case."""
 
     kind: str
@@ -54,25 +54,25 @@ class Extreme:
     attempts: tuple[Attempt, ...]
 
     def task(self, quick: bool) -> Task:
-        """Try it, all ways or a sample of them."""
+        """Return the task of trying the case in all its ways, or in a sample of them."""
         return Task("catalogue", f"{self.kind}: {self.name}", partial(self.measure, quick))
 
     def measure(self, quick: bool) -> dict[str, Any]:
-        """What came of it, as JSON has it."""
+        """Try the case, in a sample of its ways if `quick`, and return what came of it as JSON has it."""
         about = {name: getattr(self, name) for name in ("kind", "name", "why", "theory")}
-        return about | {"runs": [_tried(each) for each in self.attempts if each.sample or not quick]}
+        return about | {"runs": [_check(attempt) for attempt in self.attempts if attempt.sample or not quick]}
 
 
-def _tried(attempt: Attempt) -> dict[str, Any]:
-    outcome = judge(attempt.run)
+def _check(attempt: Attempt) -> dict[str, Any]:
+    outcome = judge(attempt.simulate)
     allowed = outcome.verdict in attempt.expected if attempt.expected else outcome.verdict != SILENT
     allowed = allowed and (outcome.error is None or outcome.error <= attempt.within)
-    found = dataclasses.asdict(outcome)
-    return {"setting": attempt.setting, **found, "expected": list(attempt.expected), "as_expected": allowed}
+    ended = dataclasses.asdict(outcome)
+    return {"setting": attempt.setting, **ended, "expected": list(attempt.expected), "as_expected": allowed}
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
-    """The time in which something happens [s]: a small swing, a turn, or a fall through the radius."""
+    """Return the time in which something happens [s]: a small swing, a turn, or a fall through the radius."""
     turn = 2 * math.pi / abs(phi_dot0) if phi_dot0 else math.inf
     try:
         frequency = scene.frequency()
@@ -91,7 +91,7 @@ def attempts(
     expected: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     swings: float = SWINGS,
 ) -> tuple[Attempt, ...]:
-    """A scene and its start in every way of rolling, with every integrator, at timesteps that suit it.
+    """Return attempts at a start in every way of rolling, with every integrator, at timesteps that suit the scene.
 
     Without another word in `expected` (by way of rolling, or "tolerance"), a reduced model is expected to be accurate
     under RK4, DOP853 and to a tolerance, an equality under RK4 and to a tolerance where MuJoCo has such a model, and

@@ -1,15 +1,15 @@
-"""The catalogue of stiff and extreme cases, and what came of them as tables."""
+"""The catalogue of stiff and extreme cases, and of what the search found."""
 
 from mjbeer.studies.stability.catalogue import extreme, found, stiff
-from mjbeer.studies.stability.catalogue.case import Extreme
+from mjbeer.studies.stability.catalogue.case import CatalogueCase
 from mjbeer.studies.study import Task
 
 
-def cases() -> list[Extreme]:
-    """All of them."""
+def cases() -> list[CatalogueCase]:
+    """Return all cases of the catalogue."""
     return [*stiff.cases(), *extreme.cases(), *found.cases()]
 
 
 def tasks(quick: bool) -> list[Task]:
-    """One a case; quickly, with fewer ways to try it."""
-    return [each.task(quick) for each in cases()]
+    """Return one task a case; quickly, with fewer ways to try it."""
+    return [case.task(quick) for case in cases()]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from mjbeer.studies.stability.catalogue.case import SWINGS, Extreme, attempts, natural_period
+from mjbeer.studies.stability.catalogue.case import SWINGS, CatalogueCase, attempts, natural_period
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED, UNSTABLE
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
@@ -18,8 +18,8 @@ _BESIDE_SEPARATRIX = (1e-2, 1e-6, 1e-10)
 _SPINS = (1e2, 1e4)
 
 
-def cases() -> Iterator[Extreme]:
-    """The cases."""
+def cases() -> Iterator[CatalogueCase]:
+    """Yield the cases."""
     for fill in _FILLS:
         yield from _fill(fill)
     yield from _inclines()
@@ -30,7 +30,7 @@ def cases() -> Iterator[Extreme]:
     yield from _spins()
     yield from _points()
     for name, scene in _everywhere():
-        yield Extreme(
+        yield CatalogueCase(
             "extreme", f"{name}, let go at pi", "exactly on top, where a sliding load balances and a frozen one rolls",
             "at pi to the last bit of a double a balanced load stays, but for what rounding adds", attempts(
                 scene, math.pi, expected={"reduced": (), "equality": (), "tolerance": (ACCURATE, REFUSED)}
@@ -43,7 +43,7 @@ def _everywhere() -> tuple[tuple[str, Scene], ...]:
     return ("sliding", sliding(can=metal)), ("frozen", frozen()), ("pendulum", pendulum())
 
 
-def _fill(fill: float) -> Iterator[Extreme]:
+def _fill(fill: float) -> Iterator[CatalogueCase]:
     near = f"{fill:g}" if fill < 0.5 or fill == 1 else f"1 - {1 - fill:.0e}"
     for name, make in (("sliding", sliding), ("frozen", frozen)):
         for metal in (False, True):
@@ -61,7 +61,7 @@ def _fill(fill: float) -> Iterator[Extreme]:
                     f"{2**-53 * way / scene.load.offset:.0e} of b"
                 )
                 expected = {"reduced": lost, "equality": (*lost, UNSTABLE), "tolerance": lost}
-            yield Extreme(
+            yield CatalogueCase(
                 "extreme",
                 f"{name}, {'metal' if metal else 'massless'} can, fill {near}",
                 "a film of beer" if fill < 0.5 else "hardly any offset, or none",
@@ -70,11 +70,11 @@ def _fill(fill: float) -> Iterator[Extreme]:
             )
 
 
-def _inclines() -> Iterator[Extreme]:
+def _inclines() -> Iterator[CatalogueCase]:
     for incline in _INCLINES:
         for name, make in (("sliding, metal can", sliding), ("frozen", frozen)):
             scene = make(math.radians(incline), can=Can.sheet_metal() if make is sliding else None)
-            yield Extreme(
+            yield CatalogueCase(
                 "extreme",
                 f"{name}, incline {incline:g} degrees",
                 "level, or hardly tilted" if incline < 1 else "nearly a wall: the can is hardly pressed on it",
@@ -86,7 +86,7 @@ def _inclines() -> Iterator[Extreme]:
         scene = frozen(math.asin(fold * (1 + beside)))
         start = scene.equilibrium() - 1e-3 * abs(beside) ** 0.5 if beside < 0 else math.pi / 2 - scene.incline
         side = "below" if beside < 0 else "above"
-        yield Extreme(
+        yield CatalogueCase(
             "extreme",
             f"frozen, {abs(beside):.0e} {side} the fold",
             "sin(alpha) = m b/((m + m_can) a), where the equilibrium of eq. (53) ends",
@@ -95,11 +95,11 @@ def _inclines() -> Iterator[Extreme]:
         )
 
 
-def _sizes() -> Iterator[Extreme]:
+def _sizes() -> Iterator[CatalogueCase]:
     for radius in _RADII:
         for name, make in (("sliding", sliding), ("frozen", frozen)):
             can = Can.sheet_metal(radius, 3.6 * radius, thickness=radius / 330)
-            yield Extreme(
+            yield CatalogueCase(
                 "extreme",
                 f"{name}, can of {radius:g} m",
                 "masses go with the cube of the size, inertias with the fifth power" if radius < 1 else "a gasometer",
@@ -108,10 +108,10 @@ def _sizes() -> Iterator[Extreme]:
             )
 
 
-def _gravity(gravity: float) -> Iterator[Extreme]:
+def _gravity(gravity: float) -> Iterator[CatalogueCase]:
     for name, make in (("sliding", sliding), ("frozen", frozen)):
         scene = make(gravity=gravity, can=Can.sheet_metal())
-        yield Extreme(
+        yield CatalogueCase(
             "extreme",
             f"{name}, g = {gravity:g} m/s^2",
             "nothing presses the can on the incline" if gravity == 0 else "time runs as the root of g",
@@ -120,12 +120,12 @@ def _gravity(gravity: float) -> Iterator[Extreme]:
         )
 
 
-def _separatrix() -> Iterator[Extreme]:
+def _separatrix() -> Iterator[CatalogueCase]:
     for name, scene in _everywhere():
         for beside in _BESIDE_SEPARATRIX:
             start = scene.separatrix()[1] - beside
             lost = beside < 1e-3
-            yield Extreme(
+            yield CatalogueCase(
                 "extreme",
                 f"{name}, {beside:.0e} rad inside the separatrix",
                 "the period grows as the logarithm of the distance, and with it what rounding does",
@@ -138,10 +138,10 @@ def _separatrix() -> Iterator[Extreme]:
             )
 
 
-def _spins() -> Iterator[Extreme]:
+def _spins() -> Iterator[CatalogueCase]:
     for name, scene in _everywhere():
         for spin in _SPINS:
-            yield Extreme(
+            yield CatalogueCase(
                 "extreme",
                 f"{name}, spun at {spin:.0e} rad/s",
                 "the energy of the swing drowns in that of the spin",
@@ -150,16 +150,16 @@ def _spins() -> Iterator[Extreme]:
             )
 
 
-def _points() -> Iterator[Extreme]:
+def _points() -> Iterator[CatalogueCase]:
     rim = Load.point(0.2, 0.033)
-    yield Extreme(
+    yield CatalogueCase(
         "extreme",
         "point on the rim of a hoop, let go a quarter turn from the bottom",
         "I_cm = 0: MuJoCo wants inertia of every body that moves",
         "at the bottom the load rests on the incline, and J is what the hoop has",
         attempts(hoop(), math.pi / 2),
     )
-    yield Extreme(
+    yield CatalogueCase(
         "extreme",
         "point on the rim of a hoop of 1e-9 of its mass",
         "J at the bottom is 1e-9 of that at the top",
@@ -170,7 +170,7 @@ def _points() -> Iterator[Extreme]:
             expected={"reduced": (), "equality": (), "tolerance": ()},
         ),
     )
-    yield Extreme(
+    yield CatalogueCase(
         "extreme",
         "can with next to no inertia around a sliding load",
         "1e-20 kg m^2, far below MuJoCo's smallest (mjMINVAL, 1e-15)",

@@ -6,17 +6,17 @@ from functools import partial
 
 from mjbeer.model.setting import DOP853
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.stability.catalogue.case import Attempt, Extreme
+from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 
-def cases() -> Iterator[Extreme]:
-    """The cases."""
+def cases() -> Iterator[CatalogueCase]:
+    """Yield the cases."""
     slow = math.sqrt(0.033 / 2.8e-6)
-    yield Extreme(
+    yield CatalogueCase(
         "found",
         "contact in a gravity of 2.8e-6 m/s^2",
         "MuJoCo's solver stops where its cost falls by less than 1e-8 m^2/s^4: in weak gravity, before it begins. "
@@ -31,7 +31,7 @@ def cases() -> Iterator[Extreme]:
             for name, make in (("pendulum", pendulum), ("frozen", frozen))
         ),
     )
-    yield Extreme(
+    yield CatalogueCase(
         "found",
         "a motion of a few large steps, to a tolerance",
         "two runs with the same steps agree, whatever their error: it was 1e-8 rad, and estimated as 3e-13",
@@ -46,7 +46,7 @@ def cases() -> Iterator[Extreme]:
             ),
         ),
     )  # fmt: skip
-    yield Extreme(
+    yield CatalogueCase(
         "found",
         "a swing through 2 rad, to a loose tolerance",
         "two runs with large steps missed a motion alike: they were 1.4e-4 rad apart, and 1.1e-3 rad off",
@@ -60,7 +60,7 @@ def cases() -> Iterator[Extreme]:
         ),
     )
     go = partial(simulate, sliding(fill=1 - 1e-6), 2e4, 1.0)
-    yield Extreme(
+    yield CatalogueCase(
         "found",
         "sliding, fill 1 - 1e-6, twenty thousand seconds",
         "the arm b is lost in the rounding of a distance of 3e8 m, and two runs to a tolerance lost it alike",
@@ -73,10 +73,10 @@ def cases() -> Iterator[Extreme]:
     yield from _beside_a_separatrix()
 
 
-def _beside_a_separatrix() -> Iterator[Extreme]:
+def _beside_a_separatrix() -> Iterator[CatalogueCase]:
     scene, beside = pendulum(), 1.9179754510771998e-4
     go = partial(simulate, scene, 1.8888099925141655, scene.separatrix()[1] - beside, timestep=9.52342486122195e-4)
-    yield Extreme(
+    yield CatalogueCase(
         "found",
         "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance",
         "a rounding grows a millionfold: two runs were 3e-9 rad from each other by chance, and 7e-7 off",
@@ -89,7 +89,7 @@ def _beside_a_separatrix() -> Iterator[Extreme]:
     )
     start, timestep = 3.1415926530014993, 0.006320380984655366
     far = partial(simulate, level, 4187 * timestep, start, 0.0, "contact", DOP853, timestep, friction=479.9389762024384)
-    yield Extreme(
+    yield CatalogueCase(
         "found",
         "frozen, 6e-10 rad beside the top, in contact",
         "what the can's settling does is as large as the distance from the top, and a run at half the timestep settled "

@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, Softness
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.stability.catalogue.case import Attempt, Extreme, attempts
+from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase, attempts
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
@@ -26,8 +26,8 @@ _BESIDE_TOP = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
 _QUICK = ("Euler", "RK4")
 
 
-def cases() -> Iterator[Extreme]:
-    """The cases."""
+def cases() -> Iterator[CatalogueCase]:
+    """Yield the cases."""
     yield from _timeconsts()
     yield from _stiffnesses()
     yield from _impedances()
@@ -53,7 +53,7 @@ def _rocking(label: str, softness: Softness, quick: bool = True) -> Iterator[Att
             yield Attempt(f"{rolling}, {integrator}, 1 ms{label}", run, sample=quick and integrator in _QUICK)
 
 
-def _timeconsts() -> Iterator[Extreme]:
+def _timeconsts() -> Iterator[CatalogueCase]:
     for timeconst in _TIMECONSTS:
         ratio = _TIMESTEP / timeconst
         runs = []
@@ -61,7 +61,7 @@ def _timeconsts() -> Iterator[Extreme]:
             label = ", refsafe " + ("on" if refsafe else "off")
             runs += _rocking(label, Softness(solref=(timeconst, 1.0), refsafe=refsafe), quick=not refsafe)
         stable = "inside" if 4 - 4 * ratio - ratio**2 > 0 else "outside"
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"solref time constant {1e3 * timeconst:g} ms at 1 ms",
             f"the constraint's own time is {1 / ratio:g} timesteps",
@@ -71,10 +71,10 @@ def _timeconsts() -> Iterator[Extreme]:
         )
 
 
-def _stiffnesses() -> Iterator[Extreme]:
+def _stiffnesses() -> Iterator[CatalogueCase]:
     for stiffness in _STIFFNESSES:
         damping = 2 * math.sqrt(stiffness)
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"direct solref, stiffness {stiffness:.0e} /s^2 at 1 ms",
             "negative solref is taken as it is: refsafe does not look at it",
@@ -83,9 +83,9 @@ def _stiffnesses() -> Iterator[Extreme]:
         )
 
 
-def _impedances() -> Iterator[Extreme]:
+def _impedances() -> Iterator[CatalogueCase]:
     for impedance in _IMPEDANCES:
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"solimp {impedance:g}",
             "the share of a force that a constraint does not pass on; MuJoCo's hardest is 0.9999",
@@ -94,7 +94,7 @@ def _impedances() -> Iterator[Extreme]:
         )
     for impratio in _IMPRATIOS:
         runs = [each for each in _rocking("", Softness(impratio=impratio)) if each.setting.startswith("contact")]
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"impratio {impratio:g}",
             "friction so much harder than the normal force",
@@ -103,7 +103,7 @@ def _impedances() -> Iterator[Extreme]:
         )
 
 
-def _frictions() -> Iterator[Extreme]:
+def _frictions() -> Iterator[CatalogueCase]:
     scene = frozen()
     needed = float(exact(scene, np.linspace(0, 1, 2001), 0.0).forces.needed.max())
     for friction in _FRICTIONS:
@@ -113,7 +113,7 @@ def _frictions() -> Iterator[Extreme]:
             good = (ACCURATE,) if integrator in ("RK4", DOP853) else ()
             expected = good if friction > needed else (INACCURATE,)
             runs.append(Attempt(f"contact, {integrator}, 1 ms", go, expected, sample=integrator in _QUICK))
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"friction {friction:g}",
             "a can needs friction to roll" if friction < needed else "friction that does not give way",
@@ -122,19 +122,19 @@ def _frictions() -> Iterator[Extreme]:
         )
 
 
-def _mass_ratios() -> Iterator[Extreme]:
+def _mass_ratios() -> Iterator[CatalogueCase]:
     for ratio in _RATIOS:
         for name, make in (("sliding", sliding), ("frozen", frozen)):
             beer = Load.segment().mass
             can = Can.hoop(mass=ratio * beer)
-            yield Extreme(
+            yield CatalogueCase(
                 "stiff",
                 f"{name}, can {ratio:.0e} times the load",
                 "the mass matrix is as ill-conditioned as the masses are unequal",
                 "only ratios of masses enter, and none of them does harm: J is a sum of positive parts",
                 attempts(make(can=can), 1.0),
             )
-    yield Extreme(
+    yield CatalogueCase(
         "stiff",
         "pendulum on a wheel of 0.1 g",
         "a point load of 100 g has hardly any inertia about the axis but what the wheel gives it",
@@ -143,9 +143,9 @@ def _mass_ratios() -> Iterator[Extreme]:
     )
 
 
-def _beside_top() -> Iterator[Extreme]:
+def _beside_top() -> Iterator[CatalogueCase]:
     for beside in _BESIDE_TOP:
-        yield Extreme(
+        yield CatalogueCase(
             "stiff",
             f"frozen, let go {beside:g} rad beside pi",
             "the chord tendon that makes J has no length at pi, and no direction",
