@@ -46,16 +46,25 @@ def build(
     Raises:
       ParameterError: on a name that does not exist or a number that is not allowed.
       UnsupportedError: if MuJoCo has no such model, as for a massless can around a sliding load.
-      TemplateError: if a template is missing or has been tampered with.
+      TemplateError: if a template is missing, lacks a part, or has one that is not allowed.
     """
     spec = specify(scene, rolling, visuals, integrator, timestep, friction)
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
+    model = compile_model(spec)
     if rolling == "equality":
         constrained.make_rigid(model)
     return model
+
+
+def compile_model(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile a specification.
+
+    Raises:
+      UnsupportedError: if MuJoCo refuses it: for the scene's numbers, or for what a template shows.
+    """
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
 
 
 def specify(
@@ -83,6 +92,9 @@ def specify(
     # Without an incline to lie on, the axis is the origin: an offset far smaller than the radius keeps its digits.
     spec.body("can").pos = [0, 0, scene.can.radius if visuals or rolling == "contact" else 0.0]
     option = spec.option
+    # For a stiff row: the default diagonal adds the inverse inertias of slide and hinge, metres and radians alike, and
+    # refsafe would soften it.
+    option.enableflags, option.disableflags = int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT), int(_DISABLE.mjDSBL_REFSAFE)
     option.timestep = timestep
     # Around DOP853 the model's own integrator never runs.
     option.integrator = int(INTEGRATORS.get(integrator, mujoco.mjtIntegrator.mjINT_RK4))

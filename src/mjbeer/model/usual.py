@@ -2,8 +2,7 @@
 
 import mujoco
 
-from mjbeer.exceptions import UnsupportedError
-from mjbeer.model.build import specify
+from mjbeer.model.build import compile_model, specify
 from mjbeer.theory.scene import Scene
 
 USUAL = {"equality, slide first": "equality", "equality, hinge first": "equality", "contact, defaults": "contact"}
@@ -32,7 +31,4 @@ def build_usual(scene: Scene, written: str, integrator: str = "Euler", timestep:
     if written == "equality, hinge first":
         constraint.name1, constraint.name2 = constraint.name2, constraint.name1
         constraint.data[:5] = [0, 1 / scene.can.radius, 0, 0, 0]
-    try:
-        return spec.compile()
-    except ValueError as error:
-        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
+    return compile_model(spec)
