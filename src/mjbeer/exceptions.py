@@ -34,7 +34,7 @@ class RenderingError(MjbeerError):
 
 
 class TemplateError(MjbeerError):
-    """An MJCF template is missing, or not as it came with mjbeer."""
+    """An MJCF template is missing, lacks a part that mjbeer uses, or has one that could act on the motion."""
 
 
 class OutputError(MjbeerError):

@@ -9,7 +9,7 @@ import dataclasses
 import mujoco
 
 from mjbeer.model import appearance
-from mjbeer.model.build import specify
+from mjbeer.model.build import compile_spec, specify
 from mjbeer.model.setting import Setting
 from mjbeer.model.state import places
 from mjbeer.theory.can import RADIUS
@@ -23,12 +23,13 @@ def display_model(scene: Scene, reach: tuple[float, float] = (0.0, 0.0), aspect:
     span; `aspect` is the width of the picture over its height.
 
     Raises:
-      TemplateError: if a template is missing or has been tampered with.
+      TemplateError: if a template is missing, lacks a part, or has one that is not allowed.
+      UnsupportedError: if MuJoCo refuses what a template shows.
     """
     drawn = _drawn(scene)
     spec = specify(drawn, Setting("contact"), visuals=True)
     appearance.extend(spec, drawn, reach[0] * scale(scene), reach[1] * scale(scene), aspect)
-    return spec.compile()
+    return compile_spec(spec)
 
 
 def scale(scene: Scene) -> float:

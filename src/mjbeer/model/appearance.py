@@ -21,14 +21,21 @@ _LEAST_FILL = 1e-6
 """Fill that is drawn of an emptier can: a mesh must not be flat, and one sees nothing of it anyway."""
 _LEAST_VOLUME = 1e-12
 """MuJoCo refuses solid meshes of under 1e-15 m^3; well before, they become shells, which look the same."""
+DRAWN = (
+    "geoms", "sites", "cameras", "lights", "keys", "skins", "meshes", "hfields", "materials", "textures", "numerics",
+    "texts", "tuples",
+)  # fmt: skip
+"""All kinds of elements in a template that act on no motion."""
+_SHAPES = ("can.obj", "beer_half.obj")
+"""The templates' mesh files, in whose place a scene has shapes that fit it."""
 _ALONG_THE_AXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE)
 
 
 def strip(spec: mujoco.MjSpec) -> None:
-    """Take away all that is only drawn."""
-    drawn = [each for each in spec.geoms if each.classname.name == "visual"]
-    for each in [*drawn, *spec.cameras, *spec.lights, *spec.keys, *spec.meshes, *spec.materials, *spec.textures]:
-        spec.delete(each)
+    """Remove all that is only drawn, from a template as it is read."""
+    for kind in DRAWN:
+        for element in getattr(spec, kind):
+            spec.delete(element)
 
 
 def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
@@ -38,10 +45,11 @@ def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
     radius, length = scene.can.radius, scene.can.length
     size = radius / RADIUS
     for geom in spec.geoms:
-        if geom.classname.name == "visual" and geom.type != mujoco.mjtGeom.mjGEOM_MESH:
-            _stretch(geom, size, length)
+        _stretch(geom, size, length)
     if (end := spec.geom("can_end")) is not None:
         end.size = [end.size[0], length / 2 - end.pos[1], 0]
+    for own in spec.meshes:
+        own.scale = np.array(own.scale) * size
     for camera in spec.cameras:
         camera.pos = _point(camera.pos, size, length)
     grid = spec.material("grid")
@@ -67,9 +75,17 @@ def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: f
     overview, along = spec.camera("overview"), np.array([math.cos(scene.incline), 0, -math.sin(scene.incline)])
     seen = np.abs((high - low) * along) + 10 * scene.can.radius
     distance = _MARGIN * max(seen[0] / aspect, seen[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))
-    back = np.cross(overview.alt.xyaxes[:3], overview.alt.xyaxes[3:])
-    overview.pos = (low + high) / 2 * along + distance * back / np.linalg.norm(back)
+    overview.pos = (low + high) / 2 * along + distance * _backwards(spec, overview)
     spec.visual.map.zfar = max(spec.visual.map.zfar, 4 * distance / spec.stat.extent)
+
+
+def _backwards(spec: mujoco.MjSpec, camera: mujoco.MjsCamera) -> np.ndarray:
+    """Return the unit vector against which a camera of the world looks."""
+    quaternion, axes = np.array(camera.quat), np.zeros(9)
+    if camera.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
+        quaternion = spec.resolve_orientation(spec.compiler.degree, spec.compiler.eulerseq, camera.alt)
+    mujoco.mju_quat2Mat(axes, np.array(quaternion))
+    return axes.reshape(3, 3)[:, 2]
 
 
 def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
@@ -102,15 +118,24 @@ def _load(spec: mujoco.MjSpec, scene: Scene) -> None:
     if arm is not None:
         drawn.pos = [0, drawn.pos[1], -load.offset]
         arm.pos, arm.size = [0, arm.pos[1], -load.offset / 2], [arm.size[0], max(load.offset / 2, arm.size[0] / 100), 0]
-    else:  # a bar along the rim, drawn just inside
-        depth = -min(load.offset, scene.can.radius - drawn.size[0])
+        return
+    depth = -min(load.offset, scene.can.radius - drawn.size[0])  # along the rim, and drawn just inside
+    if math.isnan(drawn.fromto[0]):
+        drawn.pos = [0, drawn.pos[1], depth]
+    else:
         drawn.fromto = [*drawn.fromto[:2], depth, *drawn.fromto[3:5], depth]
 
 
 def _shape(spec: mujoco.MjSpec, name: str, shape: mesh.Mesh) -> None:
-    """Put vertices in the place of the template's mesh file: the model is then complete in itself."""
+    """Put vertices in the place of the template's mesh file: the model is then complete in itself.
+
+    Another file than the one that came with mjbeer stays, and has the proportions of the template's can.
+    """
     vertices, faces = shape
     element = spec.mesh(name)
+    if element.file not in _SHAPES:
+        return
+    element.scale = [1, 1, 1]
     element.file, element.content_type = "", ""
     element.uservert, element.userface = vertices.ravel(), faces.ravel()
     volume = np.einsum("ij,ij->", vertices[faces[:, 0]], np.cross(vertices[faces[:, 1]], vertices[faces[:, 2]])) / 6

@@ -54,7 +54,7 @@ def build(
     Raises:
       ParameterError: on a name that does not exist or a number that is not allowed.
       UnsupportedError: if MuJoCo has no such model, as for a massless can around a sliding load.
-      TemplateError: if a template is missing or has been tampered with.
+      TemplateError: if a template is missing, lacks a part, or has one that is not allowed.
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, softness=softness)
     return compile_model(scene, setting, visuals)
@@ -62,14 +62,22 @@ def build(
 
 def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjModel:
     """The model of a scene that is rolled and stepped in a setting; errors as in `build`."""
-    spec = specify(scene, setting, visuals)
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
+    model = compile_spec(specify(scene, setting, visuals))
     if setting.rolling == "equality" and setting.softness == TUNED:
         constrained.make_rigid(model)
     return model
+
+
+def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Compile a specification.
+
+    Raises:
+      UnsupportedError: if MuJoCo refuses it: for the scene's numbers, or for what a template shows.
+    """
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
 
 
 def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:

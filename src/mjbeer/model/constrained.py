@@ -8,6 +8,7 @@ import math
 import mujoco
 
 from mjbeer.exceptions import UnsupportedError
+from mjbeer.model import joints
 from mjbeer.model.inertia import frozen_inertia, point_share, set_inertial, weightless
 from mjbeer.model.setting import Setting
 from mjbeer.theory.scene import Scene
@@ -44,12 +45,8 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
 def roll_by_equality(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Setting) -> None:
     """Make the can roll by a joint equality u = a roll."""
     _inertials(spec, scene, unit)
-    if spec.joint("lift") is not None:
-        for each in (*spec.pairs, spec.joint("lift"), spec.geom("surface"), spec.geom("can")):
-            spec.delete(each)
-        rolling = spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1="slide", name2="roll")
-        rolling.objtype = mujoco.mjtObj.mjOBJ_JOINT
-    rolling = spec.equality("rolling")
+    joints.add(spec, "slide", "roll", *_swing(scene))
+    rolling = spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1="slide", name2="roll")
     rolling.data[:5] = [0, scene.can.radius, 0, 0, 0]
     if setting.softness.first == "hinge":
         rolling.name1, rolling.name2 = rolling.name2, rolling.name1
@@ -73,11 +70,13 @@ def make_rigid(model: mujoco.MjModel) -> None:
 def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Setting) -> None:
     """Make the can roll as a cylinder on a plane, with friction and nothing else to hold it there."""
     _inertials(spec, scene, unit)
-    if spec.joint("lift") is None:
-        spec.delete(spec.equality("rolling"))
-        _make_contact(spec)
-    spec.geom("can").size = [scene.can.radius, scene.can.length / 2, 0]
-    rolling = spec.pair("rolling")
+    joints.add(spec, "slide", "lift", "roll", *_swing(scene))
+    _add_collision(spec, "incline", "surface", mujoco.mjtGeom.mjGEOM_PLANE, [0, 0, 1])
+    cylinder = _add_collision(
+        spec, "can", "can", mujoco.mjtGeom.mjGEOM_CYLINDER, [scene.can.radius, scene.can.length / 2, 0]
+    )
+    cylinder.quat = [math.sqrt(0.5), math.sqrt(0.5), 0, 0]
+    rolling = spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
     rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
     _harden(spec, rolling, setting)
     cones = mujoco.mjtCone
@@ -87,15 +86,20 @@ def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Set
     spec.option.tolerance = _TOLERANCE * min(1.0, weight) ** 2
 
 
-def _make_contact(spec: mujoco.MjSpec) -> None:
-    can, collision = spec.body("can"), spec.find_default("collision")
-    spec.delete(spec.joint("roll"))  # it must come after the lift, or it would turn its axis
-    can.add_joint(name="lift", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[0, 0, 1])
-    can.add_joint(name="roll", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
-    plane, cylinder = mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
-    spec.body("incline").add_geom(collision, name="surface", type=plane, size=[0, 0, 1])
-    can.add_geom(collision, name="can", type=cylinder, quat=[math.sqrt(0.5), math.sqrt(0.5), 0, 0])
-    spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
+def _swing(scene: Scene) -> tuple[str, ...]:
+    return ("swing",) if scene.attachment == "sliding" else ()
+
+
+def _add_collision(
+    spec: mujoco.MjSpec, body: str, name: str, kind: mujoco.mjtGeom, size: list[float]
+) -> mujoco.MjsGeom:
+    """Add a massless geom that touches in the pair alone; the template's class "collision" says how it looks."""
+    geom = spec.body(body).add_geom(spec.default, name=name, type=kind, size=size)
+    geom.contype = geom.conaffinity = 0
+    geom.mass = 0.0
+    looks = spec.find_default("collision").geom
+    geom.group, geom.rgba = looks.group, looks.rgba
+    return geom
 
 
 def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, setting: Setting) -> None:
@@ -104,13 +108,10 @@ def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, s
     rolling.solref = softness.solref or (timeconst, 1)
     rolling.solimp = [*(softness.impedance or _IMPEDANCE), *_WIDTH]
     # The default diagonal adds the inverse inertias of slide and hinge, metres and radians alike.
-    exact_diagonal, no_refsafe = mujoco.mjtEnableBit.mjENBL_DIAGEXACT, mujoco.mjtDisableBit.mjDSBL_REFSAFE
-    spec.option.enableflags = _switch(spec.option.enableflags, exact_diagonal, softness.exact_diagonal)
-    spec.option.disableflags = _switch(spec.option.disableflags, no_refsafe, not softness.refsafe)
-
-
-def _switch(flags: int, flag: int, on: bool) -> int:
-    return flags | int(flag) if on else flags & ~int(flag)
+    if softness.exact_diagonal:
+        spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
+    if not softness.refsafe:
+        spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
 
 
 def _inertials(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:

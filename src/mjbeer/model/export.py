@@ -1,6 +1,7 @@
-"""Stand-alone MJCF of a scene, for any MuJoCo: every number with all its digits, every mesh inside."""
+"""Stand-alone MJCF of a scene, for any MuJoCo: every number with all its digits, every mesh of mjbeer's inside."""
 
 import os
+import pathlib
 
 import mujoco
 import numpy as np
@@ -49,9 +50,12 @@ def export(
             f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
         )
     spec = build.specify(scene, setting.Setting(rolling, integrator, timestep, friction=friction), visuals=True)
-    # The template's own are about another scene, and about files that are not needed.
-    spec.comment, spec.meshdir = f" Written by mjbeer: rolling={rolling!r}, {scene!r} ", ""
-    built = spec.compile()
+    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r} "  # the template's is about another scene
+    folder = pathlib.Path(spec.modelfiledir).resolve()
+    # Only a template with further files of its own needs them: they are where they were.
+    spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
+    spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
+    built = build.compile_spec(spec)
     start = state.start(built, scene, phi0, phi_dot0)
     spec.add_key(name="start", qpos=start[: built.nq], qvel=start[built.nq :])
     built = spec.compile()

@@ -7,6 +7,7 @@ import math
 
 import mujoco
 
+from mjbeer.model import joints
 from mjbeer.model.inertia import point_share, set_inertial, share, weightless
 from mjbeer.theory.scene import Scene
 
@@ -17,12 +18,8 @@ _ARM = 1.0
 
 
 def reduce(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
-    """Replace the can and its load by one body with the same motion."""
-    for each in (*spec.equalities, *spec.pairs, spec.geom("surface"), spec.geom("can"), spec.joint("lift")):
-        if each is not None:
-            spec.delete(each)
+    """Make the body "can" move as can and load do together."""
     weightless(spec.body("load"))
-    spec.delete(spec.joint("roll"))
     if scene.attachment == "sliding":
         _sliding(spec, scene, unit)
     else:
@@ -38,11 +35,10 @@ def _sliding(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     """
     body, can = spec.body("can"), scene.can
     part = share(scene, can.mass) if can.mass <= _HEAVY * scene.load.mass else point_share(scene)
-    spec.delete(spec.joint("swing"))
     for mark in (spec.geom("can_mark"), spec.geom("can_spot")):
         if mark is not None:  # no joint turns with the can, whose marks would be seen to turn with the load
             spec.delete(mark)
-    body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
+    joints.add(spec, "slide", "phi")
     set_inertial(body, unit * part.mass, part.offset, unit * part.inertia)
     rest = can.mass - part.moved
     spec.joint("slide").armature = unit * (rest + can.inertia / can.radius**2)
@@ -57,8 +53,7 @@ def _frozen(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     arm m b as in eq. (52), and a constant torque does what it does on the axis.
     """
     body, form = spec.body("can"), scene.oscillator
-    spec.delete(spec.joint("slide"))
-    body.add_joint(name="phi", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
+    joints.add(spec, "phi")
     moment = scene.load.mass * scene.load.offset
     # Any mass with the moment m b does. That of the scene, at its centre of mass (38), is the natural one; where
     # it would have more than half of the inertia, a greater mass on a shorter arm has just half.
@@ -69,8 +64,8 @@ def _frozen(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     _constant_force(spec, "phi", unit * form.slope)
     if form.chord > 0:
         top = [0, 0, float(body.pos[2]) + _ARM]
-        spec.body("incline").add_site(name="chord_top", pos=top, group=4)
-        body.add_site(name="chord_end", pos=[0, 0, -_ARM], group=4)
+        spec.body("incline").add_site(spec.default, name="chord_top", pos=top, group=4)
+        body.add_site(spec.default, name="chord_end", pos=[0, 0, -_ARM], group=4)
         chord = spec.add_tendon(name="chord", armature=unit * form.chord / _ARM**2, rgba=[0, 0, 0, 0])
         chord.wrap_site("chord_top")
         chord.wrap_site("chord_end")
