@@ -10,6 +10,8 @@ import pytest
 
 import mjbeer
 
+pytestmark = pytest.mark.slow
+
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
 DOCUMENT = (pathlib.Path(__file__).parents[1] / "docs" / "architecture.md").read_text()
 FOLDERS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and any(path.glob("*.py")))

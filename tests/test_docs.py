@@ -85,6 +85,7 @@ def test_no_command_is_left_out_below() -> None:
     assert {shlex.split(command)[0] for command in COMMANDS} == {"mjbeer", "make"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "mjbeer"])
 def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With no rows to validate, videos that are not drawn, and short studies."""

@@ -15,6 +15,8 @@ import pytest
 from mjbeer import frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli import trajectory
 
+pytestmark = pytest.mark.slow
+
 CHECKOUT = pathlib.Path(__file__).parents[1]
 SOURCES = ("pyproject.toml", "README.md", "LICENSE", "src", "mjcf")
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}

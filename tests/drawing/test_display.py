@@ -60,6 +60,7 @@ def test_every_kind_of_trajectory(name: str, rolling: str) -> None:
         check(scene, model, *(float(each[i]) for each in (moved.u, moved.phi, moved.roll, moved.lift)))
 
 
+@pytest.mark.slow
 @settings(max_examples=50, deadline=None, derandomize=True)
 @given(scenes(), *(st.floats(-10, 10),) * 4)
 def test_any_scene_anywhere(scene: Scene, turns: float, phi: float, roll: float, height: float) -> None:

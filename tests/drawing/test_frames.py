@@ -16,6 +16,8 @@ from mjbeer.drawing.display import display_model
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.segment import segment
 
+pytestmark = pytest.mark.slow
+
 
 def motion(incline: float = 0.2) -> Trajectory:
     return exact(frozen(incline), np.linspace(0, 0.5, 51), 1.0)

@@ -14,6 +14,8 @@ from mjbeer.drawing.camera import View
 from mjbeer.drawing.display import display_model, pose
 from mjbeer.drawing.frames import CAMERAS
 
+pytestmark = pytest.mark.slow
+
 # Geoms that are drawn are in single precision.
 SINGLE = 1e-6
 

@@ -11,6 +11,8 @@ from mjbeer.drawing import opengl
 from mjbeer.exceptions import RenderingError
 from tests.support.processes import run
 
+pytestmark = pytest.mark.slow
+
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a choice of backends")
 
 

@@ -20,6 +20,8 @@ from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, Setting
 from tests.support.scenes import METAL, SCENES
 
+pytestmark = pytest.mark.slow
+
 START = 1.0, 0.5
 FRICTION = 10.0
 TIMESTEP = 1e-4

@@ -58,6 +58,7 @@ def roll(model: mujoco.MjModel, key: str, duration: float) -> tuple[np.ndarray, 
     return np.array(times), np.array(angles), data
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "key"), KEYS)
 def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
     """For 2 s; the hoop until it hops."""

@@ -16,6 +16,8 @@ from mjbeer.paper.stories import report
 from mjbeer.paper.stories.frozen import _held, _printed
 from tests.support import stubs
 
+pytestmark = pytest.mark.slow
+
 STORIES = {story.name: story for story in report.stories()}
 CHECKOUT = pathlib.Path(__file__).parents[2]
 

@@ -17,6 +17,8 @@ from mjbeer.studies.stability.outcome import ACCURATE, REFUSED
 from mjbeer.theory.exact import phi_error
 from tests.support.scenes import scenes
 
+pytestmark = pytest.mark.slow
+
 TOLERANCE = 1e-10
 # Rounding of the start alone, amplified by more than this, is a thousandth of the tolerance, and that of all steps may
 # be all of it: a motion beside a separatrix, of which nobody knows that many digits.

@@ -23,6 +23,7 @@ RATE = 20 * ANGLE
 ROUNDING = 2e-15
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 @pytest.mark.parametrize(("share", "phi_dot0"), [(0.5, 0.0), (-0.9, 0.0), (0.6, 1e-6), (0.0, -3.0), (-0.3, 4.0)])
 def test_hundred_swings(scene: Scene, share: float, phi_dot0: float) -> None:
@@ -55,6 +56,7 @@ ROLLS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "phi0", "phi_dot0"), ROLLS.values(), ids=ROLLS.keys())
 def test_roll(scene: Scene, phi0: float, phi_dot0: float) -> None:
     time = np.array([0.05, 0.3, 1.2])
@@ -77,6 +79,7 @@ def test_roll(scene: Scene, phi0: float, phi_dot0: float) -> None:
     assert (behind.phi_dot == -motion.phi_dot).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "phi0", "phi_dot0"),
     [
@@ -98,6 +101,7 @@ def test_loop_the_loop(scene: Scene, phi0: float, phi_dot0: float) -> None:
         assert abs(phi_dot - expected[1]) < RATE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("scene", "phi0", "phi_dot0"),
     [
@@ -184,6 +188,7 @@ def test_rest(scene: Scene) -> None:
     assert motion.u == pytest.approx(start + steady * time**2 / 2, rel=ROUNDING, abs=ROUNDING)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [sliding(0.0), frozen(), frozen(-0.2, can=METAL), pendulum()])
 @pytest.mark.parametrize("turn", [0.0, 1e-120, 1e-17, -1e-15, 1e-10])
 @pytest.mark.parametrize("phi_dot0", [0.0, 1e-160, 1e-129, -1e-14, 1e-9])

@@ -117,6 +117,7 @@ class Witness:
         return 2 * swing.time(mp.pi / 2, -mp.pi / 2)
 
 
+@pytest.mark.slow
 @settings(max_examples=20, deadline=None, derandomize=True)
 @given(scenes(), st.floats(1e-3, 0.99), st.booleans())
 def test_period_of_any_swing(scene: Scene, share: float, uphill: bool) -> None:
@@ -129,6 +130,7 @@ def test_period_of_any_swing(scene: Scene, share: float, uphill: bool) -> None:
     assert abs(scene.period(amplitude) / Witness(scene).period(amplitude) - 1) < PERIOD
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 @pytest.mark.parametrize("amplitude", [1e-3, -1e-3, 1.0, -1.3, 2.0, 3.0])
 def test_period_of_the_paper_s_scenes(scene: Scene, amplitude: float) -> None:
@@ -143,6 +145,7 @@ def test_period_of_the_paper_s_scenes(scene: Scene, amplitude: float) -> None:
             replace(scene, incline=-scene.incline).period(-amplitude)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-10])
 @pytest.mark.parametrize("degrees", [0, 10])
 def test_period_beside_the_separatrix(degrees: float, gap: float) -> None:

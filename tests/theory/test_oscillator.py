@@ -74,6 +74,7 @@ def values(scene: Scene, phi: float) -> tuple[mpf, ...]:
     return tuple(form(*exact) for form in compiled(scene.attachment))
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-4, 4), st.floats(-5, 5))
 def test_reduction_is_the_lagrangian_s(scene: Scene, phi: float, swing: float) -> None:

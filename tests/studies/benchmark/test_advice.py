@@ -13,6 +13,8 @@ from mjbeer.studies.benchmark import advice
 from mjbeer.studies.cases import CASES, DEFAULT
 from mjbeer.theory.exact import phi_error
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("name", DEFAULT)
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])

@@ -18,6 +18,8 @@ from mjbeer.studies.benchmark.peers.installed import installed
 from mjbeer.studies.benchmark.peers.peer import Peer
 from tests.support.scenes import METAL
 
+pytestmark = pytest.mark.slow
+
 TIMES = np.linspace(0, 1.024, 65)
 STARTS = {
     "sliding, metal can": (sliding(can=METAL), 1.0, 2.0),

@@ -19,6 +19,8 @@ from mjbeer.studies.benchmark.peers import equations
 from mjbeer.theory.forces import accelerations
 from tests.support.scenes import METAL, SCENES, scenes
 
+pytestmark = pytest.mark.slow
+
 # Some ten roundings (1.1e-16) of terms that are each at most the scale that they are compared with; measured: 5e-16.
 ROUNDING = 1.5e-15
 

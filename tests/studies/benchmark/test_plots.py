@@ -9,6 +9,8 @@ from mjbeer.studies.benchmark import ablation, advice, plots
 from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.cases import CASES
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path) -> None:
     stored = Benchmark.load(advice.SHIPPED)

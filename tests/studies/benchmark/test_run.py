@@ -20,6 +20,8 @@ from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.cases import CASES, INTERVAL
 from tests.support import stubs
 
+pytestmark = pytest.mark.slow
+
 # Next orders of rungs that are not all small: the issue of every convergence test.
 ORDER_MARGIN = 0.2
 

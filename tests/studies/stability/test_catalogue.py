@@ -12,6 +12,8 @@ from mjbeer.studies.stability.catalogue import cases
 from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase, attempts, natural_period
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED, SILENT
 
+pytestmark = pytest.mark.slow
+
 CASES = cases.cases()
 SAMPLE = [each for each in CASES if "1 - 1e" not in each.name][::3]
 SAMPLE += [each for each in CASES if each.kind == "found" and each not in SAMPLE]

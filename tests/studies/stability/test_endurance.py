@@ -9,6 +9,8 @@ from mjbeer.studies.stability import endurance
 from mjbeer.studies.stability.endurance import BOUNDED, LINEAR, Endurance, rounded_coefficients
 from mjbeer.theory.can import Can
 
+pytestmark = pytest.mark.slow
+
 # Samples do not fall on whole swings where the period is not quite a number of steps.
 HALF_A_STEP = 5e-3
 

@@ -9,6 +9,8 @@ from mjbeer.studies.check import Check
 from mjbeer.studies.stability import laws
 from mjbeer.studies.stability.laws import fall_slope
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("law", list(laws.laws()), ids=lambda law: f"{law.quantity}, {law.by}")
 def test_laws_hold(law: Check) -> None:

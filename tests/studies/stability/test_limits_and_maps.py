@@ -18,6 +18,8 @@ from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow
 from mjbeer.studies.stability import limits, maps, plots, short_runs
 from mjbeer.studies.stability.short_runs import Plan, ShortRuns
 
+pytestmark = pytest.mark.slow
+
 COARSE = 5
 SAMPLE = [
     Plan("equality", "RK4"),

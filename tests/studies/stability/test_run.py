@@ -11,6 +11,8 @@ from mjbeer.studies.stability import report, run, tables
 from mjbeer.studies.study import Task
 from tests.support import stubs
 
+pytestmark = pytest.mark.slow
+
 QUIET = Console(quiet=True)
 
 

@@ -16,6 +16,8 @@ from mjbeer.studies.stability import search
 from mjbeer.studies.stability.outcome import ACCURATE, SILENT, Outcome
 from mjbeer.studies.stability.search import NUMBERS, RandomRun, random_run
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = os.environ.get("MJBEER_EXAMPLES")
 """How many new runs `make search` asks for."""
 

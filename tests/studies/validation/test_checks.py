@@ -19,6 +19,7 @@ from mjbeer.theory import measure
 CHECKS = motions.checks()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("check", CHECKS, ids=[f"{check.quantity} - {check.by}" for check in CHECKS])
 def test_check(check: Check) -> None:
     result = check.measure()
