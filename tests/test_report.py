@@ -147,5 +147,5 @@ def test_a_folder_that_cannot_be_written_to(
     (tmp_path / "report").touch()
     assert main(["report", "--output", str(tmp_path / "report")]) == 2
     report = tmp_path / "report"
-    assert capsys.readouterr().err == f"mjbeer: cannot write {report}: {report} is not a folder\n"
+    assert capsys.readouterr().err == f"mjbeer: cannot write {report / 'summary.md'}: Not a directory\n"
     assert not calls

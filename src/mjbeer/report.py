@@ -77,18 +77,19 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Verdict:
     """
     from mjbeer.drawing.video import render, save_frame
 
-    verdict = check(console)
-    files.remove(folder / "summary.md")
-    files.write(folder / "validation.json", tables.validation_json(verdict.checks, verdict.findings))
     size = (640, 360, 15) if quick else (1280, 720, 30)
-    for film in _FILMS:
-        trajectory = film.trajectory()
-        render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
-        save_frame(trajectory, film.still, folder / f"{film.name}.png")
-        console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
-    report.write(folder / "paper", not quick, console)
-    console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-    files.write(folder / "summary.md", _summary(verdict))
+    with files.whole(folder / "summary.md") as summary:  # a folder that cannot be written to fails here
+        verdict = check(console)
+        (folder / "summary.md").unlink(missing_ok=True)
+        files.write(folder / "validation.json", tables.validation_json(verdict.checks, verdict.findings))
+        for film in _FILMS:
+            trajectory = film.trajectory()
+            render(trajectory, folder / f"{film.name}.mp4", *size, film.speed)
+            save_frame(trajectory, film.still, folder / f"{film.name}.png")
+            console.print(f"wrote {folder / film.name}.mp4", highlight=False, markup=False, soft_wrap=True)
+        report.write(folder / "paper", not quick, console)
+        console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
+        summary.write_text(_summary(verdict), encoding="utf-8")
     return verdict
 
 

@@ -47,46 +47,44 @@ def test_a_study_that_cannot_be_saved_again_stays_as_it_was(tmp_path: pathlib.Pa
     assert status == 2
     assert err.endswith(f"mjbeer: cannot write {tmp_path / 'study.json'}: File too large\n")
     assert len({each.curve for each in points.load(tmp_path / "study.json").points}) >= 1
-    assert os.listdir(tmp_path) == ["study.json"]
+    assert set(os.listdir(tmp_path)) == {".lock", "study.json"}
 
 
 @pytest.mark.parametrize("words", [("simulate", *FROZEN), ("export", "frozen"), ("render", *VIDEO)])
-def test_what_cannot_be_written_is_known_before_the_run(
+def test_what_cannot_be_written_is_known_before_the_work(
     words: tuple[str, ...],
     tmp_path: pathlib.Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """A folder of that name, a file in the folder's place, a read-only file and folder. For root none is read-only."""
+    """A folder of that name, a file in the folder's place, and a read-only file. For root none is read-only."""
     monkeypatch.setattr("mjbeer.output.files.os.access", lambda path, _: bool(os.stat(path).st_mode & stat.S_IWUSR))
-    if words[0] != "export":
-        monkeypatch.setattr("mjbeer.cli.arguments.Run.simulate", lambda _: pytest.fail("it was simulated"))
     suffix = {"simulate": ".csv", "export": ".xml", "render": ".mp4"}[words[0]]
+    if words[0] == "simulate":
+        monkeypatch.setattr("mjbeer.cli.arguments.Run.simulate", lambda _: pytest.fail("it was simulated"))
+    monkeypatch.setattr("mjbeer.drawing.encoder.encode", lambda *_: pytest.fail("it was drawn"))
     (tmp_path / f"folder{suffix}").mkdir()
     (tmp_path / f"file{suffix}").touch(mode=0o444)
-    (tmp_path / "closed").mkdir(mode=0o555)
     for name, reason in {
         f"folder{suffix}": "it is a folder",
         f"file{suffix}": "it is read-only",
-        f"file{suffix}/x/new{suffix}": f"{tmp_path}/file{suffix} is not a folder",
-        f"closed/x/new{suffix}": f"the folder {tmp_path}/closed is read-only",
+        f"file{suffix}/x/new{suffix}": "Not a directory",
     }.items():
         assert main([*words, "--output", str(tmp_path / name)]) == 2
         assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / name}: {reason}\n"
-    assert not os.listdir(tmp_path / "closed")
 
 
-@pytest.mark.parametrize("command", ["report", "benchmark", "paper"])
-def test_a_folder_that_cannot_be_written_to_is_known_before_the_work(
+@pytest.mark.parametrize("command", ["report", "benchmark", "stability", "paper"])
+def test_a_folder_that_cannot_be_made_is_known_before_the_work(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("mjbeer.output.files.os.access", lambda path, _: bool(os.stat(path).st_mode & stat.S_IWUSR))
-    closed = tmp_path / "closed"
-    closed.mkdir(mode=0o555)
-    for folder in (closed, closed / "new"):
-        assert main([command, "--output", str(folder)]) == 2
-        assert capsys.readouterr().err == f"mjbeer: cannot write {folder}: the folder {closed} is read-only\n"
-    assert not os.listdir(closed)
+    for work in ("report.check", "studies.benchmark.run.run", "studies.stability.run.run"):
+        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
+    (tmp_path / "file").touch()
+    assert main([command, "--output", str(tmp_path / "file" / "new")]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith(f"mjbeer: cannot write {tmp_path / 'file' / 'new'}")
+    assert err.endswith(": Not a directory\n")
 
 
 def test_a_link_to_nothing_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:

@@ -1,14 +1,26 @@
-"""Files appear whole or not at all, whatever goes wrong in between."""
+"""Files appear whole or not at all, whatever goes wrong in between; a study's folder has one command at a time."""
 
 import errno
 import os
 import pathlib
+import signal
 import stat
 
 import pytest
 
+from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
 from mjbeer.output import files, terminal
+from tests.support import stubs
+from tests.support.processes import interrupt, start
+
+HOLD = """
+import pathlib, sys, time
+from mjbeer.output import files
+with files.locked(pathlib.Path(sys.argv[1])):
+    print("locked", flush=True)
+    time.sleep(60)
+"""
 
 
 def test_a_file_is_written_into_new_folders(tmp_path: pathlib.Path) -> None:
@@ -123,7 +135,7 @@ def test_a_file_in_the_way_of_a_folder_is_an_output_error(tmp_path: pathlib.Path
     for path in (tmp_path / "file" / "motion.csv", tmp_path / "file" / "deeper" / "motion.csv"):
         with pytest.raises(OutputError) as caught:
             files.write(path, "")
-        assert str(caught.value) == f"cannot write {path}: {tmp_path / 'file'} is not a folder"
+        assert str(caught.value) == f"cannot write {path}: Not a directory"
     assert os.listdir(tmp_path) == ["file"]
 
 
@@ -140,16 +152,39 @@ def test_a_folder_that_may_not_be_written_to_is_an_output_error(
     assert str(caught.value) == f"cannot write {tmp_path / 'motion.csv'}: Permission denied"
 
 
+@pytest.mark.parametrize("command", ["benchmark", "stability"])
+def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
+    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
+    stubs.benchmark(monkeypatch)
+    monkeypatch.setattr("mjbeer.studies.stability.run.tasks", lambda quick: [])
+    folder = tmp_path / "a" / "new"
+    holder = start([str(folder)], HOLD)
+    assert holder.stdout is not None
+    holder.stdout.readline()
+    assert main([command, "--output", str(folder)]) == 2
+    assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
+    assert os.listdir(folder) == [".lock"]
+    interrupt(holder, lambda: True, signal.SIGKILL)
+    with files.locked(folder):
+        pass
+    with files.locked(folder):
+        pass
+
+
+def test_an_error_in_a_locked_folder_is_its_own(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(OSError, match="mine"), files.locked(tmp_path):
+        raise OSError("mine")
+
+
+@pytest.mark.parametrize(("folder", "reason"), [("file", "File exists"), ("file/new", "Not a directory")])
+def test_a_folder_that_is_a_file_is_not_locked(folder: str, reason: str, tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match=reason), files.locked(tmp_path / folder):
+        pytest.fail("it is locked")
+
+
 def test_show_writes_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
     terminal.write("a,b\n1,2\n")
     assert capsys.readouterr() == ("a,b\n1,2\n", "")
-
-
-def test_removing_what_is_there_and_what_is_not(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    files.remove(tmp_path / "file")
-    files.remove(tmp_path / "file")
-    assert not list(tmp_path.iterdir())
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match="cannot write"):
-        files.remove(tmp_path / "file" / "within")

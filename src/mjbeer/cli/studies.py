@@ -7,8 +7,7 @@ from typing import Annotated
 import tyro
 
 from mjbeer.cli.arguments import CaseName, Rolling
-from mjbeer.output import terminal
-from mjbeer.output.exclusive import claimed
+from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.cases import DEFAULT
 
@@ -49,8 +48,7 @@ class Report:
         from mjbeer import report
         from mjbeer.studies.validation import tables
 
-        with claimed(self.output), claimed(self.output / "paper"):
-            verdict = report.write(self.output, self.quick, STDERR)
+        verdict = report.write(self.output, self.quick, STDERR)
         show(tables.validation(verdict.checks), tables.audit(verdict.findings))
         say(f"the report is in {self.output / 'summary.md'}")
         return 0 if verdict.passed else _FAILED
@@ -72,7 +70,7 @@ class Benchmark:
         from mjbeer.studies.benchmark import report, tables
         from mjbeer.studies.benchmark import run as benchmark
 
-        with claimed(self.output):
+        with files.locked(self.output):
             study = benchmark.run(self.scenes, self.output, self.quick, STDERR)
             report.write(study, self.output)
         for grid in tables.tables(study):
@@ -118,7 +116,7 @@ class Stability:
         from mjbeer.studies.stability import report, tables
         from mjbeer.studies.stability import run as stability
 
-        with claimed(self.output):
+        with files.locked(self.output):
             found = stability.run(self.output, not self.long, STDERR)
             report.write(found, self.output)
         if self.json:
@@ -144,7 +142,6 @@ class Paper:
         """Do it; the exit status."""
         from mjbeer.paper.stories import report
 
-        with claimed(self.output):
-            report.write(self.output, self.films, STDERR)
+        report.write(self.output, self.films, STDERR)
         say(f"the stories are in {self.output / 'stories.md'}")
         return 0

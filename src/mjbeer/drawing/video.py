@@ -11,7 +11,7 @@ from rich.progress import Progress
 
 from mjbeer import require
 from mjbeer.drawing import encoder, frames
-from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 from mjbeer.theory.trajectory import Trajectory
 
@@ -103,6 +103,4 @@ def _file(path: str | os.PathLike[str], suffix: str) -> pathlib.Path:
     target = pathlib.Path(path)
     if target.suffix.lower() != suffix:
         raise ParameterError(f"the file's name must end in {suffix}, got {str(path)!r}")
-    if target.is_dir():
-        raise OutputError(f"cannot write {target}: it is a folder")
     return target

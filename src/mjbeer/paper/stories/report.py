@@ -30,9 +30,10 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> None:
     """
     from mjbeer.drawing.video import render
 
-    files.remove(folder / "stories.md")
     told = stories()
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+    bar = Progress(console=console, transient=True, disable=not console.is_terminal)
+    with files.whole(folder / "stories.md") as summary, bar as progress:
+        (folder / "stories.md").unlink(missing_ok=True)
         task = progress.add_task("drawing", total=len(told))
         for story in told:
             progress.update(task, description=story.name)
@@ -41,7 +42,7 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> None:
                 file = folder / f"{story.name}.mp4"
                 render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
             progress.advance(task)
-    files.write(folder / "stories.md", _summary(told, films))
+        summary.write_text(_summary(told, films), encoding="utf-8")
 
 
 def _summary(told: list[Story], films: bool) -> str:

@@ -9,7 +9,6 @@ from rich.console import Console
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError
-from mjbeer.output import files
 from mjbeer.output.terminal import counted
 from mjbeer.studies import study
 from mjbeer.studies.benchmark import curves
@@ -43,7 +42,7 @@ def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Consol
     cases = [CASES[require.choice("scene", name, CASES)] for name in names]
     path = folder / "study.json"
     found = _begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
-    files.remove(folder / "summary.md")  # it would be that of another study
+    (folder / "summary.md").unlink(missing_ok=True)  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
     with counted(console) as progress:
         ready: dict[int, Prepared] = {}

@@ -94,7 +94,7 @@ def run(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
         if (before.settings, before.machine) == (found.settings, found.machine):
             console.print(f"going on from {folder / _FILE}", highlight=False, markup=False, soft_wrap=True)
             found = before
-    files.remove(folder / "summary.md")
+    (folder / "summary.md").unlink(missing_ok=True)
     todo = tasks(quick)
     with counted(console) as progress:
         bar = progress.add_task("stability", total=len(todo))
