@@ -5,7 +5,6 @@ import math
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import sysconfig
 
@@ -15,7 +14,6 @@ import pytest
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli import trajectory
 from mjbeer.cli.app import main
-from mjbeer.output import interruption
 
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
 # RK4 at 1 ms over 0.1 s: 2e-6 rad for the light hoop, whose load turns at 45 rad/s at the bottom; 1e-8 for others.
@@ -138,17 +136,6 @@ def test_a_run_that_is_not_to_be_trusted_says_so(words: str, reason: str, capsys
     out, err = capsys.readouterr()
     assert any(line.startswith("not to be trusted: ") and reason in line for line in err.splitlines())
     assert "not to be trusted" not in out
-
-
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-def test_interrupted(
-    number: int, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    handlers = [signal.getsignal(each) for each in interruption.SIGNALS]
-    monkeypatch.setattr("mjbeer.simulation.simulate.simulate", lambda *_, **__: signal.raise_signal(number))
-    assert main(["simulate", "frozen"]) == status
-    assert capsys.readouterr() == ("", "mjbeer: interrupted; what was written is whole\n")
-    assert handlers == [signal.getsignal(each) for each in interruption.SIGNALS]
 
 
 def test_names_of_files_are_shown_as_they_are(

@@ -9,7 +9,6 @@ from contextlib import contextmanager, suppress
 from filelock import FileLock, Timeout
 
 from mjbeer.exceptions import OutputError
-from mjbeer.output.interruption import undoing
 
 
 @contextmanager
@@ -31,12 +30,14 @@ def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
         if target.exists() and not os.access(target, os.W_OK):  # a rename would replace it even so
             raise OutputError(f"cannot write {path}: it is read-only")
         _make(target.parent)
-        with undoing(lambda: temporary.unlink(missing_ok=True)):
+        try:
             temporary.touch(exist_ok=False)
             yield temporary
             with temporary.open("rb+") as written:
                 os.fsync(written.fileno())
             temporary.replace(target)
+        finally:
+            temporary.unlink(missing_ok=True)
     except OSError as error:
         raise _failure(path, error) from error
 
