@@ -104,28 +104,6 @@ def test_a_full_standard_output(words: tuple[str, ...]) -> None:
     assert "No space left on device" in err
 
 
-def test_a_closed_standard_output() -> None:
-    status, _, err = run(["simulate", *FROZEN], stdout=None, preexec_fn=lambda: os.close(1))
-    assert (status, err) == (2, "mjbeer: cannot write to standard output: not writable\n")
-
-
-@linux
-def test_a_full_standard_error_is_no_fault(tmp_path: pathlib.Path) -> None:
-    with open("/dev/full", "w") as full:
-        status, out, _ = run(["simulate", *FROZEN, "--output", str(tmp_path / "motion.csv")], stderr=full)
-    assert status == 0
-    assert "phi at the end" in out
-
-
-@linux
-def test_a_study_goes_on_when_nobody_hears_of_its_progress(tmp_path: pathlib.Path) -> None:
-    words = ["benchmark", "frozen", "--quick", "--output", str(tmp_path)]
-    with open("/dev/full", "w") as full:
-        status, out, _ = run(words, SHORT, stderr=full)
-    assert (status, bool(out)) == (0, True)
-    assert (tmp_path / "summary.md").exists()
-
-
 def test_a_reader_of_tables_that_goes_away() -> None:
     reader, writer = os.pipe()
     os.close(reader)

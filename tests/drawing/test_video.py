@@ -20,6 +20,7 @@ from mjbeer import Trajectory, exact, frozen
 from mjbeer.drawing import encoder, video
 from mjbeer.drawing import frames as drawing
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
+from mjbeer.output import terminal
 
 SIZE = {"width": 320, "height": 180}
 
@@ -115,11 +116,11 @@ def test_frames_are_never_all_held(undrawn: list[int], tmp_path: pathlib.Path) -
 def test_a_bar_shows_the_progress(
     undrawn: list[int], tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("FORCE_COLOR", "1")  # rich then takes standard error for a terminal
+    monkeypatch.setattr(terminal, "STDERR", terminal.Console(stderr=True, force_terminal=True))
     video.render(motion(), tmp_path / "can.mp4", fps=20, **SIZE)
     shown = capsys.readouterr()
     assert "drawing can.mp4" in shown.err
-    assert "100%" in shown.err
+    assert "10/10" in shown.err
     assert shown.out == ""
 
 
@@ -127,7 +128,7 @@ def test_no_bar_where_none_is_wanted_or_seen(
     undrawn: list[int], tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     video.render(motion(), tmp_path / "can.mp4", fps=20, **SIZE)
-    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setattr(terminal, "STDERR", terminal.Console(stderr=True, force_terminal=True))
     video.render(motion(), tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
     assert capsys.readouterr() == ("", "")
 

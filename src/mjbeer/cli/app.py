@@ -32,7 +32,6 @@ _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line: exit status 0, 1 (a check failed), 2 (an error), or 128 and the signal that ended it."""
-    terminal.open_closed()
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) == signal.SIG_DFL:  # one that is ignored, as under nohup, stays so
             signal.signal(number, _interrupt)

@@ -3,9 +3,9 @@
 import pathlib
 
 from rich.console import Console
-from rich.progress import Progress
 
 from mjbeer.output import files
+from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.stories import frozen, hopping, massive_can, sliding
 from mjbeer.paper.stories.story import Story
 
@@ -31,17 +31,14 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> None:
     from mjbeer.drawing.video import render
 
     told = stories()
-    bar = Progress(console=console, transient=True, disable=not console.is_terminal)
-    with files.whole(folder / "stories.md") as summary, bar as progress:
+    with files.whole(folder / "stories.md") as summary, progress_bar(console, len(told)) as begin:
         (folder / "stories.md").unlink(missing_ok=True)
-        task = progress.add_task("drawing", total=len(told))
         for story in told:
-            progress.update(task, description=story.name)
+            begin(story.name)
             story.draw(folder / story.name)
             if films and story.film is not None:
                 file = folder / f"{story.name}.mp4"
                 render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
-            progress.advance(task)
         summary.write_text(_summary(told, films), encoding="utf-8")
 
 

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError
-from mjbeer.output.terminal import counted
+from mjbeer.output.terminal import progress_bar
 from mjbeer.studies import study
 from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
@@ -44,24 +44,22 @@ def run(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Consol
     found = _begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
     (folder / "summary.md").unlink(missing_ok=True)  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
-    with counted(console) as progress:
-        ready: dict[int, Prepared] = {}
-        ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
-        task = progress.add_task("errors", total=len(ladders))
-        known = {(each.case, each.curve) for each in found.points}
+    ready: dict[int, Prepared] = {}
+    ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
+    known = {(point.case, point.curve) for point in found.points}
+    with progress_bar(console, len(ladders) + REPEATS * len(cases) + 1) as begin:
         for case, curve, values in ladders:
-            progress.update(task, description=f"errors: {case.name}, {curve.label}", advance=1)
+            begin(f"errors: {case.name}, {curve.label}")
             if (case.name, curve) not in known:
                 found.points += _climb(case, curve, values, peers, ready)
                 found.save(path)
-        task = progress.add_task("run times", total=REPEATS * len(cases))
         for repeat in range(REPEATS):
             for case in cases:
-                progress.update(task, description=f"run times: {case.name}, round {repeat + 1}", advance=1)
+                begin(f"run times: {case.name}, round {repeat + 1}")
                 if _time(case, found.points, repeat + 1, peers, ready):
                     found.save(path)
+        begin("what each stage of a step costs")
         if not found.ablation:
-            progress.update(task, description="what each stage of a step costs")
             found.ablation = ablate()
             found.save(path)
     return found

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
-from mjbeer.output.terminal import counted
+from mjbeer.output.terminal import progress_bar
 from mjbeer.studies import study
 from mjbeer.studies.stability import endurance, laws, limits, maps, search
 from mjbeer.studies.stability.catalogue import cases
@@ -96,13 +96,11 @@ def run(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
             found = before
     (folder / "summary.md").unlink(missing_ok=True)
     todo = tasks(quick)
-    with counted(console) as progress:
-        bar = progress.add_task("stability", total=len(todo))
+    with progress_bar(console, len(todo)) as begin:
         for task in todo:
-            progress.update(bar, description=f"{task.group}: {task.name}"[:72])
+            begin(f"{task.group}: {task.name}")
             group = found.results.setdefault(task.group, {})
             if task.name not in group:
                 group[task.name] = task.measure()
                 found.save(folder)
-            progress.advance(bar)
     return found

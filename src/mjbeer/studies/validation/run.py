@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from rich.console import Console
-from rich.progress import Progress
 
+from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import Finding
 from mjbeer.studies.check import Check
@@ -30,14 +30,11 @@ def check(console: Console) -> Verdict:
     """Run every row of the validation table and of the audit, with a progress bar on `console`."""
     rows, claims = motions.rows(), chapters.claims()
     checks, findings = [], []
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("validating", total=len(rows) + len(claims))
+    with progress_bar(console, len(rows) + len(claims)) as begin:
         for row in rows:
-            progress.update(task, description=f"{row.quantity} ({row.by})")
+            begin(f"{row.quantity} ({row.by})")
             checks.append(row.run())
-            progress.advance(task)
         for claim in claims:
-            progress.update(task, description=f"{claim.equation} {claim.quantity}")
+            begin(f"{claim.equation} {claim.quantity}")
             findings.append(claim.run())
-            progress.advance(task)
     return Verdict(checks, findings)
