@@ -158,18 +158,6 @@ def test_bad_input_says_what_is_allowed(
     assert os.listdir(tmp_path) == []
 
 
-def test_a_folder_is_not_overwritten(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "can.mp4").mkdir()
-    with pytest.raises(OutputError, match="is a folder"):
-        video.render(motion(), tmp_path / "can.mp4", progress=False)
-
-
-def test_where_no_file_can_be_is_an_error(undrawn: list[int], tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="cannot write"):
-        video.render(motion(), tmp_path / "file" / "can.mp4", progress=False, **SIZE)
-
-
 @pytest.mark.parametrize(
     ("script", "reason"),
     [
@@ -216,16 +204,6 @@ def test_what_the_disk_says_is_not_ffmpeg_s_fault(
         video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
     assert str(caught.value) == f"cannot write {tmp_path / 'can.mp4'}: {reason}"
     assert os.listdir(tmp_path) == []
-
-
-def test_an_ffmpeg_that_may_not_run_says_so(
-    undrawn: list[int], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "ffmpeg").touch(mode=0o644)
-    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "ffmpeg"))
-    with pytest.raises(RenderingError, match="ffmpeg' is not found"):
-        video.render(motion(), tmp_path / "new" / "can.mp4", progress=False, **SIZE)
-    assert os.listdir(tmp_path / "new") == []
 
 
 def test_no_ffmpeg_says_so(undrawn: list[int], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
-from mjbeer.output import files, terminal
+from mjbeer.output import files
 from tests.support import stubs
 from tests.support.processes import interrupt, start
 
@@ -104,14 +104,6 @@ def test_permissions_are_those_of_any_new_file(tmp_path: pathlib.Path, mask: int
     assert stat.S_IMODE((tmp_path / "motion.csv").stat().st_mode) == 0o666 & ~mask
 
 
-def test_a_folder_is_no_file(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "out").mkdir()
-    with pytest.raises(OutputError) as caught:
-        files.write(tmp_path / "out", "")
-    assert str(caught.value) == f"cannot write {tmp_path / 'out'}: it is a folder"
-    assert os.listdir(tmp_path) == ["out"]
-
-
 def test_a_device_is_not_replaced_by_a_file(tmp_path: pathlib.Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
@@ -122,21 +114,11 @@ def test_a_device_is_not_replaced_by_a_file(tmp_path: pathlib.Path) -> None:
 
 def test_a_link_stays_and_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:
     link, target = tmp_path / "link.csv", tmp_path / "far" / "motion.csv"
-    target.parent.mkdir()
-    target.write_text("old")
     link.symlink_to(target)
-    files.write(link, "new")
-    assert link.is_symlink()
-    assert target.read_text() == "new"
-
-
-def test_a_file_in_the_way_of_a_folder_is_an_output_error(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    for path in (tmp_path / "file" / "motion.csv", tmp_path / "file" / "deeper" / "motion.csv"):
-        with pytest.raises(OutputError) as caught:
-            files.write(path, "")
-        assert str(caught.value) == f"cannot write {path}: Not a directory"
-    assert os.listdir(tmp_path) == ["file"]
+    for text in ("made", "replaced"):
+        files.write(link, text)
+        assert link.is_symlink()
+        assert target.read_text() == text
 
 
 def test_a_folder_that_may_not_be_written_to_is_an_output_error(
@@ -176,15 +158,3 @@ def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
 def test_an_error_in_a_locked_folder_is_its_own(tmp_path: pathlib.Path) -> None:
     with pytest.raises(OSError, match="mine"), files.locked(tmp_path):
         raise OSError("mine")
-
-
-@pytest.mark.parametrize(("folder", "reason"), [("file", "File exists"), ("file/new", "Not a directory")])
-def test_a_folder_that_is_a_file_is_not_locked(folder: str, reason: str, tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match=reason), files.locked(tmp_path / folder):
-        pytest.fail("it is locked")
-
-
-def test_show_writes_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.write("a,b\n1,2\n")
-    assert capsys.readouterr() == ("a,b\n1,2\n", "")
