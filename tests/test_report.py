@@ -136,15 +136,3 @@ def test_a_check_that_cannot_be_measured_ends_the_report(
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: no frequency\n")
     assert not os.listdir(tmp_path)
-
-
-def test_a_folder_that_cannot_be_written_to(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    stubs.validate(monkeypatch, first=1e-5)
-    calls = stubs.draw(monkeypatch)
-    (tmp_path / "report").touch()
-    assert main(["report", "--output", str(tmp_path / "report")]) == 2
-    report = tmp_path / "report"
-    assert capsys.readouterr().err == f"mjbeer: cannot write {report}: {report} is not a folder\n"
-    assert not calls

@@ -38,4 +38,4 @@ class TemplateError(MjbeerError):
 
 
 class OutputError(MjbeerError):
-    """An output file could not be written, or another command is writing to its folder."""
+    """An output file could not be written, or another command is at work in its folder."""

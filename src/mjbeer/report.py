@@ -59,18 +59,19 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Validation:
     """
     from mjbeer.drawing.video import render, save_frame
 
-    validation = validate(console)
-    files.remove(folder / "summary.md")
-    files.write(folder / "validation.json", tables.to_json(validation))
     size = (640, 360, 15) if quick else (1280, 720, 30)
-    for name, film in _FILMS.items():
-        trajectory = film.trajectory()
-        render(trajectory, folder / f"{name}.mp4", *size, film.speed)
-        save_frame(trajectory, film.still, folder / f"{name}.png")
-        console.print(f"wrote {folder / name}.mp4", highlight=False, markup=False, soft_wrap=True)
-    report.write(folder / "paper", not quick, console)
-    console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-    files.write(folder / "summary.md", _summary(validation))
+    with files.whole(folder / "summary.md") as summary:  # a folder that cannot be written to fails here
+        validation = validate(console)
+        (folder / "summary.md").unlink(missing_ok=True)
+        files.write(folder / "validation.json", tables.to_json(validation))
+        for name, film in _FILMS.items():
+            trajectory = film.trajectory()
+            render(trajectory, folder / f"{name}.mp4", *size, film.speed)
+            save_frame(trajectory, film.still, folder / f"{name}.png")
+            console.print(f"wrote {folder / name}.mp4", highlight=False, markup=False, soft_wrap=True)
+        report.write(folder / "paper", not quick, console)
+        console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
+        summary.write_text(_summary(validation), encoding="utf-8")
     return validation
 
 

@@ -5,7 +5,6 @@ import math
 import os
 import pathlib
 import shutil
-import signal
 import subprocess
 import sysconfig
 
@@ -15,19 +14,19 @@ import pytest
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli import trajectory
 from mjbeer.cli.app import main
-from mjbeer.output import interruption
+
+pytestmark = pytest.mark.slow
 
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
 # RK4 at 1 ms over 0.1 s: 2e-6 rad for the light hoop, whose load turns at 45 rad/s at the bottom; 1e-8 for others.
 RK4 = 1e-5
 
 
-def entry(*arguments: str, stdout: int = subprocess.PIPE) -> subprocess.CompletedProcess[str]:
+def entry(*arguments: str) -> subprocess.CompletedProcess[str]:
     """Run the installed console script."""
     script = shutil.which("mjbeer", path=sysconfig.get_path("scripts"))
     assert script is not None
-    command = [script, *arguments]
-    return subprocess.run(command, stdout=stdout, stderr=subprocess.PIPE, text=True, check=False)
+    return subprocess.run([script, *arguments], capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -140,17 +139,6 @@ def test_a_run_that_is_not_to_be_trusted_says_so(words: str, reason: str, capsys
     assert "not to be trusted" not in out
 
 
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
-def test_interrupted(
-    number: int, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    handlers = [signal.getsignal(each) for each in interruption.SIGNALS]
-    monkeypatch.setattr("mjbeer.simulation.simulate.simulate", lambda *_, **__: signal.raise_signal(number))
-    assert main(["simulate", "frozen"]) == status
-    assert capsys.readouterr() == ("", "mjbeer: interrupted; what was written is whole\n")
-    assert handlers == [signal.getsignal(each) for each in interruption.SIGNALS]
-
-
 def test_names_of_files_are_shown_as_they_are(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -177,15 +165,3 @@ def test_the_console_script_passes_on_the_exit_status() -> None:
     assert done.stderr.splitlines() == [
         "mjbeer: fill (height of the beer over the can's diameter) must be in (0, 1], got 2.0"
     ]
-
-
-@pytest.mark.parametrize("duration", ["0.01", "2"])  # less and more than Python and the pipe keep in between
-def test_a_reader_that_goes_away_is_no_traceback(duration: str) -> None:
-    reader, writer = os.pipe()
-    os.close(reader)
-    try:
-        done = entry("simulate", "frozen", "--duration", duration, "--output", "-", stdout=writer)
-    finally:
-        os.close(writer)
-    assert done.returncode == 2
-    assert done.stderr.splitlines() == ["mjbeer: cannot write to standard output: Broken pipe"]

@@ -3,24 +3,12 @@
 import os
 import pathlib
 import signal
-import threading
 
 import pytest
 
-from mjbeer.output import interruption
-from mjbeer.studies.benchmark.points import Benchmark
 from tests.support.processes import SHORT, interrupt, start
 
-TWICE = """
-import pathlib, signal, sys, time
-from mjbeer.output import interruption, files as output
-with interruption.heeded(), output.whole(sys.argv[1]) as temporary:
-    temporary.write_text("half")
-    try:
-        time.sleep(60)
-    finally:
-        time.sleep(60)  # a cleanup that takes its time
-"""
+pytestmark = pytest.mark.slow
 
 
 def halves(folder: pathlib.Path) -> list[str]:
@@ -63,27 +51,32 @@ def test_a_benchmark_keeps_what_was_measured(tmp_path: pathlib.Path) -> None:
     words = ["benchmark", "frozen", "--output", str(tmp_path)]
     ended, _ = interrupt(start(words, SHORT), (tmp_path / "study.json").exists, signal.SIGTERM)
     assert ended == 143
-    assert os.listdir(tmp_path) == ["study.json"]
+    assert set(os.listdir(tmp_path)) == {".lock", "study.json"}
     assert Benchmark.load(tmp_path / "study.json").points
 
 
-def test_a_report_that_validates_has_written_nothing(tmp_path: pathlib.Path) -> None:
+@pytest.mark.parametrize(
+    ("handler", "numbers", "status"),
+    [
+        (signal.SIG_DFL, [signal.SIGHUP], 129),
+        (signal.SIG_IGN, [signal.SIGHUP, signal.SIGTERM], 143),  # as under nohup: SIGHUP stays ignored
+    ],
+)
+def test_a_report_that_validates_has_written_nothing(
+    handler: signal.Handlers, numbers: list[int], status: int, tmp_path: pathlib.Path
+) -> None:
     code = (
         "import sys, time; from mjbeer.studies.validation import motions; from mjbeer.studies.check import Check; "
         "motions.checks = lambda: [Check('q', 'b', 1, 'rad', 'r', "
         "lambda: (print('measuring', flush=True), time.sleep(60)))]; from mjbeer.cli.app import main; sys.exit(main())"
     )
-    process = start(["report", "--output", str(tmp_path / "new")], code)
+    words = ["report", "--output", str(tmp_path / "new")]
+    process = start(words, code, preexec_fn=lambda: signal.signal(signal.SIGHUP, handler))
     assert process.stdout is not None
     process.stdout.readline()
-    assert interrupt(process, lambda: True, signal.SIGHUP) == (129, "mjbeer: interrupted; what was written is whole\n")
-    assert not os.listdir(tmp_path)
-
-
-def test_a_second_signal_waits_for_no_cleanup_and_leaves_no_half_file(tmp_path: pathlib.Path) -> None:
-    process = start([str(tmp_path / "file")], TWICE)
-    assert interrupt(process, lambda: halves(tmp_path), signal.SIGINT, signal.SIGINT) == (130, "")
-    assert not os.listdir(tmp_path)
+    told = "mjbeer: interrupted; what was written is whole\n"
+    assert interrupt(process, lambda: True, *numbers) == (status, told)
+    assert not os.listdir(tmp_path / "new")
 
 
 def test_a_killed_command_leaves_nothing_under_the_final_name(tmp_path: pathlib.Path) -> None:
@@ -93,29 +86,3 @@ def test_a_killed_command_leaves_nothing_under_the_final_name(tmp_path: pathlib.
     assert ended == -signal.SIGKILL
     assert (tmp_path / "film.mp4").read_text() == "old"
     assert len(halves(tmp_path)) == 1
-
-
-def test_what_is_ignored_stays_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As SIGHUP under nohup."""
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        with interruption.heeded():
-            signal.raise_signal(signal.SIGHUP)
-            with pytest.raises(interruption.Interrupted) as caught:
-                signal.raise_signal(signal.SIGTERM)
-        assert caught.value.status == 143
-    finally:
-        signal.signal(signal.SIGHUP, before)
-
-
-def test_other_threads_leave_signals_alone() -> None:
-    seen = []
-
-    def enter() -> None:
-        with interruption.heeded():
-            seen.append(signal.getsignal(signal.SIGTERM))
-
-    thread = threading.Thread(target=enter)
-    thread.start()
-    thread.join()
-    assert seen == [signal.getsignal(signal.SIGTERM)]

@@ -1,14 +1,26 @@
-"""Files appear whole or not at all, whatever goes wrong in between."""
+"""Files appear whole or not at all, whatever goes wrong in between; a study's folder has one command at a time."""
 
 import errno
 import os
 import pathlib
+import signal
 import stat
 
 import pytest
 
+from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
-from mjbeer.output import files, terminal
+from mjbeer.output import files
+from tests.support import stubs
+from tests.support.processes import interrupt, start
+
+HOLD = """
+import pathlib, sys, time
+from mjbeer.output import files
+with files.locked(pathlib.Path(sys.argv[1])):
+    print("locked", flush=True)
+    time.sleep(60)
+"""
 
 
 def test_a_file_is_written_into_new_folders(tmp_path: pathlib.Path) -> None:
@@ -92,14 +104,6 @@ def test_permissions_are_those_of_any_new_file(tmp_path: pathlib.Path, mask: int
     assert stat.S_IMODE((tmp_path / "motion.csv").stat().st_mode) == 0o666 & ~mask
 
 
-def test_a_folder_is_no_file(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "out").mkdir()
-    with pytest.raises(OutputError) as caught:
-        files.write(tmp_path / "out", "")
-    assert str(caught.value) == f"cannot write {tmp_path / 'out'}: it is a folder"
-    assert os.listdir(tmp_path) == ["out"]
-
-
 def test_a_device_is_not_replaced_by_a_file(tmp_path: pathlib.Path) -> None:
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
@@ -110,21 +114,11 @@ def test_a_device_is_not_replaced_by_a_file(tmp_path: pathlib.Path) -> None:
 
 def test_a_link_stays_and_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:
     link, target = tmp_path / "link.csv", tmp_path / "far" / "motion.csv"
-    target.parent.mkdir()
-    target.write_text("old")
     link.symlink_to(target)
-    files.write(link, "new")
-    assert link.is_symlink()
-    assert target.read_text() == "new"
-
-
-def test_a_file_in_the_way_of_a_folder_is_an_output_error(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    for path in (tmp_path / "file" / "motion.csv", tmp_path / "file" / "deeper" / "motion.csv"):
-        with pytest.raises(OutputError) as caught:
-            files.write(path, "")
-        assert str(caught.value) == f"cannot write {path}: {tmp_path / 'file'} is not a folder"
-    assert os.listdir(tmp_path) == ["file"]
+    for text in ("made", "replaced"):
+        files.write(link, text)
+        assert link.is_symlink()
+        assert target.read_text() == text
 
 
 def test_a_folder_that_may_not_be_written_to_is_an_output_error(
@@ -140,16 +134,27 @@ def test_a_folder_that_may_not_be_written_to_is_an_output_error(
     assert str(caught.value) == f"cannot write {tmp_path / 'motion.csv'}: Permission denied"
 
 
-def test_show_writes_to_standard_output(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.write("a,b\n1,2\n")
-    assert capsys.readouterr() == ("a,b\n1,2\n", "")
+@pytest.mark.parametrize("command", ["benchmark", "stability"])
+def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
+    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
+    stubs.benchmark(monkeypatch)
+    monkeypatch.setattr("mjbeer.studies.stability.run.tasks", lambda quick: [])
+    folder = tmp_path / "a" / "new"
+    holder = start([str(folder)], HOLD)
+    assert holder.stdout is not None
+    holder.stdout.readline()
+    assert main([command, "--output", str(folder)]) == 2
+    assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
+    assert os.listdir(folder) == [".lock"]
+    interrupt(holder, lambda: True, signal.SIGKILL)
+    with files.locked(folder):
+        pass
+    with files.locked(folder):
+        pass
 
 
-def test_removing_what_is_there_and_what_is_not(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    files.remove(tmp_path / "file")
-    files.remove(tmp_path / "file")
-    assert not list(tmp_path.iterdir())
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match="cannot write"):
-        files.remove(tmp_path / "file" / "within")
+def test_an_error_in_a_locked_folder_is_its_own(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(OSError, match="mine"), files.locked(tmp_path):
+        raise OSError("mine")

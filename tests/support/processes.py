@@ -25,7 +25,17 @@ def start(
     stderr: int | TextIO = subprocess.PIPE,
     preexec_fn: Callable[[], None] | None = None,
 ) -> subprocess.Popen[str]:
-    """Start Python's `code`, by default `mjbeer`, with some words, in a session of its own, as a terminal does."""
+    """Start Python's `code`, by default `mjbeer`, with some words, in a session of its own, as a terminal does.
+
+    No signal is ignored in it, even if whoever runs the tests ignores some; `preexec_fn` comes after that.
+    """
+
+    def prepare() -> None:
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
+        if preexec_fn is not None:
+            preexec_fn()
+
     code = f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}"
     return subprocess.Popen(
         [sys.executable, "-P", "-c", code, *words],
@@ -34,7 +44,7 @@ def start(
         env=env,
         stdout=stdout,
         stderr=stderr,
-        preexec_fn=preexec_fn,  # noqa: PLW1509 - it makes system calls only
+        preexec_fn=prepare,  # noqa: PLW1509 - it makes system calls only
     )
 
 

@@ -1,7 +1,9 @@
 """The command line: what `mjbeer` does, a class a command."""
 
+import signal
 from collections.abc import Sequence
-from typing import Annotated
+from types import FrameType
+from typing import Annotated, NoReturn
 
 import tyro
 
@@ -9,7 +11,7 @@ from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Validate
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import MjbeerError
-from mjbeer.output import interruption, terminal
+from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _WRONG = 2
@@ -30,21 +32,30 @@ _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line: exit status 0, 1 (a check failed), 2 (an error), or 128 and the signal that ended it."""
-    terminal.open_closed()
-    with interruption.heeded():
-        try:
-            with terminal.printing():
-                command = parse(arguments)
-            opengl.keep_out()
-            return command.run()
-        except MjbeerError as error:
-            say(f"mjbeer: {error}", "red")
-        except OSError as error:  # of the machine: too many processes, no standard output, ...
-            say(f"mjbeer: {error}", "red")
-        except interruption.Interrupted as error:
-            say("mjbeer: interrupted; what was written is whole", "red")
-            return error.status
-    return _WRONG
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(number) == signal.SIG_DFL:  # one that is ignored, as under nohup, stays so
+            signal.signal(number, _interrupt)
+    try:
+        with terminal.printing():
+            command = parse(arguments)
+        opengl.keep_out()
+        return command.run()
+    except (MjbeerError, OSError) as error:  # OSError: of the machine, as too many processes
+        say(f"mjbeer: {error}", "red")
+        return _WRONG
+    except KeyboardInterrupt as error:
+        say("mjbeer: interrupted; what was written is whole", "red")
+        (number,) = error.args or (signal.SIGINT,)
+        return 128 + number
+
+
+def _interrupt(number: int, _: FrameType | None) -> NoReturn:
+    """Raise for a signal what Ctrl-C raises, with the number of the signal.
+
+    Raises:
+      KeyboardInterrupt: always.
+    """
+    raise KeyboardInterrupt(number)
 
 
 def parse(arguments: Sequence[str] | None = None) -> Command:

@@ -20,18 +20,19 @@ class Simulate(Run):
         """Run the command and return its exit status, 0."""
         from mjbeer.cli.trajectory import csv, summary
 
-        file = None if str(self.output) == "-" else self.output
-        if file is not None:
-            files.check(file)
-        trajectory = self.simulate()
-        if file is not None:
-            files.write(file, csv(trajectory))
-            say(f"wrote {file}")
-        if file == self.output:
+        if self.output is None:
+            trajectory = self.simulate()
             show(summary(trajectory))
-        else:
+        elif str(self.output) == "-":
+            trajectory = self.simulate()
             terminal.write(csv(trajectory))
             STDERR.print(summary(trajectory))
+        else:
+            with files.whole(self.output) as temporary:
+                trajectory = self.simulate()
+                temporary.write_text(csv(trajectory), encoding="utf-8")
+            say(f"wrote {self.output}")
+            show(summary(trajectory))
         _warn(trajectory.warnings)
         return 0
 
@@ -55,7 +56,6 @@ class Render(Run):
         """Run the command and return its exit status, 0."""
         from mjbeer.drawing.video import render
 
-        files.check(self.output)
         trajectory = self.simulate()
         _warn(trajectory.warnings)
         render(trajectory, self.output, self.width, self.height, speed=self.speed, camera=self.camera)

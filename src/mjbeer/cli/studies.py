@@ -8,8 +8,7 @@ import tyro
 
 from mjbeer.cli.arguments import CaseName
 from mjbeer.model.setting import Rolling
-from mjbeer.output import terminal
-from mjbeer.output.exclusive import claimed
+from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.cases import DEFAULT
 
@@ -50,8 +49,7 @@ class Report:
         from mjbeer import report
         from mjbeer.studies.validation import tables
 
-        with claimed(self.output), claimed(self.output / "paper"):
-            validation = report.write(self.output, self.quick, STDERR)
+        validation = report.write(self.output, self.quick, STDERR)
         show(tables.validation(validation.results), tables.audit(validation.findings))
         say(f"the report is in {self.output / 'summary.md'}")
         return 0 if validation.passed else _FAILED
@@ -73,7 +71,7 @@ class Benchmark:
         from mjbeer.studies.benchmark import report, tables
         from mjbeer.studies.benchmark import run as benchmark
 
-        with claimed(self.output):
+        with files.locked(self.output):
             study = benchmark.conduct(self.scenes, self.output, self.quick, STDERR)
             report.write(study, self.output)
         show(*tables.tables(study))
@@ -118,7 +116,7 @@ class Stability:
         from mjbeer.studies.stability import report, tables
         from mjbeer.studies.stability import run as stability
 
-        with claimed(self.output):
+        with files.locked(self.output):
             found = stability.conduct(self.output, not self.long, STDERR)
             report.write(found, self.output)
         if self.json:
@@ -144,7 +142,6 @@ class Paper:
         """Run the command and return its exit status, 0."""
         from mjbeer.paper.stories import report
 
-        with claimed(self.output):
-            report.write(self.output, self.films, STDERR)
+        report.write(self.output, self.films, STDERR)
         say(f"the stories are in {self.output / 'stories.md'}")
         return 0

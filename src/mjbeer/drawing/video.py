@@ -3,16 +3,15 @@
 import contextlib
 import os
 import pathlib
+from collections.abc import Callable, Iterable, Iterator
 
 import numpy as np
 from PIL import Image
-from rich.console import Console
-from rich.progress import Progress
 
 from mjbeer import require
 from mjbeer.drawing import encoder, frames
-from mjbeer.exceptions import OutputError, ParameterError
-from mjbeer.output import files
+from mjbeer.exceptions import ParameterError
+from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
 
 
@@ -43,11 +42,19 @@ def render(
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
     times = frame_times(trajectory, fps, speed)
     drawn = frames.draw(trajectory, times, width, height, camera, speed)
-    console = Console(stderr=True)
-    bar = Progress(console=console, transient=True, disable=not (progress and console.is_terminal))
-    with files.whole(target) as temporary, contextlib.closing(drawn), bar:
-        shown = bar.track(drawn, len(times), description=f"drawing {target.name}")
-        encoder.encode(shown, temporary, int(width), int(height), fps)
+    console = terminal.STDERR if progress else None
+    with (
+        files.whole(target) as temporary,
+        contextlib.closing(drawn),
+        terminal.progress_bar(console, len(times)) as begin,
+    ):
+        encoder.encode(_announced(drawn, begin, target.name), temporary, int(width), int(height), fps)
+
+
+def _announced(drawn: Iterable[np.ndarray], begin: Callable[[str], None], name: str) -> Iterator[np.ndarray]:
+    for picture in drawn:
+        begin(f"drawing {name}")
+        yield picture
 
 
 def save_frame(
@@ -103,6 +110,4 @@ def _file(path: str | os.PathLike[str], suffix: str) -> pathlib.Path:
     target = pathlib.Path(path)
     if target.suffix.lower() != suffix:
         raise ParameterError(f"the file's name must end in {suffix}, got {str(path)!r}")
-    if target.is_dir():
-        raise OutputError(f"cannot write {target}: it is a folder")
     return target

@@ -1,38 +1,27 @@
-"""What is said on which stream, where writing may fail; and progress bars."""
+"""What goes to which stream, where writing may fail; and a progress bar."""
 
 import errno
 import os
 import sys
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
-from typing import Any, TextIO
 
-from rich.console import Console, RenderableType
+import rich.console
+from rich.console import RenderableType
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from mjbeer.exceptions import OutputError
 
 
-class Teller(Console):
-    """A console that has nobody reading it be an error like any other, where rich would end the program.
-
-    It is none on standard error, where there is nothing more to say then.
-    """
-
-    def print(self, *objects: Any, **options: Any) -> None:
-        try:
-            super().print(*objects, **options)
-        except OSError:
-            if not self.stderr:
-                raise
-            _forget(sys.stderr)
+class Console(rich.console.Console):
+    """A rich console that raises BrokenPipeError when its reader has gone, instead of exiting."""
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
 
-STDOUT = Teller()
-STDERR = Teller(stderr=True)
+STDOUT = Console()
+STDERR = Console(stderr=True)
 
 
 def show(*tables: RenderableType) -> None:
@@ -46,14 +35,21 @@ def show(*tables: RenderableType) -> None:
 
 
 def say(text: str, style: str = "") -> None:
-    """A line on standard error; names of files may have brackets in them, which are no markup."""
+    """Print a line to standard error; names of files may have brackets in them, which are no markup."""
     STDERR.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
 
 
-def counted(console: Console) -> Progress:
-    """A bar with what is done, how many pieces of it, and since when; nothing where the console is no terminal."""
-    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total}")
-    return Progress(*columns, TimeElapsedColumn(), console=console, disable=not console.is_terminal)
+@contextmanager
+def progress_bar(console: rich.console.Console | None, total: int) -> Generator[Callable[[str], None]]:
+    """Yield a function to call with the name of each of `total` pieces of work when it is begun.
+
+    A bar shows the name, how many have been begun and for how long; nothing where the console is no terminal or None.
+    """
+    columns = TextColumn("{task.description}", markup=False), BarColumn(), TextColumn("{task.completed}/{task.total}")
+    hidden = console is None or not console.is_terminal
+    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True, disable=hidden) as progress:
+        task = progress.add_task("", total=total)
+        yield lambda name: progress.update(task, description=name[:72], advance=1)
 
 
 @contextmanager
@@ -69,7 +65,8 @@ def printing() -> Generator[None]:
         finally:  # --help prints, and ends the program
             sys.stdout.flush()
     except OSError as error:
-        _forget(sys.stdout)
+        # What is left in the buffer would fail once more, with a traceback, when Python ends.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
 
 
@@ -81,19 +78,3 @@ def write(text: str) -> None:
     """
     with printing():
         sys.stdout.write(text)
-
-
-def open_closed() -> None:
-    """Give a program that was started with closed streams ones that say so when written to.
-
-    The next file that is opened would take their place, and get what libraries print.
-    """
-    if sys.stdout is None:
-        sys.stdout = open(os.devnull, encoding="utf-8")  # noqa: SIM115
-    if sys.stderr is None:
-        sys.stderr = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
-
-
-def _forget(stream: TextIO) -> None:
-    """Let nobody have what is left in the buffer: it would fail once more, with a traceback, when Python ends."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())

@@ -6,7 +6,7 @@ import pathlib
 import pytest
 from rich.console import Console
 
-from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.exceptions import ParameterError
 from mjbeer.studies.stability import report, run, tables
 from mjbeer.studies.study import Task
 from tests.support import stubs
@@ -73,12 +73,6 @@ def test_what_is_no_study_is_refused(text: str, tmp_path: pathlib.Path) -> None:
     (tmp_path / "stability.json").write_text(text)
     with pytest.raises(ParameterError, match=r"stability\.json was not written by `mjbeer stability`"):
         run.conduct(tmp_path, True, QUIET)
-
-
-def test_a_folder_that_is_a_file_is_an_output_error(counted: list[str], tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match="cannot write"):
-        run.conduct(tmp_path / "file", True, QUIET)
 
 
 @pytest.mark.parametrize(

@@ -3,9 +3,9 @@
 import pathlib
 
 from rich.console import Console
-from rich.progress import Progress
 
 from mjbeer.output import files
+from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.stories import frozen, hopping, massive_can, sliding
 from mjbeer.paper.stories.story import Story
 
@@ -30,18 +30,16 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> None:
     """
     from mjbeer.drawing.video import render
 
-    files.remove(folder / "stories.md")
     told = stories()
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("drawing", total=len(told))
+    with files.whole(folder / "stories.md") as summary, progress_bar(console, len(told)) as begin:
+        (folder / "stories.md").unlink(missing_ok=True)
         for story in told:
-            progress.update(task, description=story.name)
+            begin(story.name)
             story.draw(folder / story.name)
             if films and story.film is not None:
                 file = folder / f"{story.name}.mp4"
                 render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
-            progress.advance(task)
-    files.write(folder / "stories.md", _summary(told, films))
+        summary.write_text(_summary(told, films), encoding="utf-8")
 
 
 def _summary(told: list[Story], films: bool) -> str:

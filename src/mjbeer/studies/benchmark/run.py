@@ -8,8 +8,7 @@ from rich.console import Console
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError
-from mjbeer.output import files
-from mjbeer.output.terminal import counted
+from mjbeer.output.terminal import progress_bar
 from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
 from mjbeer.studies.benchmark.curves import TIMESTEP, Curve, aligned
@@ -39,28 +38,26 @@ def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Co
     cases = [CASES[require.choice("scene", name, CASES)] for name in names]
     path = folder / "study.json"
     found = Benchmark.begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
-    files.remove(folder / "summary.md")  # it would be that of another study
+    (folder / "summary.md").unlink(missing_ok=True)  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
-    with counted(console) as progress:
-        rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in found.points]
-        ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
-        task = progress.add_task("errors", total=len(ladders))
-        known = {(each.case, each.curve) for each in found.points}
+    rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in found.points]
+    ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
+    known = {(point.case, point.curve) for point in found.points}
+    with progress_bar(console, len(ladders) + REPEATS * len(cases) + 1) as begin:
         for case, curve, values in ladders:
-            progress.update(task, description=f"errors: {case.name}, {curve.label}", advance=1)
+            begin(f"errors: {case.name}, {curve.label}")
             if (case.name, curve) not in known:
                 climbed = list(_climb(case, curve, values, peers.get(curve.way)))
                 rungs += climbed
                 found.points += [rung.point for rung in climbed]
                 found.save(path)
-        task = progress.add_task("run times", total=REPEATS * len(cases))
         for repeat in range(REPEATS):
             for case in cases:
-                progress.update(task, description=f"run times: {case.name}, round {repeat + 1}", advance=1)
+                begin(f"run times: {case.name}, round {repeat + 1}")
                 if _time([rung for rung in rungs if rung.case == case], repeat + 1):
                     found.save(path)
+        begin("what each stage of a step costs")
         if not found.ablation:
-            progress.update(task, description="what each stage of a step costs")
             found.ablation = ablate()
             found.save(path)
     return found

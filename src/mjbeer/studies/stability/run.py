@@ -6,8 +6,7 @@ from typing import Any
 
 from rich.console import Console
 
-from mjbeer.output import files
-from mjbeer.output.terminal import counted
+from mjbeer.output.terminal import progress_bar
 from mjbeer.studies.stability import endurance, laws, limits, maps, search
 from mjbeer.studies.stability.catalogue import cases
 from mjbeer.studies.study import Study, Task
@@ -60,15 +59,13 @@ def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
     """
     path = folder / "stability.json"
     found = Stability.begin(path, {"quick": quick}, console)
-    files.remove(folder / "summary.md")
+    (folder / "summary.md").unlink(missing_ok=True)
     todo = tasks(quick)
-    with counted(console) as progress:
-        bar = progress.add_task("stability", total=len(todo))
+    with progress_bar(console, len(todo)) as begin:
         for task in todo:
-            progress.update(bar, description=f"{task.group}: {task.name}"[:72])
+            begin(f"{task.group}: {task.name}")
             group = found.results.setdefault(task.group, {})
             if task.name not in group:
                 group[task.name] = task.measure()
                 found.save(path)
-            progress.advance(bar)
     return found

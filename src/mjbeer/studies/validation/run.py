@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from rich.console import Console
-from rich.progress import Progress
 
+from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import Finding
 from mjbeer.studies.check import Result
@@ -30,14 +30,11 @@ def validate(console: Console) -> Validation:
     """Measure every check and every claim, with a progress bar on `console`, and return the results."""
     checks, claims = motions.checks(), chapters.claims()
     results, findings = [], []
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("validating", total=len(checks) + len(claims))
+    with progress_bar(console, len(checks) + len(claims)) as begin:
         for check in checks:
-            progress.update(task, description=f"{check.quantity} ({check.by})")
+            begin(f"{check.quantity} ({check.by})")
             results.append(check.measure())
-            progress.advance(task)
         for claim in claims:
-            progress.update(task, description=f"{claim.equation} {claim.quantity}")
+            begin(f"{claim.equation} {claim.quantity}")
             findings.append(claim.measure())
-            progress.advance(task)
     return Validation(results, findings)
