@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer import Can, Scene, build, frozen, hoop, pendulum, render, simulate, sliding
 from mjbeer.cli.app import main, parse
-from mjbeer.cli.arguments import Common, Frozen, Hoop, Integrator, Pendulum, Rolling, Run, Sliding, radians
+from mjbeer.cli.arguments import Common, Frozen, Hoop, Integrator, Motion, Pendulum, Rolling, Sliding, radians
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
@@ -74,7 +74,7 @@ def test_a_scene_is_that_of_python(said: Sliding | Frozen | Pendulum | Hoop, mea
 
 def test_the_defaults_are_those_of_python() -> None:
     for said, meant in (
-        (Run(Sliding()), simulate),
+        (Motion(Sliding()), simulate),
         (Export(Sliding(), pathlib.Path("model.xml")), build),
         (Export(Sliding(), pathlib.Path("model.xml")), export),
         (Render(Sliding()), render),
@@ -120,7 +120,7 @@ def test_angles_are_degrees() -> None:
 
 
 def test_a_run_has_its_angles_in_degrees() -> None:
-    run = Run(Frozen(), phi0=30, phi_dot0=90, duration=0.01).simulate()
+    run = Motion(Frozen(), phi0=30, phi_dot0=90, duration=0.01).simulate()
     same = simulate(frozen(), 0.01, math.radians(30), math.radians(90))
     assert (run.phi == same.phi).all()
     assert run.phi_dot[0] == math.pi / 2
@@ -135,8 +135,8 @@ def test_an_incline_is_refused_in_degrees(incline: float) -> None:
 
 def test_an_angle_that_is_none_is_refused_in_degrees() -> None:
     for run, message in (
-        (Run(Frozen(), phi0=math.nan), "phi0 must be a finite number [degrees], got nan"),
-        (Run(Frozen(), phi_dot0=math.inf), "phi_dot0 must be a finite number [degrees/s], got inf"),
+        (Motion(Frozen(), phi0=math.nan), "phi0 must be a finite number [degrees], got nan"),
+        (Motion(Frozen(), phi_dot0=math.inf), "phi_dot0 must be a finite number [degrees/s], got inf"),
     ):
         with pytest.raises(ParameterError) as caught:
             run.simulate()

@@ -67,7 +67,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
     monkeypatch.setattr("mjbeer.output.files.os.access", lambda path, _: bool(os.stat(path).st_mode & stat.S_IWUSR))
     suffix = {"simulate": ".csv", "export": ".xml", "render": ".mp4"}[words[0]]
     if words[0] == "simulate":
-        monkeypatch.setattr("mjbeer.cli.arguments.Run.simulate", lambda _: pytest.fail("it was simulated"))
+        monkeypatch.setattr("mjbeer.cli.arguments.Motion.simulate", lambda _: pytest.fail("it was simulated"))
     monkeypatch.setattr("mjbeer.drawing.encoder.encode", lambda *_: pytest.fail("it was drawn"))
     (tmp_path / f"folder{suffix}").mkdir()
     (tmp_path / f"file{suffix}").touch(mode=0o444)
@@ -84,7 +84,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
 def test_a_folder_that_cannot_be_made_is_known_before_the_work(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for work in ("report.check", "studies.benchmark.run.run", "studies.stability.run.run"):
+    for work in ("report.validate", "studies.benchmark.run.conduct", "studies.stability.run.conduct"):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     (tmp_path / "file").touch()
     assert main([command, "--output", str(tmp_path / "file" / "new")]) == 2

@@ -6,6 +6,7 @@ import signal
 
 import pytest
 
+from mjbeer.studies.benchmark.points import Benchmark
 from tests.support.processes import SHORT, interrupt, start
 
 pytestmark = pytest.mark.slow

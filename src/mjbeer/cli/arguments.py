@@ -126,7 +126,7 @@ AnyScene = (
 
 
 @dataclass(frozen=True)
-class Run:
+class Motion:
     """How a scene is started and simulated."""
 
     scene: AnyScene

@@ -3,14 +3,14 @@
 import pathlib
 from dataclasses import dataclass
 
-from mjbeer.cli.arguments import AnyScene, Run, radians
+from mjbeer.cli.arguments import AnyScene, Motion, radians
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 
 
 @dataclass(frozen=True)
-class Simulate(Run):
+class Simulate(Motion):
     """Simulate a scene; show what the run says about itself, and write the motion as CSV."""
 
     output: pathlib.Path | None = None
@@ -38,7 +38,7 @@ class Simulate(Run):
 
 
 @dataclass(frozen=True)
-class Render(Run):
+class Render(Motion):
     """Simulate a scene and draw it as a video (MP4)."""
 
     output: pathlib.Path = pathlib.Path("mjbeer.mp4")
