@@ -86,6 +86,7 @@ def test_masses_do_not_matter() -> None:
     assert np.array_equal(light.body_mass, heavy.body_mass)
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(st.floats(-80, 80), st.floats(-50, 0), st.floats(0, 50), st.sampled_from([(160, 90), (90, 160), (400, 100)]))
 def test_the_overview_shows_the_whole_way(incline: float, low: float, high: float, size: tuple[int, int]) -> None:

@@ -30,6 +30,7 @@ def forward(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> 
     return float(moved.u_dot[0]), float(moved.phi_dot[0])
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-3, 3), st.floats(-5, 5))
 def test_reduced_accelerates_as_theory_says(scene: Scene, phi: float, swing: float) -> None:

@@ -18,6 +18,8 @@ from mjbeer.model import appearance, state, templates
 from mjbeer.model.export import export
 from tests.support.scenes import METAL
 
+pytestmark = pytest.mark.slow
+
 SCENES = {"sliding": sliding(can=METAL), "frozen": frozen(can=METAL), "pendulum": pendulum(), "hoop": hoop()}
 ROLLINGS = ("reduced", "equality", "contact")
 START, STEPS, TIMESTEP = (0.7, 3.0), 10, 1e-3

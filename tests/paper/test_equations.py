@@ -209,6 +209,7 @@ def test_squares_25() -> None:
     assert sp.simplify(printed) != 0
 
 
+@pytest.mark.slow
 def test_fast_loops() -> None:
     """Eqs. (26)-(29) to first order in delta: J phi_dot^2/2 = E, then with a little potential.
 

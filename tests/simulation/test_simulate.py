@@ -128,6 +128,7 @@ def test_slip_of_a_sliding_contact_is_coulomb_s() -> None:
     assert np.abs(below.slip).max() > 1e-2 * scene.can.radius
 
 
+@pytest.mark.slow
 def test_rolls_until_is_where_theory_says() -> None:
     run = simulate(frozen(), 1, math.pi, tolerance=1e-9)
     truth = exact(frozen(), np.linspace(0, 1, 100_001), math.pi)
