@@ -10,7 +10,8 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CORRECTED, LIMIT
-from mjbeer.studies.benchmark import advice, tables
+from mjbeer.paper.stories import letters
+from mjbeer.studies.benchmark import advice, overview, tables
 from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.validation import motions
 from tests.support import stubs
@@ -118,14 +119,24 @@ def test_links_and_paths_lead_somewhere() -> None:
         assert not [named for named in paths if not (CHECKOUT / named).exists()], path
 
 
-def test_run_times_of_the_readme_are_those_of_the_study_that_comes_with_mjbeer() -> None:
-    stored, text = Benchmark.load(advice.SHIPPED), README.read_text()
+def test_run_times_are_those_of_the_study_that_comes_with_mjbeer() -> None:
+    stored, text = Benchmark.load(advice.SHIPPED), (CHECKOUT / "docs" / "benchmark.md").read_text()
     for table in (tables.cheapest(stored, "frozen"), tables.others(stored), tables.usual(stored)):
         assert table.markdown(title=False).strip() in text, table.title
 
 
-def test_the_table_of_the_readme_is_that_of_the_program() -> None:
-    text = README.read_text()
+def test_the_small_diagram_is_drawn_from_the_study_that_comes_with_mjbeer(tmp_path: pathlib.Path) -> None:
+    overview.draw(Benchmark.load(advice.SHIPPED), tmp_path / "overview")
+    assert (tmp_path / "overview.svg").read_bytes() == (CHECKOUT / "renders" / "overview.svg").read_bytes()
+
+
+def test_the_sketch_is_drawn_by_the_program(tmp_path: pathlib.Path) -> None:
+    letters.draw(tmp_path / "letters")
+    assert (tmp_path / "letters.svg").read_bytes() == (CHECKOUT / "docs" / "figures" / "letters.svg").read_bytes()
+
+
+def test_the_table_of_the_validation_is_that_of_the_program() -> None:
+    text = (CHECKOUT / "docs" / "validation.md").read_text()
     _, start, after = text.partition(
         "| check | by | error | at most | what dominates the error |\n|---|---|---:|---:|---|\n"
     )

@@ -77,7 +77,10 @@ def test_a_report_has_the_table_and_four_scenes(
     out, err = capsys.readouterr()
     assert "second" in out
     assert err.endswith(f"the report is in {folder / 'summary.md'}\n")
-    assert set(os.listdir(folder / "paper")) == {"stories.md", "told.svg", *([] if quick else ["told.mp4"])}
+    assert set(os.listdir(folder / "paper")) == {
+        *("letters.svg", "letters.png", "stories.md", "told.svg"),
+        *([] if quick else ["told.mp4"]),
+    }
     gallery = [call for call in calls if call["path"].parent == folder]
     assert len(gallery) == 8
     assert {call["width"] for call in gallery if call["function"] == "render"} == {640 if quick else 1280}

@@ -43,7 +43,7 @@ def test_a_full_disk_ends_the_stories_at_the_first_plot(tmp_path: pathlib.Path) 
     folder.mkdir()
     (folder / "stories.md").write_text("old")
     status, _, err = run(["paper", "--output", str(folder)], preexec_fn=little_disk)
-    assert (status, err) == (2, f"mjbeer: cannot write {folder / 'trivial.svg'}: File too large\n")
+    assert (status, err) == (2, f"mjbeer: cannot write {folder / 'letters.svg'}: File too large\n")
     assert not os.listdir(folder)  # nor a summary of plots that are not there
 
 

@@ -18,6 +18,7 @@ from tests.support import stubs
 
 pytestmark = pytest.mark.slow
 
+SKETCH = ("letters.svg", "letters.png")
 STORIES = {story.name: story for story in report.stories()}
 CHECKOUT = pathlib.Path(__file__).parents[2]
 
@@ -44,7 +45,7 @@ def test_a_story_has_a_plot_with_named_axes(name: str, tmp_path: pathlib.Path, m
 
 def test_the_figures_of_the_documents_are_those_of_the_stories() -> None:
     kept = {each.stem for each in (CHECKOUT / "docs" / "figures").glob("*.svg")}
-    assert {each for each in kept if not each.startswith("stability-")} == set(STORIES)
+    assert {each for each in kept if not each.startswith("stability-")} == {*STORIES, "letters"}
     assert max(each.stat().st_size for each in (CHECKOUT / "docs" / "figures").iterdir()) < 200_000
 
 
@@ -82,11 +83,11 @@ def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, ca
     calls = stubs.draw(monkeypatch)
     folder = tmp_path / "new" / "stories"
     assert main(["paper", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {"told.svg", "stories.md"}
+    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "stories.md"}
     assert not calls
     assert "[Film]" not in (folder / "stories.md").read_text()
     assert main(["paper", "--films", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {"told.svg", "told.mp4", "stories.md"}
+    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "told.mp4", "stories.md"}
     text = (folder / "stories.md").read_text()
     assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story.", "[Film](told.mp4)"))
     assert capsys.readouterr().err.endswith(f"the stories are in {folder / 'stories.md'}\n")
@@ -99,7 +100,7 @@ def test_a_film_that_fails_leaves_no_summary(
     (tmp_path / "stories.md").write_text("of an earlier run")
     assert main(["paper", "--films", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: cannot draw told.mp4\n")
-    assert set(os.listdir(tmp_path)) == {"told.svg"}
+    assert set(os.listdir(tmp_path)) == {*SKETCH, "told.svg"}
 
 
 def test_a_folder_that_cannot_be_written_to(

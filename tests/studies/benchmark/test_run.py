@@ -21,6 +21,7 @@ from mjbeer.studies.cases import CASES, INTERVAL
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow
+OVERVIEW = ("overview.svg", "overview.png")
 
 # Next orders of rungs that are not all small: the issue of every convergence test.
 ORDER_MARGIN = 0.2
@@ -212,7 +213,15 @@ def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:
 def test_the_command_writes_everything(short: None, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
     names = {each.name for each in (tmp_path / "new").iterdir()}
-    assert names == {"study.json", "points.csv", "work_precision.svg", "work_precision.png", "summary.md", ".lock"}
+    assert names == {
+        "study.json",
+        "points.csv",
+        "work_precision.svg",
+        "work_precision.png",
+        *OVERVIEW,
+        "summary.md",
+        ".lock",
+    }
     summary = (tmp_path / "new" / "summary.md").read_text()
     for text in ("frozen: cheapest setting for an error", "SciPy odeint", "share of the force", "as usually written"):
         assert text in summary

@@ -6,7 +6,7 @@ from rich.console import Console
 
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
-from mjbeer.paper.stories import frozen, hopping, massive_can, sliding
+from mjbeer.paper.stories import frozen, hopping, letters, massive_can, sliding
 from mjbeer.paper.stories.story import Story
 
 _CHAPTERS = (sliding, massive_can, frozen, hopping)
@@ -20,7 +20,7 @@ def stories() -> list[Story]:
 
 
 def write(folder: pathlib.Path, films: bool, console: Console) -> None:
-    """Write a plot of each story (SVG and PNG), its film if asked for (MP4), and stories.md into a folder.
+    """Write a sketch of the letters, a plot of each story (SVG and PNG), its film if asked for (MP4), and stories.md.
 
     Every file appears whole or not at all; stories.md comes last, and that of an earlier run goes first.
 
@@ -33,6 +33,7 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> None:
     told = stories()
     with files.whole(folder / "stories.md") as summary, progress_bar(console, len(told)) as begin:
         (folder / "stories.md").unlink(missing_ok=True)
+        letters.draw(folder / "letters")
         for story in told:
             begin(story.name)
             story.draw(folder / story.name)
@@ -43,7 +44,7 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> None:
 
 
 def _summary(told: list[Story], films: bool) -> str:
-    lines = ["# The paper's stories", ""]
+    lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
     for story in told:
         picture = f"![{story.name}]({story.name}.svg)"
         filmed = films and story.film is not None

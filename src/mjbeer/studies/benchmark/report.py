@@ -3,7 +3,7 @@
 import pathlib
 
 from mjbeer.output import files
-from mjbeer.studies.benchmark import plots, predicted, tables
+from mjbeer.studies.benchmark import overview, plots, predicted, tables
 from mjbeer.studies.benchmark.points import Benchmark
 
 _READ = """
@@ -15,13 +15,14 @@ integrator` the distance of the run from that.
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
-    """Write points.csv, work_precision.svg and .png, and last summary.md.
+    """Write points.csv, the diagrams work_precision and overview (.svg and .png), and last summary.md.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     files.write(folder / "points.csv", study.csv())
     plots.draw(study, folder / "work_precision")
+    overview.draw(study, folder / "overview")
     results = [*tables.tables(study), predicted.table()]
     versions = ", ".join(f"{name} {number}" for name, number in study.machine["versions"].items())
     lines = [
