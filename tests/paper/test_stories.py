@@ -13,7 +13,7 @@ from mjbeer.cli.app import main
 from mjbeer.output import plots
 from mjbeer.paper.scenarios import footnote_scene
 from mjbeer.paper.stories import report
-from mjbeer.paper.stories.frozen import _held, _printed
+from mjbeer.paper.stories.frozen import _contact_at_equilibrium, _footnote_8_as_printed
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow
@@ -67,7 +67,7 @@ def test_films_show_what_they_say(name: str) -> None:
 
 
 def test_footnote_7_holds_just_above_and_slides_just_below() -> None:
-    above, below = _held(1.02), _held(0.98)
+    above, below = _contact_at_equilibrium(1.02), _contact_at_equilibrium(0.98)
     radius = above.scene.can.radius
     assert np.abs(above.u - above.u[0]).max() < 1e-5 * radius
     assert abs(below.u[-1] - below.u[0]) > 0.1 * radius
@@ -76,7 +76,7 @@ def test_footnote_7_holds_just_above_and_slides_just_below() -> None:
 def test_footnote_8_as_printed_is_another_motion() -> None:
     times = np.linspace(0, 3, 301)
     truth = exact(footnote_scene(), times, 0.0).phi
-    assert np.abs(_printed(times, 0.0) - truth).max() > math.radians(4)
+    assert np.abs(_footnote_8_as_printed(times, 0.0) - truth).max() > math.radians(4)
 
 
 def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:

@@ -1,1 +1,1 @@
-"""McDonald's paper; it imports all but `studies`, `report` and `cli`."""
+"""K. T. McDonald's paper on a can of beer: its equations, an audit of them, and its scenarios as plots and films."""

@@ -1,4 +1,4 @@
-"""The letters of the paper: what its equations are written in."""
+"""The letters in which the paper's equations are written: constants of a scene, and quantities of a motion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Terms = tuple[Any, ...]
 
 @dataclass(frozen=True)
 class Letters:
-    """Constants of a scene. They are numbers, or symbols where an equation is derived."""
+    """Constants of a scene: numbers, or symbols where an equation is derived."""
 
     a: Any
     """Radius of the can [m]."""
@@ -26,23 +26,31 @@ class Letters:
     inertia: Any
     """Moment of inertia I_cm of the load about its centre of mass [kg m^2]."""
     can_mass: Any
-    """Mass m_can [kg], M of appendix B."""
+    """Mass m_can of the can [kg]; M in appendix B."""
     can_inertia: Any
-    """Moment of inertia I_can about the axis [kg m^2]."""
+    """Moment of inertia I_can of the can about its axis [kg m^2]."""
     g: Any
     """Acceleration of gravity [m/s^2]."""
     sin_alpha: Any
     cos_alpha: Any
-    """Of the incline."""
+    """Sine and cosine of the incline's angle."""
 
     @classmethod
     def of(cls, scene: Scene, **motion: Any) -> Self:
-        """Return the letters of a scene; with the fields of `Quantities` beyond those, of a motion."""
+        """Return the letters of a scene; `Quantities.of` takes the fields of the motion as keyword arguments."""
         can, load = scene.can, scene.load
         return cls(
-            a=can.radius, b=load.offset, m=load.mass, inertia=load.inertia, can_mass=can.mass, can_inertia=can.inertia,
-            g=scene.gravity, sin_alpha=math.sin(scene.incline), cos_alpha=math.cos(scene.incline), **motion,
-        )  # fmt: skip
+            a=can.radius,
+            b=load.offset,
+            m=load.mass,
+            inertia=load.inertia,
+            can_mass=can.mass,
+            can_inertia=can.inertia,
+            g=scene.gravity,
+            sin_alpha=math.sin(scene.incline),
+            cos_alpha=math.cos(scene.incline),
+            **motion,
+        )
 
     @property
     def axial(self) -> Any:
@@ -51,7 +59,7 @@ class Letters:
 
     @property
     def rolling(self) -> Any:
-        """m_can + I_can/a^2 [kg], what the can's rolling weighs."""
+        """Effective mass m_can + I_can/a^2 [kg] of the rolling can: half of it times u_dot^2 is the kinetic energy."""
         return self.can_mass + self.can_inertia / self.a**2
 
     @property
@@ -62,7 +70,7 @@ class Letters:
 
 @dataclass(frozen=True)
 class Quantities(Letters):
-    """A motion, one entry a sample: coordinates of Fig. 3, their rates and accelerations."""
+    """Letters and a motion in the coordinates of Fig. 3: each field has one entry a sample, in SI units."""
 
     s: Any
     s_dot: Any
@@ -73,7 +81,7 @@ class Quantities(Letters):
     phi: Any
     phi_dot: Any
     phi_ddot: Any
-    """Those of theta = alpha + phi as well."""
+    """Acceleration of phi [rad/s^2]. Rate and acceleration of theta = alpha + phi are those of phi."""
     sin_phi: Any
     cos_phi: Any
     sin_theta: Any

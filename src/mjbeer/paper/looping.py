@@ -1,4 +1,4 @@
-"""Ripples of a motion at its frequency and the multiples of that, measured on simulated motions."""
+"""Ripples of a load that loops: amplitudes at the mean rate of turning and at its multiples, from simulated motions."""
 
 import math
 from dataclasses import dataclass
@@ -10,11 +10,12 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
 
 _SAMPLES = 256
+"""Samples of one turn; ripples up to the 128th multiple of the rate can be measured."""
 
 
 @dataclass(frozen=True)
 class Looping:
-    """A load that loops, over one turn."""
+    """The ripples of a load that loops, over one turn."""
 
     rate: float
     """Mean rate Omega of phi [rad/s]."""
@@ -25,7 +26,7 @@ class Looping:
 
 
 def loop(scene: Scene, phi_dot0: float) -> Looping:
-    """Simulate a turn from phi = 0 at `phi_dot0` [rad/s], which must be enough for one."""
+    """Simulate one turn from phi = 0 and return its ripples; `phi_dot0` [rad/s] must be enough for a turn."""
     turn = 2 * math.pi / phi_dot0
     for _ in range(8):  # Newton's method for the time of a turn
         end = simulate(scene, turn, 0.0, phi_dot0, integrator=DOP853, timestep=turn / 64, times=np.array([0, turn]))
@@ -38,10 +39,10 @@ def loop(scene: Scene, phi_dot0: float) -> Looping:
 
 
 def sines(values: np.ndarray) -> np.ndarray:
-    """Amplitudes of sin(2 pi k x) of values at equal spacing over one period."""
+    """Return the amplitudes of sin(2 pi k x), at index k, in values that are evenly spaced over one period of x."""
     return -np.fft.rfft(values).imag * 2 / len(values)
 
 
 def cosines(values: np.ndarray) -> np.ndarray:
-    """Amplitudes of cos(2 pi k x)."""
+    """Return the amplitudes of cos(2 pi k x), as `sines` does; the one at k = 0 is twice the mean."""
     return np.fft.rfft(values).real * 2 / len(values)

@@ -1,1 +1,1 @@
-"""Each claim of the paper, with MuJoCo as the witness, a file a chapter; it imports the equations."""
+"""The audit compares each claim of the paper with a witness, mostly MuJoCo: one file a chapter of the paper."""

@@ -1,6 +1,6 @@
-"""The audit of K. T. McDonald's paper, equation by equation."""
+"""All claims of K. T. McDonald's paper that the audit measures, equation by equation."""
 
-from mjbeer.paper.audit import frozen, hopping, massive_can, oscillation, pendulum, segment, sliding
+from mjbeer.paper.audit import frozen, hopping, massive_can, oscillation, pendulum, roll_down, segment, sliding
 from mjbeer.paper.audit.claim import Claim
 
 _CHAPTERS = (
@@ -9,11 +9,12 @@ _CHAPTERS = (
     segment,
     massive_can,
     frozen,
+    roll_down,
     hopping,
     pendulum,
 )
 
 
 def claims() -> list[Claim]:
-    """All rows of the audit, in its order: by section of the paper, one row a claim."""
+    """Return all claims of the audit in the order of the paper's sections; each becomes a row of the audit's table."""
     return [claim for chapter in _CHAPTERS for claim in chapter.claims()]

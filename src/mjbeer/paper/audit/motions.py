@@ -1,4 +1,4 @@
-"""The motions that MuJoCo is asked about by more than one row of the audit, each simulated once."""
+"""The motions that several claims of the audit share, each simulated once, and the errors that they have."""
 
 import math
 from functools import cache
@@ -12,51 +12,52 @@ from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 LARGE, MODERATE, SMALL = 2.0, 1.0, 1e-3
-"""Amplitudes [rad]: one at which every term of an equation counts, one that is clearly not small, and a small one."""
+"""Amplitudes [rad]: at the first every term of an equation matters, the second is clearly not small, the third is."""
 REDUCED = "MuJoCo, reduced"
 EQUALITY = "MuJoCo, equality"
 CONTACT = "MuJoCo, contact"
 THEORY = "exact theory"
 EXACT, ROUNDING = 1e-12, "rounding of MuJoCo's forward dynamics"
 HELD, DRIFT = 2e-8, "what MuJoCo's joint equality takes back of its drift"
+"""Bounds of the errors that MuJoCo has in the reduced model, and where a constraint makes the can roll; the reasons."""
 
 
 @cache
 def swing(amplitude: float = LARGE, incline: float = math.radians(10)) -> Witness:
-    """Beer that slides in a massless can."""
+    """Return a second of beer that slides in a massless can, let go at an amplitude on an incline [rad]."""
     return watch(sliding(incline), "reduced", 1.0, amplitude)
 
 
 @cache
 def metal() -> Witness:
-    """Beer that slides in the 12-oz can."""
+    """Return a second of beer that slides in the 12-oz can of sheet metal, let go at 2 rad."""
     return watch(sliding(can=Can.sheet_metal()), "equality", 1.0, LARGE)
 
 
 @cache
 def wheel() -> Witness:
-    """A pendulum in a wheel."""
+    """Return a second of a pendulum in a wheel, let go at 2 rad."""
     return watch(pendulum(), "equality", 1.0, LARGE)
 
 
 @cache
 def rolling_down() -> Witness:
-    """Beer frozen to its can, from the top."""
+    """Return the first 0.8 s of a can with frozen beer that rolls down, let go with the beer on top."""
     return watch(frozen(), "equality", 0.8, math.pi)
 
 
 @cache
 def footnote() -> Witness:
-    """The roll-down of A.3 with the paper's numbers."""
+    """Return the same roll-down with the numbers of the paper's section A.3."""
     return watch(footnote_scene(), "equality", 0.8, math.pi)
 
 
 @cache
-def swung(scene: Scene, phi0: float, duration: float = 4.0, rolling: str = "reduced") -> Trajectory:
-    """A swing that is measured, in 4000 steps."""
+def long_swing(scene: Scene, phi0: float, duration: float = 4.0, rolling: str = "reduced") -> Trajectory:
+    """Return a swing, simulated in 4000 steps, whose frequency is to be measured."""
     return simulate(scene, duration, phi0, rolling=rolling, integrator=DOP853, timestep=duration / 4000)
 
 
-def still(scene: Scene, rolling: str) -> Witness:
-    """One second from the equilibrium."""
+def equilibrium_motion(scene: Scene, rolling: str) -> Witness:
+    """Return a second that starts at the equilibrium; a balanced load starts at phi = 0."""
     return watch(scene, rolling, 1.0, scene.equilibrium() if scene.load.offset else 0.0)

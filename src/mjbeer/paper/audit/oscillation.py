@@ -1,4 +1,4 @@
-"""Rows of the audit: small oscillations and loops in section 2, equations (6), (10) and (24)-(29)."""
+"""Claims of section 2 about small oscillations and loops, equations (6), (10) and (24)-(29)."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer.model.setting import DOP853
 from mjbeer.paper.audit.claim import Claim, confirmed, corrected, limit
-from mjbeer.paper.audit.motions import LARGE, MODERATE, REDUCED, SMALL, swing, swung
+from mjbeer.paper.audit.motions import LARGE, MODERATE, REDUCED, SMALL, long_swing, swing
 from mjbeer.paper.audit.witness import watch
 from mjbeer.paper.equations import sliding as equations
 from mjbeer.paper.letters import Letters, Terms
@@ -18,15 +18,15 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene, sliding
 
 FAST = 350.0
-"""phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times what it takes."""
+"""phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop."""
 SLOW = 45.0
-"""One that just loops: 39.4 rad/s is the least, and from 47.4 rad/s on the incline would have to pull."""
+"""The same of a load that just loops. It takes 39.4 rad/s to loop; above 47.4 rad/s the can would leave the incline."""
 _HESITATION = 0.01
-"""Amplitude [rad] of the swing whose hesitation is measured."""
+"""Amplitude [rad] of the swing in which the can's hesitation is measured."""
 
 
 def claims() -> Iterator[Claim]:
-    """The rows."""
+    """Yield the claims of this chapter."""
     yield from _frequency()
     yield from _hesitation()
     yield from _looping()
@@ -36,21 +36,33 @@ def _frequency() -> Iterator[Claim]:
     beer = sliding()
     c = Letters.of(beer)
     yield limit(
-        "(6), (24)", "omega of small oscillations: beyond, a swing of 1 rad; within, of 1e-3 rad", REDUCED,
-        lambda: (math.sqrt(equations.eq_6(c)), -swung(beer, MODERATE).frequency()),
-        lambda: (math.sqrt(equations.eq_24(c)), -swung(beer, SMALL).frequency()), 0.15, 3e-7, "the amplitude: 2e-7",
-    )  # fmt: skip
+        "(6), (24)",
+        "omega of small oscillations: beyond, a swing of 1 rad; within, of 1e-3 rad",
+        witness=REDUCED,
+        beyond=lambda: (math.sqrt(equations.eq_6(c)), -long_swing(beer, MODERATE).frequency()),
+        within=lambda: (math.sqrt(equations.eq_24(c)), -long_swing(beer, SMALL).frequency()),
+        misses_by=0.15,
+        bound=3e-7,
+        reason="the amplitude: 2e-7",
+    )
     yield corrected(
-        "(10)", "omega^2, middle form: it lacks 1/a (in SI units)", REDUCED,
-        lambda: (equations.printed_10(c, math.pi), -(swung(beer, SMALL).frequency() ** 2)),
-        lambda: (equations.eq_10(c, math.pi), -(swung(beer, SMALL).frequency() ** 2)), 0.967, 6e-7,
-        "the amplitude: 4e-7",
-    )  # fmt: skip
+        "(10)",
+        "omega^2, middle form: it lacks 1/a (in SI units)",
+        witness=REDUCED,
+        printed=lambda: (equations.printed_10(c, math.pi), -(long_swing(beer, SMALL).frequency() ** 2)),
+        right=lambda: (equations.eq_10(c, math.pi), -(long_swing(beer, SMALL).frequency() ** 2)),
+        misses_by=0.967,
+        bound=6e-7,
+        reason="the amplitude: 4e-7",
+    )
     yield confirmed(
-        "(10)", "omega^2 = 1.33 g cos(alpha)/a", REDUCED,
-        lambda: (1.33 * c.g * c.cos_alpha / c.a, -(swung(beer, SMALL).frequency() ** 2)), 3.8e-3,
-        "half a unit of the last digit",
-    )  # fmt: skip
+        "(10)",
+        "omega^2 = 1.33 g cos(alpha)/a",
+        witness=REDUCED,
+        terms=lambda: (1.33 * c.g * c.cos_alpha / c.a, -(long_swing(beer, SMALL).frequency() ** 2)),
+        bound=3.8e-3,
+        reason="half a unit of the last digit",
+    )
 
 
 def _hesitation() -> Iterator[Claim]:
@@ -58,125 +70,188 @@ def _hesitation() -> Iterator[Claim]:
     yield corrected(
         "(25)",
         "u - s = b sin(phi), eq. (12); printed b cos(phi)",
-        REDUCED,
-        lambda: equations.printed_25(swing(0.1).quantities),
-        lambda: equations.ripple_25(swing(0.1).quantities),
-        1.10,
-        1e-12,
-        "rounding",
+        witness=REDUCED,
+        printed=lambda: equations.printed_25(swing(0.1).quantities),
+        right=lambda: equations.ripple_25(swing(0.1).quantities),
+        misses_by=1.10,
+        bound=1e-12,
+        reason="rounding",
     )
     yield corrected(
-        "(25)", "amplitude of the ripple of u at omega: b phi_0; printed none", REDUCED,
-        lambda: (_ripple(sliding())[1], 0.0), lambda: (_ripple(sliding())[1], -sliding().load.offset * phi0), 1.0,
-        2e-5, "the amplitude: phi_0^2/8 = 1.2e-5, and phi is not quite a cosine",
-    )  # fmt: skip
+        "(25)",
+        "amplitude of the ripple of u at omega: b phi_0; printed none",
+        witness=REDUCED,
+        printed=lambda: (_ripple(sliding())[1], 0.0),
+        right=lambda: (_ripple(sliding())[1], -sliding().load.offset * phi0),
+        misses_by=1.0,
+        bound=2e-5,
+        reason="the amplitude: phi_0^2/8 = 1.2e-5, and phi is not quite a cosine",
+    )
     yield corrected(
-        "(25)", "amplitude of the ripple of u at 2 omega over that at omega: none; printed phi_0/2", REDUCED,
-        lambda: _doubled(phi0**2 / 2), lambda: _doubled(0.0), phi0 / 2, 1e-9,
-        "rounding: sin(phi) swings alike to both sides",
-    )  # fmt: skip
+        "(25)",
+        "amplitude of the ripple of u at 2 omega over that at omega: none; printed phi_0/2",
+        witness=REDUCED,
+        printed=lambda: _ripple_at_twice(phi0**2 / 2),
+        right=lambda: _ripple_at_twice(0.0),
+        misses_by=phi0 / 2,
+        bound=1e-9,
+        reason="rounding: sin(phi) swings alike to both sides",
+    )
     phase = np.linspace(0, 2 * math.pi, 65)
     yield corrected(
-        "(25)", "last step, sin^2 = 1/2 - cos(2wt)/2: the coefficient of phi_0^2 cos(2wt) is 1/4, printed 1/2",
-        "algebra", lambda: equations.printed_squares_25(np.sin(phase), np.cos(2 * phase)),
-        lambda: equations.squares_25(np.sin(phase), np.cos(2 * phase)), 0.5, 1e-15, "rounding",
-    )  # fmt: skip
+        "(25)",
+        "last step, sin^2 = 1/2 - cos(2wt)/2: the coefficient of phi_0^2 cos(2wt) is 1/4, printed 1/2",
+        witness="algebra",
+        printed=lambda: equations.printed_squares_25(np.sin(phase), np.cos(2 * phase)),
+        right=lambda: equations.squares_25(np.sin(phase), np.cos(2 * phase)),
+        misses_by=0.5,
+        bound=1e-15,
+        reason="rounding",
+    )
     yield corrected(
-        "sec. 2.3.1", "phi at which the surface is horizontal: -alpha; printed phi_0 = alpha", REDUCED,
-        lambda: (_level(), -sliding().incline), lambda: (_level(), sliding().incline), 2.0, 1e-12, "rounding",
-    )  # fmt: skip
+        "sec. 2.3.1",
+        "phi at which the surface is horizontal: -alpha; printed phi_0 = alpha",
+        witness=REDUCED,
+        printed=lambda: (_level_phi(), -sliding().incline),
+        right=lambda: (_level_phi(), sliding().incline),
+        misses_by=2.0,
+        bound=1e-12,
+        reason="rounding",
+    )
 
 
 def _looping() -> Iterator[Claim]:
     c = Letters.of(sliding())
     yield limit(
-        "sec. 2.3.2", "no loop from rest: phi stays within its start; it loops from 1.01 times the separatrix's rate",
-        REDUCED, lambda: _furthest(1.01), lambda: _furthest(0.0), 0.67, 1e-9, "DOP853",
-    )  # fmt: skip
+        "sec. 2.3.2",
+        "no loop from rest: phi stays within its start; it loops from 1.01 times the separatrix's rate",
+        witness=REDUCED,
+        beyond=lambda: _furthest_over_start(1.01),
+        within=lambda: _furthest_over_start(0.0),
+        misses_by=0.67,
+        bound=1e-9,
+        reason="DOP853",
+    )
     yield limit(
-        "sec. 2.3.2", "the can stays on the incline (N > 0) while its beer loops: beyond, at 350 rad/s; within, at 45",
-        REDUCED, lambda: _pressed(FAST), lambda: _pressed(SLOW), 1.95, 0.0, "the sign of N",
-    )  # fmt: skip
+        "sec. 2.3.2",
+        "the can stays on the incline (N > 0) while its beer loops: beyond, at 350 rad/s; within, at 45",
+        witness=REDUCED,
+        beyond=lambda: _normal_force(FAST),
+        within=lambda: _normal_force(SLOW),
+        misses_by=1.95,
+        bound=0.0,
+        reason="the sign of N",
+    )
     yield corrected(
-        "(26)", "ripple of phi at 2 Omega: delta/4, whatever Omega; printed none", REDUCED,
-        lambda: (_loop(FAST).phi[2], 0.0), lambda: (_loop(FAST).phi[2], -equations.ripple_26(c)), 1.0, 8e-3,
-        "the next order in delta = 0.22",
-    )  # fmt: skip
+        "(26)",
+        "ripple of phi at 2 Omega: delta/4, whatever Omega; printed none",
+        witness=REDUCED,
+        printed=lambda: (_loop(FAST).phi[2], 0.0),
+        right=lambda: (_loop(FAST).phi[2], -equations.ripple_26(c)),
+        misses_by=1.0,
+        bound=8e-3,
+        reason="the next order in delta = 0.22",
+    )
     yield corrected(
-        "(27), (28)", "epsilon, the ripple at Omega: 1 - 3 delta/8 of the printed one", REDUCED,
-        lambda: _epsilon(equations.epsilon_28), lambda: _epsilon(equations.corrected_28), 0.076, 8e-3,
-        "the next order in delta = 0.22",
-    )  # fmt: skip
+        "(27), (28)",
+        "epsilon, the ripple at Omega: 1 - 3 delta/8 of the printed one",
+        witness=REDUCED,
+        printed=lambda: _epsilon(equations.epsilon_28),
+        right=lambda: _epsilon(equations.corrected_28),
+        misses_by=0.076,
+        bound=8e-3,
+        reason="the next order in delta = 0.22",
+    )
     yield confirmed(
-        "(28)", "epsilon falls as Omega^-2 over a decade of Omega", REDUCED, lambda: (_slope(1), 2.0), 6e-3,
-        "the slowest, at 35 rad/s, is near the separatrix",
-    )  # fmt: skip
+        "(28)",
+        "epsilon falls as Omega^-2 over a decade of Omega",
+        witness=REDUCED,
+        terms=lambda: (_slope(1), 2.0),
+        bound=6e-3,
+        reason="the slowest, at 35 rad/s, is near the separatrix",
+    )
     yield confirmed(
-        "(28)", "epsilon has the frequency Omega: with those at Omega to 16 Omega, phi is as simulated", REDUCED,
-        _synthesis, 1e-5, "ripples beyond",
-    )  # fmt: skip
+        "(28)",
+        "epsilon has the frequency Omega: with those at Omega to 16 Omega, phi is as simulated",
+        witness=REDUCED,
+        terms=_synthesis,
+        bound=1e-5,
+        reason="ripples beyond",
+    )
     yield corrected(
-        "(29)", "amplitude of the ripple of u at Omega: b (1 + delta/8); printed b", REDUCED,
-        lambda: (_loop(FAST).sway[1], -c.b), lambda: (_loop(FAST).sway[1], -equations.sway_29(c)), 0.026, 1e-3,
-        "the next order in delta = 0.22",
-    )  # fmt: skip
+        "(29)",
+        "amplitude of the ripple of u at Omega: b (1 + delta/8); printed b",
+        witness=REDUCED,
+        printed=lambda: (_loop(FAST).sway[1], -c.b),
+        right=lambda: (_loop(FAST).sway[1], -equations.sway_29(c)),
+        misses_by=0.026,
+        bound=1e-3,
+        reason="the next order in delta = 0.22",
+    )
 
 
-def _pressed(phi_dot0: float) -> Terms:
-    """|N| and -N [N] over some turns, by MuJoCo's acceleration of the load."""
-    seen = watch(sliding(), "reduced", 3 * 2 * math.pi / phi_dot0, 0.0, phi_dot0)
-    q = seen.quantities
-    normal = q.m * (q.g * q.cos_alpha + seen.across[2])
+def _normal_force(phi_dot0: float) -> Terms:
+    """Return the terms of |N| = N [N] over three turns, with N from MuJoCo's acceleration of the load."""
+    motion = watch(sliding(), "reduced", 3 * 2 * math.pi / phi_dot0, 0.0, phi_dot0)
+    q = motion.quantities
+    normal = q.m * (q.g * q.cos_alpha + motion.across[2])
     return np.abs(normal), -normal
 
 
 @cache
 def _ripple(scene: Scene) -> np.ndarray:
-    """Amplitudes [m] of cos(k omega t) in u less its steady acceleration, over one measured period."""
-    period = 2 * math.pi / swung(scene, _HESITATION).frequency()
+    """Return the amplitudes [m] of cos(k omega t) in u, without its steady acceleration, over one measured period."""
+    period = 2 * math.pi / long_swing(scene, _HESITATION).frequency()
     times = period * np.arange(64) / 64
     run = simulate(scene, period, _HESITATION, integrator=DOP853, times=times)
     return cosines(run.u - scene.acceleration() * times**2 / 2)
 
 
-def _doubled(expected: float) -> Terms:
+def _ripple_at_twice(expected: float) -> Terms:
+    """Return the terms [m] of: the ripple of u at 2 omega is `expected` b; the one at omega sets the error's scale."""
     ripple = _ripple(sliding())
     return ripple[1], abs(ripple[2]) + sliding().load.offset * expected, -ripple[1]
 
 
-def _level() -> float:
-    """phi [rad] less MuJoCo's angle between gravity and the line to the centre of mass."""
-    seen = swing(LARGE)
-    return float(seen.quantities.phi[0] - seen.theta[0])
+def _level_phi() -> float:
+    """Return phi [rad] of a level surface: phi minus the angle from gravity to the line to the centre of mass."""
+    motion = swing(LARGE)
+    return float(motion.quantities.phi[0] - motion.theta[0])
 
 
 @cache
 def _loop(phi_dot0: float) -> Looping:
+    """Return a turn of a load that loops, from `phi_dot0` [rad/s] at phi = 0."""
     return loop(sliding(), phi_dot0)
 
 
 def _epsilon(formula: Callable[[Letters, float], float]) -> Terms:
-    seen = _loop(FAST)
-    return seen.phi[1], -formula(Letters.of(sliding()), seen.rate)
+    """Return the terms [rad] of: the measured ripple of phi at Omega is that of a formula."""
+    turn = _loop(FAST)
+    return turn.phi[1], -formula(Letters.of(sliding()), turn.rate)
 
 
 def _slope(harmonic: int) -> float:
-    """Slope of log(amplitude) over log(Omega)."""
-    seen = [_loop(each) for each in DECADE]
-    amplitudes = [each.phi[harmonic] for each in seen]
-    return float(np.polyfit(np.log([each.rate for each in seen]), np.log(amplitudes), 1)[0])
+    """Return the slope of log(amplitude of a ripple of phi) over log(Omega), over a decade of Omega."""
+    turns = [_loop(phi_dot0) for phi_dot0 in DECADE]
+    amplitudes = [turn.phi[harmonic] for turn in turns]
+    return float(np.polyfit(np.log([turn.rate for turn in turns]), np.log(amplitudes), 1)[0])
 
 
 def _synthesis() -> Terms:
-    seen = _loop(FAST)
+    """Return the terms [rad] of: phi over one turn is Omega t and its ripples at Omega to 16 Omega."""
+    turn = _loop(FAST)
     phase = np.linspace(0, 2 * math.pi, 65)
-    times = phase / seen.rate
+    times = phase / turn.rate
     run = simulate(sliding(), times[-1], 0.0, FAST, integrator=DOP853, timestep=times[1], times=times)
-    return run.phi - phase, *(-seen.phi[k] * np.sin(k * phase) for k in range(1, 17))
+    return run.phi - phase, *(-turn.phi[k] * np.sin(k * phase) for k in range(1, 17))
 
 
-def _furthest(rate: float) -> Terms:
-    """The largest |phi| [rad] of a motion of 2 s, from rest at 3.1 rad, or with a multiple of the separatrix's rate."""
+def _furthest_over_start(rate: float) -> Terms:
+    """Return the terms [rad] of: the largest |phi| of a motion is 3.1, the angle from which it starts at rest.
+
+    If `rate` is not 0 it starts at phi = 0 instead, at that multiple of the rate that just carries it to the top.
+    """
     beer = sliding()
     start = 0.0 if rate else 3.1
     top = beer.oscillator.potential(math.pi) - beer.oscillator.potential(0.0)

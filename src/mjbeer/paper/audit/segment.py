@@ -1,4 +1,4 @@
-"""Rows of the audit: the half cylinder (7)-(9), the can's metal and the circular segment (30)-(38)."""
+"""Claims about masses and inertias: the half cylinder (7)-(9), the can's metal and the circular segment (30)-(38)."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -19,115 +19,203 @@ FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the formulas of section 3 are compared with quadrature, on both sides of a half-full can."""
 _QUADRATURE, _SHELL = "segment quadrature", "MuJoCo's shell of a cylinder"
 _BOUND, _REASON = 1e-13, "rounding; the closed forms cancel at small fills"
+"""Largest error of the formulas in closed form, and its cause."""
 
 
 def claims() -> Iterator[Claim]:
-    """The rows."""
-    yield from _half()
-    yield from _metal()
+    """Yield the claims of this chapter."""
+    yield from _half_can()
+    yield from _sheet_metal()
     yield from _segment()
     yield from _figures()
 
 
-def _half() -> Iterator[Claim]:
+def _half_can() -> Iterator[Claim]:
     half = segment(0.5)
     yield confirmed(
-        "(7)", "b/a of a half cylinder", _QUADRATURE, lambda: (equations.eq_7(), -half.offset), _BOUND, _REASON
+        "(7)",
+        "b/a of a half cylinder",
+        witness=_QUADRATURE,
+        terms=lambda: (equations.eq_7(), -half.offset),
+        bound=_BOUND,
+        reason=_REASON,
     )
     yield confirmed(
-        "(8)", "I_axis/(m a^2) of a half cylinder", _QUADRATURE, lambda: (0.5, -half.inertia, -(half.offset**2)),
-        _BOUND, _REASON,
-    )  # fmt: skip
+        "(8)",
+        "I_axis/(m a^2) of a half cylinder",
+        witness=_QUADRATURE,
+        terms=lambda: (0.5, -half.inertia, -(half.offset**2)),
+        bound=_BOUND,
+        reason=_REASON,
+    )
     yield confirmed(
         "(9)",
         "I_cm/(m a^2) of a half cylinder",
-        _QUADRATURE,
-        lambda: (equations.eq_9(), -half.inertia),
-        _BOUND,
-        _REASON,
+        witness=_QUADRATURE,
+        terms=lambda: (equations.eq_9(), -half.inertia),
+        bound=_BOUND,
+        reason=_REASON,
     )
     yield confirmed(
-        "(9)", "I_cm = 0.32 m a^2", _QUADRATURE, lambda: (0.32, -half.inertia), 1.6e-2, "half a unit of the last digit"
+        "(9)",
+        "I_cm = 0.32 m a^2",
+        witness=_QUADRATURE,
+        terms=lambda: (0.32, -half.inertia),
+        bound=1.6e-2,
+        reason="half a unit of the last digit",
     )
 
 
-def _metal() -> Iterator[Claim]:
+def _sheet_metal() -> Iterator[Claim]:
     sizes = RADIUS, LENGTH, THICKNESS, ALUMINIUM
-    yield confirmed("(30)", "m_can", _SHELL, lambda: (equations.eq_30(*sizes), -_shell()[0]), _BOUND, "rounding")
-    yield confirmed("(31)", "I_can", _SHELL, lambda: (equations.eq_31(*sizes), -_shell()[1]), _BOUND, "rounding")
     yield confirmed(
-        "(31)", "I_can/(m_can a^2)", _SHELL,
-        lambda: (equations.ratio_31(RADIUS, LENGTH), -_shell()[1] / (_shell()[0] * RADIUS**2)), _BOUND, "rounding",
-    )  # fmt: skip
+        "(30)",
+        "m_can",
+        witness=_SHELL,
+        terms=lambda: (equations.eq_30(*sizes), -_shell_of_mujoco()[0]),
+        bound=_BOUND,
+        reason="rounding",
+    )
     yield confirmed(
-        "(31)", "I_can = 0.89 m_can a^2", _SHELL, lambda: (0.89, -_shell()[1] / (_shell()[0] * RADIUS**2)), 5.6e-3,
-        "half a unit of the last digit",
-    )  # fmt: skip
+        "(31)",
+        "I_can",
+        witness=_SHELL,
+        terms=lambda: (equations.eq_31(*sizes), -_shell_of_mujoco()[1]),
+        bound=_BOUND,
+        reason="rounding",
+    )
+    yield confirmed(
+        "(31)",
+        "I_can/(m_can a^2)",
+        witness=_SHELL,
+        terms=lambda: (
+            equations.ratio_31(RADIUS, LENGTH),
+            -_shell_of_mujoco()[1] / (_shell_of_mujoco()[0] * RADIUS**2),
+        ),
+        bound=_BOUND,
+        reason="rounding",
+    )
+    yield confirmed(
+        "(31)",
+        "I_can = 0.89 m_can a^2",
+        witness=_SHELL,
+        terms=lambda: (0.89, -_shell_of_mujoco()[1] / (_shell_of_mujoco()[0] * RADIUS**2)),
+        bound=5.6e-3,
+        reason="half a unit of the last digit",
+    )
 
 
 def _segment() -> Iterator[Claim]:
     yield confirmed(
-        "(32)", "h/a", "chord of a circle", lambda: (_all(lambda each: equations.eq_32(each.half_angle)), _chord()),
-        _BOUND, _REASON,
-    )  # fmt: skip
+        "(32)",
+        "h/a",
+        witness="chord of a circle",
+        terms=lambda: (_at_fills(lambda shape: equations.eq_32(shape.half_angle)), _chord()),
+        bound=_BOUND,
+        reason=_REASON,
+    )
     yield confirmed(
-        "(34)", "mass of the beer", _QUADRATURE, lambda: (_all(_mass), -np.array([_filled(fill) for fill in FILLS])),
-        _BOUND, _REASON,
-    )  # fmt: skip
-    for equation, quantity, form, seen in (
+        "(34)",
+        "mass of the beer",
+        witness=_QUADRATURE,
+        terms=lambda: (_at_fills(_mass), -np.array([_mass_of_load(fill) for fill in FILLS])),
+        bound=_BOUND,
+        reason=_REASON,
+    )
+    for equation, quantity, form, measure in (
         ("(33)", "area, middle form", lambda beta: equations.eq_33(beta)[0], _area),
         ("(33)", "area, last form", lambda beta: equations.eq_33(beta)[1], _area),
         ("(35)", "b, with A", lambda beta: equations.eq_35(beta)[0], _offset),
         ("(35)", "b, last form", lambda beta: equations.eq_35(beta)[1], _offset),
-        ("(36)", "I_axis, second line", equations.integral_36, _axial),
-        ("(36)", "I_axis, last form", equations.eq_36, _axial),
-        ("(37)", "I_cm", equations.eq_37, _own),
+        ("(36)", "I_axis, second line", equations.integral_36, _axial_inertia),
+        ("(36)", "I_axis, last form", equations.eq_36, _axial_inertia),
+        ("(37)", "I_cm", equations.eq_37, _own_inertia),
     ):
         yield confirmed(
-            equation, quantity, _QUADRATURE, lambda form=form, seen=seen: _compared(form, seen), _BOUND, _REASON
+            equation,
+            quantity,
+            witness=_QUADRATURE,
+            terms=lambda form=form, measure=measure: _compare(form, measure),
+            bound=_BOUND,
+            reason=_REASON,
         )
     yield corrected(
-        "(36)", "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8", _QUADRATURE,
-        lambda: _compared(lambda beta: equations.middle_36(beta, 8), _axial),
-        lambda: _compared(equations.middle_36, _axial), 0.23, _BOUND, _REASON,
-    )  # fmt: skip
-    yield confirmed("(38)", "centre of mass of can and beer", "MuJoCo, subtree_com", _whole, _BOUND, "rounding")
+        "(36)",
+        "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8",
+        witness=_QUADRATURE,
+        printed=lambda: _compare(lambda beta: equations.middle_36(beta, 8), _axial_inertia),
+        right=lambda: _compare(equations.middle_36, _axial_inertia),
+        misses_by=0.23,
+        bound=_BOUND,
+        reason=_REASON,
+    )
+    yield confirmed(
+        "(38)",
+        "centre of mass of can and beer",
+        witness="MuJoCo, subtree_com",
+        terms=_centre_of_mass,
+        bound=_BOUND,
+        reason="rounding",
+    )
 
 
 def _figures() -> Iterator[Claim]:
-    """What the text says of its two figures, at beta = pi/2 and pi and in between."""
+    """Yield what the text says about the figures of eqs. (36) and (37), at beta = pi/2, at pi and in between."""
     half, full = segment(0.5), segment(1.0)
     yield confirmed(
-        "figure of (36)", "k is 1/2 at beta = pi/2 and at pi", _QUADRATURE,
-        lambda: (np.full(2, 0.5), -np.array([_axial(half), _axial(full)])), _BOUND, _REASON,
-    )  # fmt: skip
+        "figure of (36)",
+        "k is 1/2 at beta = pi/2 and at pi",
+        witness=_QUADRATURE,
+        terms=lambda: (np.full(2, 0.5), -np.array([_axial_inertia(half), _axial_inertia(full)])),
+        bound=_BOUND,
+        reason=_REASON,
+    )
     yield confirmed(
-        "figure of (36)", "k is 1 for a film (fill 1e-9)", _QUADRATURE, lambda: (1.0, -_axial(segment(1e-9))), 1e-8,
-        "the film's height",
-    )  # fmt: skip
+        "figure of (36)",
+        "k is 1 for a film (fill 1e-9)",
+        witness=_QUADRATURE,
+        terms=lambda: (1.0, -_axial_inertia(segment(1e-9))),
+        bound=1e-8,
+        reason="the film's height",
+    )
     yield confirmed(
-        "figure of (36)", "in between k dips, to 0.456 at 115 degrees", _QUADRATURE, lambda: (0.456, -_least()), 2e-3,
-        "half a unit of the last digit; the paper gives no number",
-    )  # fmt: skip
-    own = np.array([_own(segment(float(fill))) for fill in np.linspace(1e-3, 1, 1000)])
+        "figure of (36)",
+        "in between k dips, to 0.456 at 115 degrees",
+        witness=_QUADRATURE,
+        terms=lambda: (0.456, -_least_axial_inertia()),
+        bound=2e-3,
+        reason="half a unit of the last digit; the paper gives no number",
+    )
+    own = np.array([_own_inertia(segment(float(fill))) for fill in np.linspace(1e-3, 1, 1000)])
     yield confirmed(
-        "figure of (37)", "k rises all the way: it is never below what it was", _QUADRATURE,
-        lambda: (own, -np.maximum.accumulate(own)), _BOUND, "rounding",
-    )  # fmt: skip
+        "figure of (37)",
+        "k rises all the way: it is never below what it was",
+        witness=_QUADRATURE,
+        terms=lambda: (own, -np.maximum.accumulate(own)),
+        bound=_BOUND,
+        reason="rounding",
+    )
     yield confirmed(
-        "figure of (37)", "k goes from 0 by 0.32 at beta = pi/2 to 0.5", _QUADRATURE,
-        lambda: (np.array([0.0, 0.32, 0.5]), -np.array([_own(segment(fill)) for fill in (1e-9, 0.5, 1.0)])),
-        1e-3, "half a unit of the last digit",
-    )  # fmt: skip
+        "figure of (37)",
+        "k goes from 0 by 0.32 at beta = pi/2 to 0.5",
+        witness=_QUADRATURE,
+        terms=lambda: (
+            np.array([0.0, 0.32, 0.5]),
+            -np.array([_own_inertia(segment(fill)) for fill in (1e-9, 0.5, 1.0)]),
+        ),
+        bound=1e-3,
+        reason="half a unit of the last digit",
+    )
 
 
-def _all(value: Callable[[Segment], float]) -> np.ndarray:
-    """Of all fills."""
+def _at_fills(value: Callable[[Segment], float]) -> np.ndarray:
+    """Return a quantity of the segments of all `FILLS`."""
     return np.array([value(segment(fill)) for fill in FILLS])
 
 
-def _compared(form: Callable[[float], float], seen: Callable[[Segment], float]) -> Terms:
-    return _all(lambda each: form(each.half_angle)), -_all(seen)
+def _compare(form: Callable[[float], float], measure: Callable[[Segment], float]) -> Terms:
+    """Return the terms of: a formula in beta gives the same as quadrature, at all `FILLS`."""
+    return _at_fills(lambda shape: form(shape.half_angle)), -_at_fills(measure)
 
 
 def _area(shape: Segment) -> float:
@@ -138,11 +226,11 @@ def _offset(shape: Segment) -> float:
     return shape.offset
 
 
-def _own(shape: Segment) -> float:
+def _own_inertia(shape: Segment) -> float:
     return shape.inertia
 
 
-def _axial(shape: Segment) -> float:
+def _axial_inertia(shape: Segment) -> float:
     return shape.inertia + shape.offset**2
 
 
@@ -150,29 +238,31 @@ def _mass(shape: Segment) -> float:
     return equations.eq_34(shape.half_angle, RADIUS, LENGTH, BEER)
 
 
-def _filled(fill: float) -> float:
+def _mass_of_load(fill: float) -> float:
     return Load.segment(fill=fill).mass
 
 
 def _chord() -> np.ndarray:
-    """-h/a of the chords that are seen from the axis under the angles 2 beta, from half their lengths."""
-    sides = _all(lambda each: math.sin(each.half_angle))
+    """Return -h/a at all `FILLS`, from half the length of the chord that subtends the angle 2 beta at the axis."""
+    sides = _at_fills(lambda shape: math.sin(shape.half_angle))
     below = np.array([1.0 if fill <= 0.5 else -1.0 for fill in FILLS])
     return below * np.sqrt(1 - sides**2) - 1
 
 
-def _least() -> float:
-    """The least k of eq. (36), over some thousand fills."""
-    return min(_axial(segment(float(fill))) for fill in np.linspace(0.5, 0.999, 1000))
+def _least_axial_inertia() -> float:
+    """Return the least I_axis/(m a^2) among a thousand fills."""
+    return min(_axial_inertia(segment(float(fill))) for fill in np.linspace(0.5, 0.999, 1000))
 
 
-def _shell() -> tuple[float, float]:
-    """Mass [kg] and axial inertia [kg m^2] that MuJoCo gives a closed cylinder of sheet."""
+def _shell_of_mujoco() -> tuple[float, float]:
+    """Return the mass [kg] and the axial inertia [kg m^2] that MuJoCo computes for a closed cylinder of sheet metal."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_body(name="can").add_geom(
-        type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[RADIUS, LENGTH / 2, 0], density=THICKNESS * ALUMINIUM,
+        type=mujoco.mjtGeom.mjGEOM_CYLINDER,
+        size=[RADIUS, LENGTH / 2, 0],
+        density=THICKNESS * ALUMINIUM,
         typeinertia=mujoco.mjtGeomInertia.mjINERTIA_SHELL,
-    )  # fmt: skip
+    )
     model = spec.compile()
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
@@ -180,7 +270,8 @@ def _shell() -> tuple[float, float]:
     return float(can.mass[0]), float((axes @ np.diag(can.inertia) @ axes.T)[2, 2])
 
 
-def _whole() -> Terms:
+def _centre_of_mass() -> Terms:
+    """Return the terms of eq. (38) [m], with MuJoCo's distance of the common centre of mass from the axis."""
     scene = sliding(can=Can.sheet_metal())
     model = build(scene, "equality")
     data = mujoco.MjData(model)

@@ -1,4 +1,4 @@
-"""MuJoCo as a witness: positions, velocities, accelerations and energies of a simulated motion, as MuJoCo has them."""
+"""MuJoCo as a witness: the positions, velocities, accelerations and energies that it computes for a motion."""
 
 from dataclasses import dataclass
 
@@ -17,14 +17,15 @@ from mjbeer.theory.trajectory import Trajectory
 
 @dataclass(frozen=True, eq=False)
 class Witness:
-    """A motion as MuJoCo's forward dynamics has it, one row a sample."""
+    """What MuJoCo's forward dynamics computes at each sample of a motion."""
 
     scene: Scene
     time: np.ndarray
     quantities: Quantities
-    """With s from the position of the load's centre of mass, and accelerations from mj_forward."""
+    """Coordinates, rates and accelerations: s is read from the load's centre of mass, accelerations from mj_forward."""
     across: np.ndarray
-    """Distance [m] of the load's centre of mass from the axis, away from the incline; its rate and acceleration."""
+    """How far the load's centre of mass is from the axis, measured away from the incline [m]; its first and second
+    derivatives follow in the second and third row."""
     height: np.ndarray
     """Height [m] of the load's centre of mass above where the axis starts, against gravity."""
     theta: np.ndarray
@@ -34,15 +35,16 @@ class Witness:
     potential: np.ndarray
     """MuJoCo's potential energy of the whole [J], zero where the axis starts."""
     friction: np.ndarray
-    """Force [N] of the incline on the can, uphill, where a constraint holds it."""
+    """Force [N] of the incline on the can, uphill, where a constraint makes the can roll; otherwise 0."""
 
 
 def watch(
     scene: Scene, rolling: str, duration: float, phi0: float, phi_dot0: float = 0.0, samples: int = 101
 ) -> Witness:
-    """Simulate, and let MuJoCo say at some samples how everything moves there.
+    """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it.
 
-    "equality" moves can and load as two bodies, held by a constraint: no theory is in that model.
+    With `rolling` "equality" the can and the load are two bodies that a constraint couples: that model contains none
+    of the paper's theory.
     """
     times = np.linspace(0, duration, samples)
     run = simulate(scene, duration, phi0, phi_dot0, rolling, DOP853, timestep=5e-4, times=times)
@@ -50,34 +52,52 @@ def watch(
 
 
 def examine(run: Trajectory) -> Witness:
-    """What MuJoCo says about the samples of a simulated motion."""
+    """Return what MuJoCo computes at each sample of a simulated motion."""
     scene, timestep = run.scene, run.timestep or 1e-3
     model = build(scene, run.rolling, integrator=DOP853, timestep=timestep)
     data = mujoco.MjData(model)
-    rows = [_ask(model, data, scene, run, i) for i in range(len(run.time))]
+    rows = [_evaluate(model, data, scene, run, i) for i in range(len(run.time))]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     axis, load, unit = columns["axis"], columns["load"], mass_unit(scene)
     arm = load[:, 0] - axis[:, 0]
     down = model.opt.gravity / scene.gravity
-    phi, (turn, turning) = run.phi, columns["turn"].T
+    phi, (turn_rate, turn_acceleration) = run.phi, columns["turn"].T
     side = np.array([-down[2], 0, down[0]])  # a quarter turn from gravity, downhill
     quantities = Quantities.of(
-        scene, s=load[:, 0, 0], s_dot=load[:, 1, 0], s_ddot=load[:, 2, 0], u=axis[:, 0, 0],
-        u_dot=axis[:, 1, 0], u_ddot=axis[:, 2, 0], phi=phi, phi_dot=turn, phi_ddot=turning, sin_phi=np.sin(phi),
-        cos_phi=np.cos(phi), sin_theta=np.sin(phi + scene.incline), cos_theta=np.cos(phi + scene.incline),
-    )  # fmt: skip
+        scene,
+        s=load[:, 0, 0],
+        s_dot=load[:, 1, 0],
+        s_ddot=load[:, 2, 0],
+        u=axis[:, 0, 0],
+        u_dot=axis[:, 1, 0],
+        u_ddot=axis[:, 2, 0],
+        phi=phi,
+        phi_dot=turn_rate,
+        phi_ddot=turn_acceleration,
+        sin_phi=np.sin(phi),
+        cos_phi=np.cos(phi),
+        sin_theta=np.sin(phi + scene.incline),
+        cos_theta=np.cos(phi + scene.incline),
+    )
     potential = (columns["energy"][:, 0] + unit * scene.mass * model.opt.gravity[2] * axis[0, 0, 2]) / unit
     return Witness(
-        scene, run.time, quantities,
+        scene,
+        run.time,
+        quantities,
         across=np.stack([arm[:, 2], load[:, 1, 2] - axis[:, 1, 2], load[:, 2, 2] - axis[:, 2, 2]]),
         height=-(load[:, 0] - [0, 0, axis[0, 0, 2]]) @ down,
         theta=np.arctan2(-arm @ side, arm @ down),
-        kinetic=columns["energy"][:, 1] / unit, potential=potential, friction=-columns["force"] / unit,
-    )  # fmt: skip
+        kinetic=columns["energy"][:, 1] / unit,
+        potential=potential,
+        friction=-columns["force"] / unit,
+    )
 
 
-def _ask(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, run: Trajectory, i: int) -> dict[str, np.ndarray]:
-    """Position, velocity and acceleration of the axis and of the load's centre of mass, and what else there is."""
+def _evaluate(
+    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, run: Trajectory, i: int
+) -> dict[str, np.ndarray]:
+    """Return what MuJoCo computes at sample `i`: how the axis and the load's centre of mass move, the load's angular
+    velocity and acceleration, the energies, and the constraint's force along the incline."""
     values = {
         "slide": (run.u[i], run.u_dot[i]),
         "lift": (run.lift[i], run.lift_dot[i]),
@@ -98,16 +118,16 @@ def _ask(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, run: Trajecto
     turn = np.zeros((3, model.nv))
     mujoco.mj_jac(model, data, None, turn, data.xpos[carrier], carrier)
     return {
-        "axis": _moves(model, data, data.xpos[can].copy(), can),
-        "load": _moves(model, data, at, carrier),
+        "axis": _point_motion(model, data, data.xpos[can].copy(), can),
+        "load": _point_motion(model, data, at, carrier),
         "turn": np.array([turn[1] @ data.qvel, turn[1] @ data.qacc]),
         "energy": data.energy.copy(),
         "force": np.array(force),
     }
 
 
-def _moves(model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray, body: int) -> np.ndarray:
-    """Position, velocity and acceleration of a point of a body, shape (3, 3)."""
+def _point_motion(model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray, body: int) -> np.ndarray:
+    """Return the position, velocity and acceleration of a point of a body, shape (3, 3), in SI units."""
     jacobian, change = np.zeros((3, model.nv)), np.zeros((3, model.nv))
     mujoco.mj_jac(model, data, jacobian, None, point, body)
     mujoco.mj_jacDot(model, data, change, None, point, body)

@@ -1,1 +1,1 @@
-"""The paper's equations, as printed and as they are right, a file a chapter; they import `theory`, and no simulator."""
+"""The paper's equations, as printed and as they are right: one file a chapter. They need no simulator."""

@@ -1,6 +1,6 @@
 """Appendix A of the paper: beer frozen to a massless can. Equations (50)-(55), printed and right.
 
-Each returns its terms, as those of `sliding` do. The load has I_axis = m a^2/2, as a half can has; its b is free.
+The functions return terms as those of `sliding` do. The load has the I_axis = m a^2/2 of a half can, and any b.
 """
 
 import math
@@ -14,22 +14,25 @@ from mjbeer.theory.scene import Scene
 
 
 def eq_50(q: Quantities) -> tuple[Terms, ...]:
-    """u = a phi, and s = a phi - b sin(phi)."""
+    """Return the terms of u = a phi, and of s = a phi - b sin(phi)."""
     return (q.u, -q.a * q.phi), (q.s, -q.a * q.phi, q.b * q.sin_phi)
 
 
 def kinetic_51(q: Quantities) -> Terms:
-    """T of eq. (51) [J]."""
+    """Return the terms of T in eq. (51) [J]."""
     return q.m / 2 * 1.5 * q.a**2 * q.phi_dot**2, -q.m * q.a * q.b * q.cos_phi * q.phi_dot**2
 
 
 def potential_51(q: Quantities) -> Terms:
-    """V of eq. (51) [J]."""
+    """Return the terms of V in eq. (51) [J]."""
     return -q.m * q.g * q.a * q.phi * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta
 
 
 def eq_52(q: Quantities) -> Terms:
-    """(3a^2/2 - 2ab cos phi) phi_ddot + a b sin phi phi_dot^2 = g (a sin(alpha) - b sin(alpha + phi))."""
+    """Return the terms of eq. (52).
+
+    (3a^2/2 - 2ab cos phi) phi_ddot + a b sin phi phi_dot^2 = g (a sin(alpha) - b sin(alpha + phi)).
+    """
     return (
         1.5 * q.a**2 * q.phi_ddot,
         -2 * q.a * q.b * q.cos_phi * q.phi_ddot,
@@ -40,7 +43,10 @@ def eq_52(q: Quantities) -> Terms:
 
 
 def footnote_8(q: Quantities) -> Terms:
-    """The equation as the footnote gives it to a computer, whose "3(0.5)" is half of a b = 3 cm^2; lengths in cm."""
+    """Return the terms of eq. (52) as footnote 8 types it into a computer, with lengths in cm.
+
+    Its "3(0.5)" is half of a b = 3 cm^2; the whole of it would be right.
+    """
     centi = 100
     a, b, g = centi * q.a, centi * q.b, centi * q.g
     return (
@@ -53,38 +59,44 @@ def footnote_8(q: Quantities) -> Terms:
 
 
 def eq_53(q: Quantities) -> Terms:
-    """sin(alpha + phi_0) = (a/b) sin(alpha)."""
+    """Return the terms of sin(alpha + phi_0) = (a/b) sin(alpha)."""
     return q.sin_theta, -q.a / q.b * q.sin_alpha
 
 
 def equilibrium_53(scene: Scene) -> float:
-    """Return phi_0 [rad] by eq. (53) with the masses of both: sin(alpha + phi_0) = (m + m_can) a sin(alpha) / (m b)."""
+    """Return phi_0 [rad] by eq. (53), extended to a can with mass.
+
+    That is sin(alpha + phi_0) = (m + m_can) a sin(alpha) / (m b).
+
+    Raises:
+      ValueError: if the incline is too steep for an equilibrium.
+    """
     sine = scene.mass * scene.can.radius * math.sin(scene.incline) / (scene.load.mass * scene.load.offset)
     return math.asin(sine) - scene.incline
 
 
 def cosine_54(sin_phi: Any, swing: Any) -> Any:
-    """How much cos(phi) changes over a `swing` epsilon cos(wt) [rad], to first order."""
+    """Return the change of cos(phi) over a small `swing` epsilon cos(wt) [rad], to first order."""
     return -swing * sin_phi
 
 
 def sine_54(cos_theta: Any, swing: Any) -> Any:
-    """How much sin(alpha + phi) changes over a `swing` [rad], to first order; corrected."""
+    """Return the change of sin(alpha + phi) over a small `swing` [rad], to first order; corrected."""
     return swing * cos_theta
 
 
 def printed_54(cos_theta: Any, swing: Any) -> Any:
-    """The same with a minus."""
+    """Return the same with a minus, as printed."""
     return -swing * cos_theta
 
 
 def eq_55(c: Letters, cos_phi: Any, cos_theta: Any) -> Any:
-    """omega^2 = g b cos(alpha + phi_0) / (3a^2/2 - 2ab cos(phi_0)) [1/s^2]; corrected."""
+    """Return omega^2 = g b cos(alpha + phi_0) / (3a^2/2 - 2ab cos(phi_0)) [1/s^2]; corrected."""
     return c.g * c.b * cos_theta / (1.5 * c.a**2 - 2 * c.a * c.b * cos_phi)
 
 
 def printed_55(c: Letters, cos_phi: Any, cos_theta: Any) -> Any:
-    """The same with a b cos(phi_0) in the denominator."""
+    """Return the same with a b cos(phi_0) in the denominator, as printed."""
     return c.g * c.b * cos_theta / (1.5 * c.a**2 - c.a * c.b * cos_phi)
 
 
@@ -101,10 +113,10 @@ def printed_frequency_55(scene: Scene) -> float:
 
 
 def long_run(form: Oscillator) -> float:
-    """Mean phi_ddot [rad/s^2] of a long roll-down, the slope over (mean of sqrt(J) over a turn)^2.
+    """Return the mean phi_ddot [rad/s^2] of a long roll-down: the slope over (mean of sqrt(J) over a turn)^2.
 
-    From J phi_dot^2/2 = slope phi + what does not grow: sqrt(phi) takes the time that sqrt(J/(2 slope)) says. The
-    trapezoid rule converges geometrically for a smooth periodic integrand.
+    Energy gives J phi_dot^2/2 = slope phi + terms that stay bounded. Far down, therefore, dt = sqrt(J/(2 slope phi))
+    dphi. The trapezoid rule for the mean converges geometrically, since J is smooth and periodic.
     """
     turn = 2 * np.pi * np.arange(64) / 64
     return form.slope / float(np.mean(np.sqrt(form.inertia(turn)))) ** 2

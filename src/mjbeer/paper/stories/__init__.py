@@ -1,1 +1,1 @@
-"""The paper's scenarios as plots and films, a file a chapter; they import the audit and the equations."""
+"""The paper's scenarios as plots and films: one file a chapter, named like the chapter's equations."""

@@ -18,40 +18,43 @@ from mjbeer.theory.scene import frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 _MARGIN = 0.02
-"""How far from tan(alpha) the two friction coefficients of footnote 7 are, relatively."""
+"""Relative difference of footnote 7's two friction coefficients from tan(alpha)."""
 
 
 def stories() -> Iterator[Story]:
-    """Yield the stories of the chapter."""
+    """Yield the stories of this chapter."""
     yield Story(
         "rocking",
-        "A can with frozen beer, let go at phi = 0: it rocks about its equilibrium and does not roll off. Footnote 8's "
-        "equation, as printed, swings otherwise. The film has a half-full can.",
-        _rocking, Film(0.5, lambda: simulate(frozen(), 2.0, 0.0, integrator=DOP853)),
-    )  # fmt: skip
+        "A can with frozen beer, let go at phi = 0, rocks about its equilibrium and does not roll off. Footnote 8's "
+        "equation as printed gives another swing. The film shows a half-full can.",
+        draw=_draw_rocking,
+        film=Film(speed=0.5, trajectory=lambda: simulate(frozen(), 2.0, 0.0, integrator=DOP853)),
+    )
     yield Story(
         "roll-down",
-        "The figure of A.3: the same can let go with the beer on top. It runs off like a solid cylinder, in jerks; "
-        "but from 0.848 s on the incline would have to pull, and before that it takes ever more friction. The film "
-        "has a half-full can, which slips and hops.",
-        _roll_down, Film(0.25, lambda: _parting(1.0)),
-    )  # fmt: skip
+        "The figure of A.3: the same can, let go with the beer on top. It rolls down like a solid cylinder, but in "
+        "jerks. Rolling needs more and more friction, and from 0.848 s on the incline would have to pull the can. The "
+        "film shows a half-full can, which slips and hops.",
+        draw=_draw_roll_down,
+        film=Film(speed=0.25, trajectory=lambda: _lift_off(1.0)),
+    )
     yield Story(
         "friction",
         "Footnote 7: at the equilibrium the can stays if the friction coefficient is more than tan(alpha), and slides "
-        "off if it is less. Contact runs 2 % above and below.",
-        _friction, Film(0.5, lambda: _held(1 - 0.3)),
-    )  # fmt: skip
+        "off if it is less. The two lines are simulations in contact, 2 % above and 2 % below.",
+        draw=_draw_friction,
+        film=Film(speed=0.5, trajectory=lambda: _contact_at_equilibrium(1 - 0.3)),
+    )
     yield Story(
         "period",
-        "What the paper leaves open: how the period grows with the amplitude, up to the separatrix, where it is "
-        "infinite. On an incline the frozen can's swings are not the same to both sides: it rolls off downhill.",
-        _period,
-    )  # fmt: skip
+        "What the paper leaves open: the period grows with the amplitude and is infinite at the separatrix, the end of "
+        "the largest swing. On an incline the frozen can swings differently to either side, and rolls off downhill.",
+        draw=_draw_period,
+    )
 
 
-def _printed(times: np.ndarray, phi0: float) -> np.ndarray:
-    """phi(t) of footnote 8's equation as printed, by SciPy."""
+def _footnote_8_as_printed(times: np.ndarray, phi0: float) -> np.ndarray:
+    """Return phi [rad] by footnote 8's equation as printed, integrated by SciPy from rest at `phi0` [rad]."""
     scene = footnote_scene()
     a, b, g = 100 * scene.can.radius, 100 * scene.load.offset, 100 * scene.gravity
 
@@ -64,20 +67,20 @@ def _printed(times: np.ndarray, phi0: float) -> np.ndarray:
     return solve_ivp(slope, (0, times[-1]), [phi0, 0.0], t_eval=times, rtol=1e-10, atol=1e-12).y[0]
 
 
-def _rocking(path: pathlib.Path) -> None:
+def _draw_rocking(path: pathlib.Path) -> None:
     scene = footnote_scene()
     times = np.linspace(0, 3, 601)
     run = simulate(scene, 3, 0.0, integrator=DOP853, times=times)
     with chart(path, width=9, height=4.5) as (axes,):
         axes.plot(times, np.degrees(run.phi), label="MuJoCo")
         axes.plot(times[::12], np.degrees(exact(scene, times[::12], 0.0).phi), "k.", label="exact theory, eq. (52)")
-        axes.plot(times, np.degrees(_printed(times, 0.0)), "--", label="footnote 8 as printed")
+        axes.plot(times, np.degrees(_footnote_8_as_printed(times, 0.0)), "--", label="footnote 8 as printed")
         axes.axhline(math.degrees(scene.equilibrium()), color="grey", linewidth=0.8, label="equilibrium, (53)")
         axes.set(xlabel="time [s]", ylabel="phi [degrees]", title="frozen beer, let go at phi = 0", ylim=(-2, 58))
         axes.legend(loc="upper right", ncols=4, fontsize=9)
 
 
-def _roll_down(path: pathlib.Path) -> None:
+def _draw_roll_down(path: pathlib.Path) -> None:
     scene = footnote_scene()
     times = np.linspace(0, 1.2, 1201)
     run = simulate(scene, 1.2, math.pi, integrator=DOP853, times=times)
@@ -86,7 +89,9 @@ def _roll_down(path: pathlib.Path) -> None:
     with chart(path, 3, 1, width=9, height=9) as (angle, normal, friction):
         angle.plot(times, np.degrees(run.phi - math.pi), label="MuJoCo, rolling without slipping")
         angle.plot(times, np.degrees(even), "k:", label="solid cylinder, g sin(alpha) t²/3a")
-        angle.plot(times, np.degrees(_printed(times, math.pi) - math.pi), "--", label="footnote 8 as printed")
+        angle.plot(
+            times, np.degrees(_footnote_8_as_printed(times, math.pi) - math.pi), "--", label="footnote 8 as printed"
+        )
         angle.set(ylabel="phi - 180 [degrees]", title="beer frozen to its can, let go with the beer on top")
         angle.legend()
         normal.plot(times, run.forces.normal / (scene.mass * scene.gravity))
@@ -95,42 +100,45 @@ def _roll_down(path: pathlib.Path) -> None:
         needed = np.where(run.forces.needed < 3, run.forces.needed, np.nan)
         friction.plot(times, needed)
         friction.set(
-            xlabel="time [s]", ylabel="|F| / N", title="friction coefficient that rolling takes", ylim=(0, 3),
+            xlabel="time [s]",
+            ylabel="|F| / N",
+            title="friction coefficient that rolling takes",
+            ylim=(0, 3),
             xlim=normal.get_xlim(),
-        )  # fmt: skip
+        )
         for axes in (angle, normal, friction):
             axes.axvline(parts, color="grey", linewidth=0.8)
         angle.annotate(
-            f"the can parts at {parts:.3f} s", (parts, 60), (6, 0), textcoords="offset points",
-            color="grey", fontsize=9,
-        )  # fmt: skip
+            f"the can parts at {parts:.3f} s", (parts, 60), (6, 0), textcoords="offset points", color="grey", fontsize=9
+        )
 
 
-def _parting(friction: float) -> Trajectory:
-    """In contact, until after the can has left the incline."""
+def _lift_off(friction: float) -> Trajectory:
+    """Return a roll-down from the top in contact, which ends after the can has left the incline."""
     return simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=friction)
 
 
-def _held(part: float) -> Trajectory:
-    """One second in contact from the equilibrium, at a `part` of tan(alpha) for the friction coefficient."""
+def _contact_at_equilibrium(part: float) -> Trajectory:
+    """Return one second in contact from the equilibrium, at a friction coefficient of `part` times tan(alpha)."""
     scene = frozen()
     mu = part * math.tan(scene.incline)
     return simulate(scene, 1.0, scene.equilibrium(), rolling="contact", friction=mu)
 
 
-def _friction(path: pathlib.Path) -> None:
+def _draw_friction(path: pathlib.Path) -> None:
     with chart(path, width=8, height=4.5) as (axes,):
         for part in (1 - _MARGIN, 1 + _MARGIN):
-            run = _held(part)
+            run = _contact_at_equilibrium(part)
             axes.plot(run.time, 1e3 * np.abs(run.u - run.u[0]), label=f"μ = {part:g} tan(alpha)")
         axes.set(
-            xlabel="time [s]", ylabel="how far the can has moved [mm]",
+            xlabel="time [s]",
+            ylabel="how far the can has moved [mm]",
             title="frozen beer at its equilibrium, on a 10 degree incline",
-        )  # fmt: skip
+        )
         axes.legend()
 
 
-def _period(path: pathlib.Path) -> None:
+def _draw_period(path: pathlib.Path) -> None:
     with chart(path, 1, 2, width=11, height=4.5) as (period, swing):
         for name, scene in (
             ("sliding beer", sliding()),
@@ -141,22 +149,25 @@ def _period(path: pathlib.Path) -> None:
             amplitudes = (high - rest) * (1 - np.geomspace(1, 1e-4, 80))[1:]
             small = 2 * math.pi / scene.frequency()
             (line,) = period.plot(
-                np.degrees(amplitudes), [scene.period(each) / small for each in amplitudes], label=name
+                np.degrees(amplitudes), [scene.period(amplitude) / small for amplitude in amplitudes], label=name
             )
             few = (high - rest) * np.array([0.2, 0.4, 0.6, 0.8, 0.9])
-            seen = [simulate(scene, 8, rest + each, integrator=DOP853).frequency() for each in few]
-            period.plot(np.degrees(few), 2 * math.pi / np.array(seen) / small, "o", color=line.get_color())
+            measured = [simulate(scene, 8, rest + amplitude, integrator=DOP853).frequency() for amplitude in few]
+            period.plot(np.degrees(few), 2 * math.pi / np.array(measured) / small, "o", color=line.get_color())
             period.axvline(math.degrees(high - rest), color=line.get_color(), linewidth=0.8, linestyle=":")
         period.set(
-            xlabel="amplitude downhill from the equilibrium [degrees]", ylabel="period / that of small swings",
-            ylim=(0.9, 2.6), xlim=(0, 185), title="lines: exact theory, dots: MuJoCo",
-        )  # fmt: skip
+            xlabel="amplitude downhill from the equilibrium [degrees]",
+            ylabel="period / that of small swings",
+            ylim=(0.9, 2.6),
+            xlim=(0, 185),
+            title="lines: exact theory, dots: MuJoCo",
+        )
         period.legend()
         inclines = np.linspace(0.2, 25, 60)
-        cans = [frozen(math.radians(each)) for each in inclines]
+        cans = [frozen(math.radians(incline)) for incline in inclines]
         for index, name in ((1, "rolls off downhill from here on"), (0, "swings that far uphill, at most")):
-            swing.plot(inclines, [math.degrees(each.separatrix()[index]) for each in cans], label=name)
-        swing.plot(inclines, [math.degrees(each.equilibrium()) for each in cans], "k--", label="equilibrium, eq. (53)")
+            swing.plot(inclines, [math.degrees(can.separatrix()[index]) for can in cans], label=name)
+        swing.plot(inclines, [math.degrees(can.equilibrium()) for can in cans], "k--", label="equilibrium, eq. (53)")
         swing.set(
             xlabel="incline [degrees]", ylabel="phi [degrees]", title="frozen beer: where it swings", ylim=(-190, 190)
         )

@@ -20,139 +20,157 @@ from mjbeer.theory.scene import Scene, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 _SMALL = 0.2
-"""Amplitude of the hesitation's swing [rad]."""
+"""Amplitude [rad] of the swing that shows the hesitation."""
 _METAL = Can.sheet_metal()
 
 
 def stories() -> Iterator[Story]:
-    """Yield the stories of the chapter."""
+    """Yield the stories of this chapter."""
     yield Story(
         "trivial",
-        "Beer let go with its surface parallel to the incline stays so, and the can runs down with g sin(alpha), "
-        "exactly. Let go at 60 degrees it swings; its centre of mass runs down all the same.",
-        _trivial, Film(0.5, lambda: simulate(sliding(), 1.0, 0.0, integrator=DOP853)),
-    )  # fmt: skip
+        "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls down with exactly "
+        "g sin(alpha). Beer let go at 60 degrees swings, but its centre of mass moves down the incline just the same.",
+        draw=_draw_trivial,
+        film=Film(speed=0.5, trajectory=lambda: simulate(sliding(), 1.0, 0.0, integrator=DOP853)),
+    )
     yield Story(
         "hesitation",
-        "The can hesitates once in every swing of the beer, by b phi_0: its distance less g sin(alpha) t^2/2 swings "
-        "with the beer's frequency. Eq. (25) as printed has a far smaller ripple at twice that.",
-        _hesitation, Film(0.25, lambda: simulate(sliding(can=_METAL), 1.0, 0.6, integrator=DOP853)),
-    )  # fmt: skip
+        "The can hesitates once in every swing of the beer: its distance minus g sin(alpha) t^2/2 swings with the "
+        "beer's frequency and the amplitude b phi_0. Eq. (25) as printed has a far smaller ripple at twice that "
+        "frequency.",
+        draw=_draw_hesitation,
+        film=Film(speed=0.25, trajectory=lambda: simulate(sliding(can=_METAL), 1.0, 0.6, integrator=DOP853)),
+    )
     yield Story(
         "release",
-        "A can held still until its beer is level, then let go: phi starts at -alpha. The steeper the incline, the "
-        "wider the swing and the slower, against the frequency of small ones.",
-        _release, Film(0.5, lambda: _released(40.0)),
-    )  # fmt: skip
+        "A can is held until its beer is level and then let go, so that phi starts at -alpha. The steeper the incline, "
+        "the wider the swing, and the slower it is in comparison with small swings.",
+        draw=_draw_release,
+        film=Film(speed=0.5, trajectory=lambda: _level_start(40.0)),
+    )
     yield Story(
         "looping",
-        "Beer that loops fast in its can: what phi has besides an even rotation, over one turn. Eq. (26) has the "
-        "ripple at Omega; the one at 2 Omega is what remains when the beer spins ever faster. A can that nothing holds "
-        "down cannot do either: from 47 rad/s at the bottom on, the beer lifts it off the incline. The film has 45.",
-        _looping, Film(0.1, lambda: simulate(sliding(can=_METAL), 0.5, 0.0, 45.0, integrator=DOP853)),
-    )  # fmt: skip
+        "Beer that loops fast in its can: the difference between phi and an even rotation, over one turn. Eq. (26) "
+        "has only the ripple at Omega; the one at 2 Omega remains however fast the beer spins. A real can can do "
+        "neither of these two motions, since nothing holds it down: if phi_dot at the bottom exceeds 47 rad/s, the "
+        "beer lifts it off the incline. In the film it is 45 rad/s.",
+        draw=_draw_looping,
+        film=Film(speed=0.1, trajectory=lambda: simulate(sliding(can=_METAL), 0.5, 0.0, 45.0, integrator=DOP853)),
+    )
     yield Story(
         "ripples",
-        "Both ripples over a decade of the mean rate. The one at Omega falls as its square, 8 % under eq. (28); the "
-        "one at 2 Omega stays.",
-        _ripples,
-    )  # fmt: skip
+        "Both ripples over a decade of the mean rate Omega. The one at Omega falls in proportion to 1/Omega^2 and is "
+        "8 % smaller than by eq. (28); the one at 2 Omega does not change.",
+        draw=_draw_ripples,
+    )
 
 
-def _less_steady(run: Trajectory) -> np.ndarray:
+def _unsteady_distance(run: Trajectory) -> np.ndarray:
+    """Return u - g sin(alpha) t^2/2 [m], how far the can is ahead of one that accelerates steadily."""
     return run.u - run.scene.acceleration() * run.time**2 / 2
 
 
-def _trivial(path: pathlib.Path) -> None:
+def _draw_trivial(path: pathlib.Path) -> None:
     scene = sliding()
     times = np.linspace(0, 1, 501)
-    runs = {f"let go at {degrees:g} degrees": simulate(
-        scene, 1.0, math.radians(degrees), integrator=DOP853, timestep=1e-3, times=times
-    ) for degrees in (0, 60)}  # fmt: skip
+    runs = {
+        f"let go at {degrees:g} degrees": simulate(
+            scene, 1.0, math.radians(degrees), integrator=DOP853, timestep=1e-3, times=times
+        )
+        for degrees in (0, 60)
+    }
     with chart(path, 1, 2, width=10, height=4) as (position, angle):
         for name, run in runs.items():
             position.plot(times, run.u - run.u[0], label=name)
             angle.plot(times, np.degrees(run.phi), label=name)
-        every = times[::50]
-        position.plot(every, scene.acceleration() * every**2 / 2, "k.", label="g sin(alpha) t²/2")
+        tenths = times[::50]
+        position.plot(tenths, scene.acceleration() * tenths**2 / 2, "k.", label="g sin(alpha) t²/2")
         position.set(xlabel="time [s]", ylabel="distance of the can's axis [m]", title="how far the can is")
         angle.set(xlabel="time [s]", ylabel="surface to incline, phi [degrees]", title="how the beer lies")
         position.legend()
 
 
-def _hesitation(path: pathlib.Path) -> None:
+def _draw_hesitation(path: pathlib.Path) -> None:
     scene = sliding()
     b, omega = scene.load.offset, scene.frequency()
     times = np.linspace(0, 1, 501)
     run = simulate(scene, 1.0, _SMALL, integrator=DOP853, times=times)
     printed = b * (1 - _SMALL**2 / 4 + _SMALL**2 * np.cos(2 * omega * times) / 2)
     with chart(path, width=9, height=4.5) as (axes,):
-        axes.plot(times, 1e3 * _less_steady(run), label="MuJoCo")
+        axes.plot(times, 1e3 * _unsteady_distance(run), label="MuJoCo")
         axes.plot(
-            times[::10], 1e3 * b * _SMALL * np.cos(omega * times[::10]), "k.",
+            times[::10],
+            1e3 * b * _SMALL * np.cos(omega * times[::10]),
+            "k.",
             label="b phi₀ cos(ωt), eq. (25) corrected",
-        )  # fmt: skip
+        )
         axes.plot(times, 1e3 * (printed - b), "--", label="eq. (25) as printed, less b: at 2ω")
         axes.set(
-            xlabel="time [s]", ylabel="u - g sin(alpha) t²/2 [mm]",
+            xlabel="time [s]",
+            ylabel="u - g sin(alpha) t²/2 [mm]",
             title=f"the can's hesitation, beer let go at {math.degrees(_SMALL):.0f} degrees",
-        )  # fmt: skip
+        )
         axes.set_ylim(-3.2, 4.2)
         axes.legend(loc="upper center", ncols=3, fontsize=9)
 
 
-def _released(degrees: float, periods: float = 3.0) -> Trajectory:
-    """Over some periods of a small oscillation."""
+def _level_start(degrees: float, periods: float = 3.0) -> Trajectory:
+    """Return the swing of beer that starts level, over a number of periods of a small oscillation."""
     scene = sliding(math.radians(degrees))
     return simulate(scene, periods * 2 * math.pi / scene.frequency(), -scene.incline, integrator=DOP853)
 
 
-def _release(path: pathlib.Path) -> None:
+def _draw_release(path: pathlib.Path) -> None:
     with chart(path, width=9, height=4.5) as (axes,):
         for degrees in (5.0, 20.0, 40.0, 70.0):
-            run = _released(degrees, periods=3)
+            run = _level_start(degrees, periods=3)
             swings = run.time * run.scene.frequency() / (2 * math.pi)
             axes.plot(swings, run.phi / run.scene.incline, label=f"incline {degrees:g} degrees")
         small = np.linspace(0, 3, 61)
         axes.plot(small, -np.cos(2 * math.pi * small), "k.", label="small oscillations, eq. (24)")
         axes.set(
-            xlabel="time in periods of a small oscillation", ylabel="phi / alpha", xlim=(0, 3), ylim=(-1.1, 1.7),
+            xlabel="time in periods of a small oscillation",
+            ylabel="phi / alpha",
+            xlim=(0, 3),
+            ylim=(-1.1, 1.7),
             title="beer let go with a level surface",
-        )  # fmt: skip
+        )
         axes.legend(loc="upper center", ncols=3, fontsize=9)
 
 
-def _looping(path: pathlib.Path) -> None:
+def _draw_looping(path: pathlib.Path) -> None:
     scene = sliding()
     c = Letters.of(scene)
     with chart(path, 1, 2, width=11, height=4.5) as both:
         for axes, start in zip(both, (60.0, 400.0), strict=True):
-            seen = loop(scene, start)
-            turn = np.linspace(0, 2 * math.pi, 201)
-            phi = sum(seen.phi[k] * np.sin(k * turn) for k in range(1, 40))
-            printed = equations.epsilon_28(c, seen.rate) * np.sin(turn)
-            right = equations.corrected_28(c, seen.rate) * np.sin(turn) + equations.ripple_26(c) * np.sin(2 * turn)
-            x = np.degrees(turn)
+            turn = loop(scene, start)
+            phase = np.linspace(0, 2 * math.pi, 201)
+            phi = sum(turn.phi[k] * np.sin(k * phase) for k in range(1, 40))
+            printed = equations.epsilon_28(c, turn.rate) * np.sin(phase)
+            right = equations.corrected_28(c, turn.rate) * np.sin(phase) + equations.ripple_26(c) * np.sin(2 * phase)
+            x = np.degrees(phase)
             axes.plot(x, np.degrees(phi), label="MuJoCo")
             axes.plot(x[::8], np.degrees(right[::8]), "k.", label="with the ripple at 2Ω, to first order")
             axes.plot(x, np.degrees(printed), "--", label="eq. (26) with (28)")
             axes.set(
-                xlabel="Ωt [degrees]", ylabel="phi - Ωt [degrees]", title=f"Ω = {seen.rate:.0f} rad/s",
+                xlabel="Ωt [degrees]",
+                ylabel="phi - Ωt [degrees]",
+                title=f"Ω = {turn.rate:.0f} rad/s",
                 xticks=range(0, 361, 90),
-            )  # fmt: skip
+            )
         both[0].set_ylim(-10, 16)
         both[0].legend(loc="upper right")
 
 
-def _ripples(path: pathlib.Path) -> None:
+def _draw_ripples(path: pathlib.Path) -> None:
     scene: Scene = sliding()
     c = Letters.of(scene)
-    seen = [loop(scene, start) for start in np.geomspace(DECADE[0], DECADE[-1], 9)]
-    rates = np.array([each.rate for each in seen])
+    turns = [loop(scene, start) for start in np.geomspace(DECADE[0], DECADE[-1], 9)]
+    rates = np.array([turn.rate for turn in turns])
     line = np.geomspace(rates[0], rates[-1], 50)
     with chart(path, width=8, height=5) as (axes,):
-        axes.loglog(rates, [math.degrees(each.phi[1]) for each in seen], "o", label="at Ω, MuJoCo")
-        axes.loglog(rates, [math.degrees(each.phi[2]) for each in seen], "s", label="at 2Ω, MuJoCo")
+        axes.loglog(rates, [math.degrees(turn.phi[1]) for turn in turns], "o", label="at Ω, MuJoCo")
+        axes.loglog(rates, [math.degrees(turn.phi[2]) for turn in turns], "s", label="at 2Ω, MuJoCo")
         axes.loglog(line, np.degrees(equations.epsilon_28(c, line)), "--", label="ε, eq. (28)")
         axes.loglog(line, np.degrees(equations.corrected_28(c, line)), label="ε (1 - 3δ/8)")
         axes.loglog(line, np.degrees(np.full_like(line, equations.ripple_26(c))), label="δ/4, not in the paper")

@@ -9,12 +9,12 @@ from mjbeer.drawing.film import Film
 
 @dataclass(frozen=True)
 class Story:
-    """A scenario."""
+    """A scenario of the paper."""
 
     name: str
-    """Of its files."""
+    """Name of its files, without an ending."""
     caption: str
-    """What is to be seen."""
+    """What the plot and the film show."""
     draw: Callable[[pathlib.Path], None]
-    """Draws the plot, to a path with .svg and .png."""
+    """Writes the plot to a path, once with .svg and once with .png appended."""
     film: Film | None = None

@@ -1,1 +1,1 @@
-"""`mjbeer stability`: stiff and extreme scenes, and where stability ends."""
+"""`mjbeer stability` simulates stiff and extreme scenes, and measures up to which timestep motions stay stable."""

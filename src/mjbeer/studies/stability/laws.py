@@ -1,4 +1,4 @@
-"""Laws that a motion obeys towards an extreme, measured on MuJoCo's motions."""
+"""Laws that motions obey near an extreme, such as an unstable equilibrium, measured on MuJoCo's motions."""
 
 import dataclasses
 import math
@@ -19,9 +19,12 @@ from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 _BESIDE_FOLD = np.array([1e-6, 1e-7, 1e-8])
+"""Relative distances of sin(alpha) from that of the steepest incline with an equilibrium, the fold."""
 _BESIDE_SEPARATRIX = np.array([1e-4, 1e-6, 1e-8, 1e-10])
+"""Distances [rad] of the start from the end of the largest swing, the separatrix."""
 _SIZES = (1e-6, 1e-3, 100.0)
 _GRAVITIES = (1e-6, 1e6)
+"""Radii [m] and gravities [m/s^2] at which the scaled motion must be the same."""
 
 
 def tasks() -> list[Task]:
@@ -41,7 +44,7 @@ def laws() -> Iterator[Check]:
         "frozen, reduced, DOP853",
         bound=1e-3,
         unit="",
-        reason="the next term, the root of the largest distance, 1e-6",
+        reason="the next term of the expansion: the square root of the largest distance, 1e-6",
         deviation=lambda: _fold_exponent() - 0.25,
     )
     scenes = {"sliding, metal can": sliding(can=Can.sheet_metal()), "frozen": frozen(), "pendulum": pendulum()}
@@ -51,8 +54,8 @@ def laws() -> Iterator[Check]:
             f"{name}, reduced, DOP853",
             bound=1e-5,
             unit="relative",
-            reason="4e-16 rad of rounding at the top, where the smallest distance is 1e-10 rad",
-            deviation=lambda scene=scene: _fall_slope(scene) / fall_slope(scene) - 1,
+            reason="rounding by 4e-16 rad at the top, against the smallest distance of 1e-10 rad",
+            deviation=lambda scene=scene: _measured_fall_slope(scene) / fall_slope(scene) - 1,
         )
     for integrator, duration in (("Euler", 8.0), ("implicit", 2.4)):
         yield Check(
@@ -61,7 +64,7 @@ def laws() -> Iterator[Check]:
             bound=1e-3,
             unit="relative",
             reason="second order in the timestep",
-            deviation=lambda integrator=integrator, duration=duration: _falsified(integrator, duration),
+            deviation=lambda integrator=integrator, duration=duration: _timestep_error_ratio(integrator, duration),
         )
     for make, name in ((sliding, "sliding"), (frozen, "frozen")):
         yield Check(
@@ -69,7 +72,7 @@ def laws() -> Iterator[Check]:
             f"{name}, metal can, reduced, DOP853",
             bound=1e-10,
             unit="rad",
-            reason="rounding of what the scaled scene is made of",
+            reason="rounding of the scaled scene's sizes and masses",
             deviation=lambda make=make: _dissimilarity(make),
         )
         yield Check(
@@ -77,33 +80,38 @@ def laws() -> Iterator[Check]:
             f"{name if make is sliding else 'frozen, on the level'}, reduced, RK4, 1 ms",
             bound=0.0,
             unit="rad",
-            reason="b = 0, and so is the torque",
-            deviation=lambda make=make: _unmoved(make),
+            reason="b = 0, so that the torque is 0 as well",
+            deviation=lambda make=make: _largest_swing_of_full_can(make),
         )
 
 
 def fall_slope(scene: Scene) -> float:
-    """dt/d(ln distance) of the time to fall from beside an unstable equilibrium [s]: -1/lambda, lambda^2 = -V''/J.
+    """Return dt/d(ln distance) [s] for the time t to fall from beside an unstable equilibrium.
 
-    Off it the distance grows as cosh(lambda t). A period has four such times where both ends of the swing are unstable
-    equilibria, as on level ground and for any sliding load, and two for a frozen load on an incline.
+    It is -1/lambda with lambda^2 = -V''/J, since the distance grows as cosh(lambda t). A period has four such times
+    where both ends of the swing are unstable equilibria, as on level ground and for any sliding load, and two for a
+    frozen load on an incline.
     """
     form = scene.oscillator
     return -math.sqrt(float(form.inertia(form.barrier())) / form.stiffness())
 
 
 def _fold_exponent() -> float:
-    fold, found = math.sin(frozen().largest_incline()), []
+    """Return the measured exponent of the frequency over the distance from the fold."""
+    fold, frequencies = math.sin(frozen().largest_incline()), []
     for beside in _BESIDE_FOLD:
         scene = frozen(math.asin(fold * (1 - beside)))
-        amplitude = 1e-3 * math.sqrt(beside)  # small beside the width of the well, which goes as the root as well
+        amplitude = 1e-3 * math.sqrt(
+            beside
+        )  # far smaller than the width of the well, which shrinks like the square root too
         period = scene.period(amplitude)
         run = simulate(scene, 2.2 * period, scene.equilibrium() + amplitude, integrator=DOP853, timestep=period / 50)
-        found.append(run.frequency())
-    return observed_order(_BESIDE_FOLD, np.array(found))
+        frequencies.append(run.frequency())
+    return observed_order(_BESIDE_FOLD, np.array(frequencies))
 
 
-def _fall_slope(scene: Scene) -> float:
+def _measured_fall_slope(scene: Scene) -> float:
+    """Return the measured dt/d(ln distance) [s] of a fall from beside the separatrix."""
     top, bottom, times = scene.separatrix()[1], scene.equilibrium(), []
     for beside in _BESIDE_SEPARATRIX:
         period = scene.period(top - beside - bottom)
@@ -112,7 +120,8 @@ def _fall_slope(scene: Scene) -> float:
     return float(np.polyfit(np.log(_BESIDE_SEPARATRIX), times, 1)[0])
 
 
-def _falsified(integrator: str, duration: float) -> float:
+def _timestep_error_ratio(integrator: str, duration: float) -> float:
+    """Return the error of the turn due to the timestep over the predicted one, less 1."""
     scene, timestep, times = frozen(), 1e-3, np.array([0.0, duration])
     truth = exact(scene, times, math.pi).phi[-1]
     run = simulate(scene, duration, math.pi, rolling="equality", integrator=integrator, timestep=timestep, times=times)
@@ -120,8 +129,10 @@ def _falsified(integrator: str, duration: float) -> float:
 
 
 def _dissimilarity(make: Any) -> float:
+    """Return the largest difference of phi [rad] between cans of other sizes and gravities and the usual can."""
+
     def phi(radius: float, gravity: float) -> np.ndarray:
-        # The default can: 33 mm, 120 mm, and 0.1 mm of sheet.
+        # The proportions of the default can: radius 33 mm, length 120 mm, 0.1 mm of sheet metal.
         can = Can.sheet_metal(radius, radius * 0.12 / 0.033, radius * 1e-4 / 0.033)
         slow = math.sqrt(radius / gravity)
         return simulate(make(can=can, gravity=gravity), 40 * slow, 1.0, integrator=DOP853, timestep=slow / 8).phi
@@ -131,6 +142,7 @@ def _dissimilarity(make: Any) -> float:
     return max(float(np.abs(usual - other).max()) for other in others)
 
 
-def _unmoved(make: Any) -> float:
+def _largest_swing_of_full_can(make: Any) -> float:
+    """Return how far the load of a full can moves [rad] in 10 s, let go at 1 rad."""
     scene = make(fill=1.0) if make is sliding else make(0.0, fill=1.0)
     return float(np.abs(simulate(scene, 10.0, 1.0).phi - 1.0).max())

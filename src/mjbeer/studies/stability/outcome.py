@@ -1,4 +1,4 @@
-"""How a run ended, judged by exact theory, and whether it said so itself."""
+"""How a run ended: whether exact theory finds it accurate, and whether its own diagnostics warned if it is not."""
 
 import math
 from collections.abc import Callable
@@ -18,9 +18,9 @@ UNSTABLE = "unstable, detected"
 REFUSED = "refused"
 SILENT = "wrong and silent"
 VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT)
-"""Every way in which a run can end. The last one must not occur."""
+"""Every way in which a run can end. The last one must not occur: a run that is trusted although it is wrong."""
 _GAIN = 10.0
-"""Kinetic energy over the most that the motion can have, from which on a run that goes on is unstable."""
+"""A run is unstable if its kinetic energy exceeds the largest that the motion can have by this factor."""
 
 
 @dataclass(frozen=True)
@@ -32,15 +32,15 @@ class Outcome:
     error: float | None
     """Largest error of phi and u/a against exact theory [rad], relative beyond 1 rad; None if there is no run."""
     admitted: float | None
-    """What the run itself says it may be off [rad]: its estimate, its slip and its lift in radii."""
+    """Largest error that the run's own diagnostics allow for [rad]: its error estimate, plus slip and lift in radii."""
     says: str
-    """The run's warnings, or the error that the user sees; empty if the run is trusted."""
+    """The run's warnings, or the text of the error that ended it; empty if the run is trusted."""
 
 
 def judge(simulate: Callable[[], Trajectory]) -> Outcome:
     """Simulate a motion, and return how that ended.
 
-    Accurate is an error of phi and u/a of at most `trajectory.ERROR`, which is also what a trusted run claims.
+    A run is accurate if the error of phi and u/a is at most `trajectory.ERROR`, the limit for trusted runs as well.
 
     Raises:
       NoLibrationError: if the start lies on the separatrix, where there is no exact motion to judge by.
@@ -61,13 +61,15 @@ def judge(simulate: Callable[[], Trajectory]) -> Outcome:
     else:
         verdict = ACCURATE if error <= ERROR else INACCURATE
     admitted = (run.error_estimate or 0.0) + float(np.abs(run.slip).max() + np.abs(run.lift).max()) / radius
-    return Outcome(verdict, _known(error), _known(admitted), "; ".join(run.warnings))
+    return Outcome(verdict, _finite(error), _finite(admitted), "; ".join(run.warnings))
 
 
 def _explodes(run: Trajectory, truth: Trajectory) -> bool:
+    """Return whether a run has so much more kinetic energy than the motion can have that it is unstable."""
     most = float(kinetic_energy(run.scene, truth).max()) + 2 * run.scene.oscillator.depth
     return not float(kinetic_energy(run.scene, run).max()) <= _GAIN * most
 
 
-def _known(value: float) -> float | None:
+def _finite(value: float) -> float | None:
+    """Return the value, or None, which JSON can hold, if it is infinite or NaN."""
     return value if math.isfinite(value) else None

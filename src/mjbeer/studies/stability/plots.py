@@ -1,4 +1,4 @@
-"""Plots of the limits of stability: what was measured, with the boundary that linear theory predicts over it."""
+"""Plots of the limits of stability, measured and predicted by linear theory, and of how energy drifts."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -20,65 +20,84 @@ from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.studies.cases import CASES
 
 _CELLS = ("#E8A27C", "#BFDFF2", COLOURS[0])
-"""Colours of unstable, inaccurate and accurate cells: apart in hue as in brightness."""
+"""Colours of unstable, inaccurate and accurate cells, which differ in hue and in brightness."""
 _FLOOR = 1e-16
-"""Least share of energy that the plot of endurance shows: rounding."""
+"""Smallest share of energy that the plot of endurance shows: below it all is rounding."""
 _SEMI_IMPLICIT = "semi-implicit"
-_KIN_COLOURS = dict(zip((_SEMI_IMPLICIT, *RUNGE_KUTTA), COLOURS, strict=False))
+_METHOD_COLOURS = dict(zip((_SEMI_IMPLICIT, *RUNGE_KUTTA), COLOURS, strict=False))
+"""Colours of the plot of endurance; the semi-implicit integrators share one, because their drift is the same."""
 _MEANINGS = ("unstable", "stable, error above 1 %", "stable and accurate")
 
 
 @dataclass(frozen=True)
 class _Figure:
-    """Maps that are drawn together."""
+    """A figure that shows several maps side by side."""
 
     name: str
+    """Name of its files, without an ending."""
     columns: int
     title: str
     caption: str
     holds: Callable[[dict[str, Any]], bool]
-    """Whether a map belongs to it."""
+    """Returns whether a map belongs to the figure."""
 
 
-def _usual(each: dict[str, Any]) -> bool:
-    return each["family"] == "equality" and each["dampratio"] == 1 and each["written"] == "exact"
+def _usual(result: dict[str, Any]) -> bool:
+    """Return whether a map is of an equality with critical damping and its exact diagonal."""
+    return result["family"] == "equality" and result["dampratio"] == 1 and result["written"] == "exact"
 
 
 _FIGURES = (
     _Figure(
-        "stability-solref", 3, "How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
-        "A joint equality with refsafe off: timestep against the time constant of solref.",
-        lambda each: _usual(each) and not each["refsafe"],
+        name="stability-solref",
+        columns=3,
+        title="How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
+        caption="A joint equality with refsafe off: timestep against the time constant of solref.",
+        holds=lambda result: _usual(result) and not result["refsafe"],
     ),
     _Figure(
-        "stability-refsafe", 3, "With refsafe, short time constants are replaced without a word: stable, but softer",
-        "A joint equality with refsafe on: timestep against the time constant of solref.",
-        lambda each: _usual(each) and each["refsafe"],
+        name="stability-refsafe",
+        columns=3,
+        title="With refsafe, short time constants are replaced without a word: stable, but softer",
+        caption="A joint equality with refsafe on: timestep against the time constant of solref.",
+        holds=lambda result: _usual(result) and result["refsafe"],
     ),
     _Figure(
-        "stability-exceptions", 2, "A light damper explodes in spite of refsafe; a mistaken inertia moves the limit",
-        "A joint equality with a damping ratio of 0.1, and with MuJoCo's default diagonal, slide or hinge first.",
-        lambda each: each["family"] == "equality" and not _usual(each),
+        name="stability-exceptions",
+        columns=2,
+        title="A light damper explodes in spite of refsafe; a mistaken inertia moves the limit",
+        caption="An equality with a damping ratio of 0.1, or with MuJoCo's default diagonal, slide or hinge first.",
+        holds=lambda result: result["family"] == "equality" and not _usual(result),
     ),
     _Figure(
-        "stability-direct", 3, "A constraint with a direct (negative) solref, which refsafe does not touch",
-        "Timestep against stiffness K of solref = (-K, -2 zeta sqrt(K)).", lambda each: each["family"] == "direct",
+        name="stability-direct",
+        columns=3,
+        title="A constraint with a direct (negative) solref, which refsafe does not touch",
+        caption="Timestep against stiffness K of solref = (-K, -2 zeta sqrt(K)).",
+        holds=lambda result: result["family"] == "direct",
     ),
     _Figure(
-        "stability-contact", 4, "A can that lies on the ground: its friction halves the timestep that RK4 bears",
-        "Contact with friction: timestep against the time constant of solref.",
-        lambda each: each["family"] == "contact",
+        name="stability-contact",
+        columns=4,
+        title="A can that lies on the ground: its friction halves the timestep that RK4 bears",
+        caption="Contact with friction: timestep against the time constant of solref.",
+        holds=lambda result: result["family"] == "contact",
     ),
     _Figure(
-        "stability-gravity", 3, "A can that swings in ever stronger gravity, which no integrator takes implicitly",
-        "No constraint: timestep against gravity.", lambda each: each["family"] == "gravity",
+        name="stability-gravity",
+        columns=3,
+        title="A can that swings in ever stronger gravity, which no integrator takes implicitly",
+        caption="No constraint: timestep against gravity.",
+        holds=lambda result: result["family"] == "gravity",
     ),
     _Figure(
-        "stability-spring", 4, "A can that swings on a spring: only \"discrete\" takes it implicitly, and stays stable",
-        "No constraint: timestep against a joint's spring, by the gravity that has its frequency.",
-        lambda each: each["family"] == "spring",
+        name="stability-spring",
+        columns=4,
+        title='A can that swings on a spring: only "discrete" takes it implicitly, and stays stable',
+        caption="No constraint: timestep against a joint's spring, by the gravity that has its frequency.",
+        holds=lambda result: result["family"] == "spring",
     ),
-)  # fmt: skip
+)
 _VALUES = {
     "equality": "time constant of solref [s]",
     "contact": "time constant of solref [s]",
@@ -86,34 +105,35 @@ _VALUES = {
     "gravity": "gravity [m/s²]",
     "spring": "spring, as gravity [m/s²]",
 }
+"""Labels of the vertical axis, by family."""
 LIMITS = "stability-limits"
 """Name of the plot of the limits."""
 
 
 def draw(limits: list[dict[str, Any]], maps: list[dict[str, Any]], folder: Path) -> list[str]:
-    """Write the plots into a folder, each as SVG and as PNG; returned are lines "name: caption".
+    """Write the plots into a folder, each as SVG and as PNG, and return a line "name: caption" for each.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     drawn = []
     if limits:
-        _limits(limits, folder / LIMITS)
+        _draw_limits(limits, folder / LIMITS)
         drawn.append(f"{LIMITS}: largest timesteps of small swings, as omega h, against linear theory.")
     for figure in _FIGURES:
-        found = [each for each in maps if figure.holds(each)]
-        if found:
-            _maps(figure, found, folder / figure.name)
+        shown = [result for result in maps if figure.holds(result)]
+        if shown:
+            _draw_maps(figure, shown, folder / figure.name)
             drawn.append(f"{figure.name}: {figure.caption}")
     return drawn
 
 
-def _maps(figure: _Figure, maps: list[dict[str, Any]], path: Path) -> None:
+def _draw_maps(figure: _Figure, maps: list[dict[str, Any]], path: Path) -> None:
     columns = min(figure.columns, len(maps))
     rows = math.ceil(len(maps) / columns)
     with chart(path, rows, columns, max(3.5 * columns, 9), 3.1 * rows + 1.1) as panels:
-        for axes, each in zip(panels, maps, strict=False):
-            _panel(axes, each)
+        for axes, result in zip(panels, maps, strict=False):
+            _draw_map(axes, result)
         for axes in panels[len(maps) :]:
             axes.set_visible(False)
         for place, axes in enumerate(panels[: len(maps)]):
@@ -134,52 +154,65 @@ def _maps(figure: _Figure, maps: list[dict[str, Any]], path: Path) -> None:
         whole.suptitle(figure.title, fontsize=13)
 
 
-def _panel(axes: Axes, found: dict[str, Any]) -> None:
+def _draw_map(axes: Axes, result: dict[str, Any]) -> None:
     colours = ListedColormap(_CELLS)
-    cells = np.array(found["measured"])
+    cells = np.array(result["measured"])
     axes.pcolormesh(
-        _edges(found["timesteps"]), _edges(found["values"]), cells, cmap=colours, vmin=0, vmax=2, rasterized=True
+        _edges(result["timesteps"]), _edges(result["values"]), cells, cmap=colours, vmin=0, vmax=2, rasterized=True
     )
     axes.set(xscale="log", yscale="log")
     axes.grid(visible=False)
-    first, last = found["timesteps"][0], found["timesteps"][-1]
-    inside = [each for each in found["boundaries"] if each["predicted"] and first < each["predicted"] < last]
-    axes.plot([each["predicted"] for each in inside], [each["value"] for each in inside], color="black", linewidth=1.6)
-    seen = [each for each in found["boundaries"] if each["measured"] and first < each["measured"] < last]
+    first, last = result["timesteps"][0], result["timesteps"][-1]
+    predicted, measured = (
+        [boundary for boundary in result["boundaries"] if boundary[kind] and first < boundary[kind] < last]
+        for kind in ("predicted", "measured")
+    )
     axes.plot(
-        [each["measured"] for each in seen], [each["value"] for each in seen], linestyle="none", marker="o",
-        markersize=3.5, markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.7,
-    )  # fmt: skip
-    axes.set_title(found["name"].partition(", ")[2], fontsize=10.5)
+        [boundary["predicted"] for boundary in predicted],
+        [boundary["value"] for boundary in predicted],
+        color="black",
+        linewidth=1.6,
+    )
+    axes.plot(
+        [boundary["measured"] for boundary in measured],
+        [boundary["value"] for boundary in measured],
+        linestyle="none",
+        marker="o",
+        markersize=3.5,
+        markerfacecolor="white",
+        markeredgecolor="black",
+        markeredgewidth=0.7,
+    )
+    axes.set_title(result["name"].partition(", ")[2], fontsize=10.5)
 
 
 def _edges(centres: list[float]) -> np.ndarray:
-    """Edges of cells about centres in geometric progression."""
+    """Return the edges of cells whose centres are in geometric progression."""
     half = math.sqrt(centres[1] / centres[0])
     return np.append(np.array(centres) / half, centres[-1] * half)
 
 
-def _limits(limits: list[dict[str, Any]], path: Path) -> None:
-    names = [each for each in (*INTEGRATORS, DOP853) if any(found["integrator"] == each for found in limits)]
-    cases = [each for each in CASES if any(found["case"] == each for found in limits)]
+def _draw_limits(limits: list[dict[str, Any]], path: Path) -> None:
+    names = [name for name in (*INTEGRATORS, DOP853) if any(result["integrator"] == name for result in limits)]
+    cases = [case for case in CASES if any(result["case"] == case for result in limits)]
     markers = dict(zip(ROLLINGS, "os^", strict=True))
     with chart(path, width=10, height=6) as [axes]:
         for place, name in enumerate(names):
             for limit in (linear_stability.stable_limit(name), linear_stability.accurate_limit(name)):
                 axes.plot([place - 0.45, place + 0.45], [limit] * 2, color="black", linewidth=1.2, zorder=1)
-        for found in limits:
-            offset = (cases.index(found["case"]) - (len(cases) - 1) / 2) * 0.16
-            offset += (ROLLINGS.index(found["rolling"]) - 1) * 0.045
-            colour = COLOURS[list(CASES).index(found["case"])]
-            x = names.index(found["integrator"]) + offset
+        for result in limits:
+            offset = (cases.index(result["case"]) - (len(cases) - 1) / 2) * 0.16
+            offset += (ROLLINGS.index(result["rolling"]) - 1) * 0.045
+            colour = COLOURS[list(CASES).index(result["case"])]
+            x = names.index(result["integrator"]) + offset
             style: dict[str, Any] = {"linestyle": "none", "color": colour, "markersize": 6}
-            if not found["settled"]:
-                axes.plot([x], [found["stable"]], marker="x", **style)
+            if not result["settled"]:
+                axes.plot([x], [result["stable"]], marker="x", **style)
                 continue
-            axes.plot([x], [found["stable"]], marker=markers[found["rolling"]], **style)
-            axes.plot([x], [found["accurate"]], marker=markers[found["rolling"]], markerfacecolor="white", **style)
+            axes.plot([x], [result["stable"]], marker=markers[result["rolling"]], **style)
+            axes.plot([x], [result["accurate"]], marker=markers[result["rolling"]], markerfacecolor="white", **style)
         style = {"linestyle": "none", "color": "#555555"}
-        handles: list[Artist] = [Patch(facecolor=COLOURS[list(CASES).index(each)], label=each) for each in cases]
+        handles: list[Artist] = [Patch(facecolor=COLOURS[list(CASES).index(case)], label=case) for case in cases]
         handles += [Line2D([], [], marker=marker, label=name, **style) for name, marker in markers.items()]
         handles += [
             Line2D([], [], marker="o", label="largest stable timestep", **style),
@@ -193,25 +226,25 @@ def _limits(limits: list[dict[str, Any]], path: Path) -> None:
         axes.figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=10)
 
 
-def draw_endurance(found: Sequence[dict[str, Any]], path: Path) -> None:
-    """Draw how energy drifts with the number of swings, as `path` with .svg and with .png.
+def draw_endurance(results: Sequence[dict[str, Any]], path: Path) -> None:
+    """Draw how energy drifts with the number of swings, to `path` with .svg and with .png appended.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     lines: dict[tuple[str, int, str], list[dict[str, Any]]] = {}
-    for each in found:
-        kin = each["integrator"] if each["integrator"] in RUNGE_KUTTA else _SEMI_IMPLICIT
-        lines.setdefault((kin, each["steps"], each["name"]), []).append(each)
-    styles = {kin: iter(("-", "--", ":")) for kin in _KIN_COLOURS}
+    for result in results:
+        method = result["integrator"] if result["integrator"] in RUNGE_KUTTA else _SEMI_IMPLICIT
+        lines.setdefault((method, result["steps"], result["name"]), []).append(result)
+    styles = {method: iter(("-", "--", ":")) for method in _METHOD_COLOURS}
     with chart(path, width=9, height=6.5) as (axes,):
-        for (kin, steps, name), runs in lines.items():
-            shown = max(runs, key=lambda each: each["swings"])  # the others of its kin lie under it
-            law = " or ".join({each["law"] or "no law": None for each in runs})
+        for (method, steps, name), runs in lines.items():
+            shown = max(runs, key=lambda run: run["swings"])  # the lines of the similar integrators coincide with it
+            law = " or ".join({run["law"] or "no law": None for run in runs})
             size = np.maximum(np.abs(shown["width" if shown["law"] == "bounded" else "drift"]), _FLOOR)
-            style = next(styles[kin])
-            label = f"{', '.join(each['integrator'] for each in runs)}: {steps} steps a swing, {name} ({law})"
-            axes.plot(shown["counts"], size, style, color=_KIN_COLOURS[kin], label=label)
+            style = next(styles[method])
+            label = f"{', '.join(run['integrator'] for run in runs)}: {steps} steps a swing, {name} ({law})"
+            axes.plot(shown["counts"], size, style, color=_METHOD_COLOURS[method], label=label)
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(_FLOOR, 2)

@@ -1,4 +1,4 @@
-"""What the stability study writes: its runs as CSV, its plots, and a summary with the tables."""
+"""Writes the stability study: its runs as CSV, its plots, and a summary with the tables."""
 
 import pathlib
 
@@ -7,36 +7,39 @@ from mjbeer.studies.stability import plots, tables
 from mjbeer.studies.stability.run import Stability
 
 _READ = """
-A run is **stable and accurate** if phi and u/a stay within 0.01 rad of exact theory (relative beyond 1 rad), **stable,
-inaccurate** if they do not and the run says so, **unstable, detected** if it blows up, and is raised or flagged,
-**refused** if it ends in an error that says why, and **wrong and silent** if it is trusted and off by more: there must
-be none of those.
+A run is **stable and accurate** if phi and u/a stay within 0.01 rad of exact theory (relative beyond 1 rad). It is
+**stable, inaccurate** if they do not and the run carries a warning, **unstable, detected** if it blows up and ends in
+an error or carries a warning, **refused** if it ends in an error that states the reason, and **wrong and silent** if it
+is trusted although its error is larger: there must be none of those.
 """
+"""How to read the first table of the summary."""
 _ENDURANCE = (
-    "stability-endurance: energy drifts with the number of swings by laws that theory gives. It stays in bounds where "
-    "semi-implicit Euler is symplectic; where each step loses a share, were it by rounded coefficients, it falls in "
-    "proportion."
+    "stability-endurance: energy drifts with the number of swings by laws that theory gives. It stays within bounds "
+    "where semi-implicit Euler is symplectic. Where each step loses a share of it, even if only because coefficients "
+    "are rounded, the drift grows in proportion to the number of swings."
 )
+"""Name and caption of the plot of endurance."""
 
 
-def write(found: Stability, folder: pathlib.Path) -> None:
-    """Write runs.csv, the plots, and last summary.md.
+def write(study: Stability, folder: pathlib.Path) -> None:
+    """Write runs.csv, the plots, and at the end summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
-    files.write(folder / "runs.csv", tables.runs(found))
-    plots.draw_endurance(found.of("endurance"), folder / "stability-endurance")
-    pictures = [*plots.draw(found.of("limits"), found.of("maps"), folder), _ENDURANCE]
-    lines = ["# mjbeer: stability", "", f"{_words(found)}", _READ]
-    lines += [tables.verdicts(found).markdown()]
-    for name, caption in (each.split(": ", 1) for each in pictures):
+    files.write(folder / "runs.csv", tables.runs(study))
+    plots.draw_endurance(study.of("endurance"), folder / "stability-endurance")
+    pictures = [*plots.draw(study.of("limits"), study.of("maps"), folder), _ENDURANCE]
+    lines = ["# mjbeer: stability", "", f"{_verdict(study)}", _READ]
+    lines += [tables.verdicts(study).markdown()]
+    for name, caption in (picture.split(": ", 1) for picture in pictures):
         lines += [f"![{name}]({name}.svg)", "", f"{caption[0].upper()}{caption[1:]}", ""]
-    lines += [table.markdown() for table in tables.tables(found)[1:]]
-    lines += [tables.catalogue(found).markdown(), tables.reasons(found).markdown()]
+    lines += [table.markdown() for table in tables.tables(study)[1:]]
+    lines += [tables.catalogue(study).markdown(), tables.reasons(study).markdown()]
     files.write(folder / "summary.md", "\n".join(lines))
 
 
-def _words(found: Stability) -> str:
-    count = len(found.unexpected)
+def _verdict(study: Stability) -> str:
+    """Return a sentence on whether the results are what theory expects."""
+    count = len(study.unexpected)
     return "All came out as theory expects." if not count else f"**{count} did not come out as theory expects.**"

@@ -1,4 +1,4 @@
-"""The stability study: its tasks, run one after the other and kept as they are done."""
+"""The stability study: runs its tasks one after the other and keeps each result as soon as it is measured."""
 
 import pathlib
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from mjbeer.studies.study import Study, Task
 
 @dataclass
 class Stability(Study):
-    """A study of stability: results by group and name of the task."""
+    """A study of stability: the results of its tasks, by group and name."""
 
     command = "mjbeer stability"
     results: dict[str, dict[str, dict[str, Any]]] = field(default_factory=dict)
@@ -25,15 +25,15 @@ class Stability(Study):
 
     @property
     def unexpected(self) -> list[str]:
-        """What did not come out as theory expects: names of tasks, with the setting where they have several."""
-        found = []
+        """Names of the tasks whose results are not what theory expects, with the setting where a task has several."""
+        names = []
         for group, tasks in self.results.items():
             for name, result in tasks.items():
                 runs = result.get("runs", [])
-                found += [f"{group}: {name}: {each['setting']}" for each in runs if not each["as_expected"]]
+                names += [f"{group}: {name}: {run['setting']}" for run in runs if not run["as_expected"]]
                 if not (result.get("as_expected", True) and result.get("agrees", True)) or result.get("silent"):
-                    found.append(f"{group}: {name}")
-        return found
+                    names.append(f"{group}: {name}")
+        return names
 
 
 def tasks(quick: bool) -> list[Task]:
@@ -49,23 +49,23 @@ def tasks(quick: bool) -> list[Task]:
 
 
 def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
-    """Do what the study in `folder` lacks, and return it; it is kept as stability.json after each task.
+    """Run the tasks whose results the study in `folder` lacks, and return the study.
 
-    A summary of an earlier one goes first.
+    It is saved as stability.json after each task. The summary of an earlier study is removed first.
 
     Raises:
       OutputError: if the folder cannot be written to.
-      ParameterError: if there is a stability.json that is something else.
+      ParameterError: if stability.json is there but is not such a study.
     """
     path = folder / "stability.json"
-    found = Stability.begin(path, {"quick": quick}, console)
+    study = Stability.begin(path, {"quick": quick}, console)
     (folder / "summary.md").unlink(missing_ok=True)
     todo = tasks(quick)
     with progress_bar(console, len(todo)) as begin:
         for task in todo:
             begin(f"{task.group}: {task.name}")
-            group = found.results.setdefault(task.group, {})
+            group = study.results.setdefault(task.group, {})
             if task.name not in group:
                 group[task.name] = task.measure()
-                found.save(path)
-    return found
+                study.save(path)
+    return study

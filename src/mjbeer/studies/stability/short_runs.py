@@ -1,7 +1,7 @@
-"""Short runs of a can frozen to its load on the level, at any timestep and stiffness, and what linear theory says.
+"""Short runs of a can with frozen beer on level ground, at any timestep and stiffness, measured and by linear theory.
 
-Both are judged by one rule, from the same small start: a motion that leaves `GROWTH` times its start is unstable, one
-that is off by `ACCURACY` in the first half period is inaccurate.
+Both motions begin with the same small swing and are judged by the same rule: a motion that grows beyond `GROWTH` times
+its start is unstable, one whose error exceeds `ACCURACY` in the first half period is inaccurate.
 """
 
 import math
@@ -23,35 +23,35 @@ from mjbeer.theory.scene import Scene, frozen
 FREE = ("gravity", "spring")
 """Families without a constraint."""
 UNSTABLE, INACCURATE, ACCURATE = 0, 1, 2
-"""What a run is."""
+"""Outcomes of a run, as numbers for the cells of a map."""
 IMPEDANCE = 0.9
-"""solimp's dmin and dmax of the rows: MuJoCo's default dmin."""
+"""dmin and dmax in the solimp of the constraints: both are MuJoCo's default dmin."""
 _SWING = 1e-4
 """Angle from which the can is let go [rad]."""
 _SEED = 1e-7
 """Initial violation of the constraint, relative to `_SWING` (or to half the contact's depth). It must be tiny: a stiff
 constraint corrects it within one time constant, and 1e-4 would already disturb the swing by 1 % at tau = 1 ms."""
 _STEPS = 1000
-"""Least number of steps of a run: in that time an instability of 2 % a step outgrows any seed."""
+"""Least number of steps of a run: within it, a growth of 2 % a step makes any initial violation visible."""
 _LEVEL = frozen(incline=0.0)
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What is run, but for timestep and stiffness."""
+    """Everything that defines a run except timestep and stiffness."""
 
     family: str
-    """"equality" or "contact" with a solref of time constants, "direct" (an equality with a direct solref), or
-    "gravity" (no constraint), or "spring" (the same, with a joint's spring of its frequency instead of gravity)."""
+    """What makes the motion stiff: a constraint ("equality" or "contact") whose solref has a time constant, an equality
+    with a direct solref ("direct"), or, without a constraint, "gravity" or a joint's "spring" of the same frequency."""
     integrator: str
     refsafe: bool = False
     dampratio: float = 1.0
     written: str = "exact"
-    """An equality with its "exact" diagonal, or with MuJoCo's default one and the "slide" or the "hinge" first."""
+    """Whether an equality has its "exact" diagonal, or MuJoCo's default one with the "slide" or the "hinge" first."""
 
     @property
     def name(self) -> str:
-        """Unique among the plans."""
+        """Name that is unique among the plans."""
         parts = [self.family, self.integrator]
         parts += ["refsafe"] if self.refsafe else []
         parts += [f"damping ratio {self.dampratio:g}"] if self.dampratio != 1 else []
@@ -67,14 +67,14 @@ class ShortRuns:
         self._scene = frozen(incline=0.0, gravity=value) if plan.family in FREE else _LEVEL
         self._model = _model(plan, self._scene, value)
         excess = diagonal_excess(self._scene)
-        # With the hinge first the row is divided by the radius, but not what MuJoCo takes for its diagonal.
+        # With the hinge first the row is divided by the radius, but MuJoCo's estimate of its diagonal is not.
         self._excess = {"exact": 1.0, "slide": excess, "hinge": excess * self._scene.can.radius**2}[plan.written]
-        self._points = _touching(self._model)
+        self._points = _contact_points(self._model)
         self._frequency = self._scene.frequency()
 
     def measure(self, timestep: float) -> int:
-        """Return what MuJoCo's run with a timestep [s] is: UNSTABLE, INACCURATE or ACCURATE."""
-        rest, start = self._ready(timestep)
+        """Simulate with a timestep [s] and return the outcome: UNSTABLE, INACCURATE or ACCURATE."""
+        rest, start = self._rest_and_start(timestep)
         samples = np.arange(self._steps(timestep) + 1)
         try:
             if self._plan.integrator == DOP853:
@@ -86,18 +86,19 @@ class ShortRuns:
         return self._judge(states - rest, rest, start, timestep)
 
     def predict(self, timestep: float) -> int:
-        """Return the same by linear theory: the start is multiplied by the matrix of a step again and again."""
-        rest, start = self._ready(timestep)
+        """Return the outcome by linear theory, which multiplies the start by the matrix of one step again and again."""
+        rest, start = self._rest_and_start(timestep)
         unit = np.repeat([1.0, timestep], len(start) // 2)
         states = linear_stability.motion(self._step(rest, timestep), start * unit, self._steps(timestep))
         with np.errstate(over="ignore"):
             return self._judge(states / unit, rest, start, timestep)
 
     def _step(self, rest: np.ndarray, timestep: float) -> np.ndarray:
+        """Return the matrix of one step by linear theory."""
         plan, joints = self._plan, places(self._model)
         if plan.family in FREE:
             spring = SoftRow(self._frequency**2, 0.0, 1.0)
-            if plan.family == "spring" and plan.integrator == "discrete":  # implicit in it, as in a row
+            if plan.family == "spring" and plan.integrator == "discrete":  # takes springs implicitly, like constraints
                 spring = spring.at_end_of_step(timestep)
             return linear_stability.amplification(
                 plan.integrator, spring.stiffness * timestep**2, spring.damping * timestep
@@ -111,14 +112,15 @@ class ShortRuns:
         return system.step(plan.integrator, _row(plan, self._value, timestep), timestep)
 
     def _steps(self, timestep: float) -> int:
+        """Return the number of steps of a run: half a period, or `_STEPS` if that is more."""
         return max(_STEPS, math.ceil(self._half(timestep)))
 
     def _half(self, timestep: float) -> float:
-        """Timesteps in half a period."""
+        """Return how many timesteps half a period has."""
         return math.pi / (self._frequency * timestep)
 
-    def _ready(self, timestep: float) -> tuple[np.ndarray, np.ndarray]:
-        """The state at rest, at the depth at which a contact carries the can, and how far from it a run starts."""
+    def _rest_and_start(self, timestep: float) -> tuple[np.ndarray, np.ndarray]:
+        """Set the timestep; return the state at rest, carried by a contact if any, and how far from it a run starts."""
         model = self._model
         model.opt.timestep = timestep
         rest = settle(model, np.zeros(model.nq + model.nv))
@@ -129,7 +131,7 @@ class ShortRuns:
         return rest, start
 
     def _judge(self, states: np.ndarray, rest: np.ndarray, start: np.ndarray, timestep: float) -> int:
-        """The verdict on states relative to the rest. A contact must not lose half of its depth."""
+        """Return the outcome of states relative to the rest; a can in contact must stay within half of its depth."""
         model, joints = self._model, places(self._model)
         bounds = GROWTH * start[: model.nq]
         if "lift" in joints:
@@ -141,15 +143,16 @@ class ShortRuns:
         early = states[: max(1, math.floor(self._half(timestep))) + 1]
         angles = self._frequency * timestep * np.arange(len(early))
         phi, rate = early[:, at] / _SWING, early[:, model.nq + at] / (_SWING * self._frequency)
-        off = np.hypot(phi - np.cos(angles), rate + np.sin(angles))
-        return ACCURATE if off.max() < ACCURACY else INACCURATE
+        errors = np.hypot(phi - np.cos(angles), rate + np.sin(angles))
+        return ACCURATE if errors.max() < ACCURACY else INACCURATE
 
 
 def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
+    """Return the model of a plan at one stiffness, as `ShortRuns` takes it."""
     if plan.family in FREE:
         model = build(scene, "reduced", integrator=plan.integrator)
         if plan.family == "spring":
-            _hang(model, scene)
+            _replace_gravity_by_spring(model, scene)
         return model
     damping = 2 * plan.dampratio * math.sqrt(value)
     softness = Softness(
@@ -163,8 +166,8 @@ def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
     return build(scene, rolling, integrator=plan.integrator, softness=softness)
 
 
-def _hang(model: mujoco.MjModel, scene: Scene) -> None:
-    """Replace gravity by a spring on the joint phi that gives a small swing the same frequency."""
+def _replace_gravity_by_spring(model: mujoco.MjModel, scene: Scene) -> None:
+    """Replace gravity by a spring on the joint phi with which a small swing has the same frequency."""
     data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
     mujoco.mj_forward(model, data)
     mujoco.mj_fullM(model, data, mass)
@@ -174,8 +177,8 @@ def _hang(model: mujoco.MjModel, scene: Scene) -> None:
     model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SPRING)
 
 
-def _touching(model: mujoco.MjModel) -> int:
-    """In how many points a can at rest touches the incline."""
+def _contact_points(model: mujoco.MjModel) -> int:
+    """Return the number of points at which a can at rest touches the ground."""
     data = mujoco.MjData(model)
     data.qpos[:] = settle(model, np.zeros(model.nq + model.nv))[: model.nq]
     mujoco.mj_forward(model, data)
@@ -183,7 +186,7 @@ def _touching(model: mujoco.MjModel) -> int:
 
 
 def _row(plan: Plan, value: float, timestep: float) -> SoftRow:
-    """The row as MuJoCo has it, after refsafe."""
+    """Return the constraint's row as MuJoCo uses it, which refsafe may have softened."""
     if plan.family == "direct":
         return soft_constraint.direct(value, 2 * plan.dampratio * math.sqrt(value), IMPEDANCE)
     timeconst = value

@@ -1,4 +1,4 @@
-"""Small swings of a scene about its equilibrium: runs, their energy and error, and the accuracy that theory expects."""
+"""Small swings of a scene about its equilibrium: whether they are stable and accurate, and what theory predicts."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,9 +19,9 @@ from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene
 
 STABLE_AMPLITUDE = 1e-4
-"""Of the swing that has to stay bounded [rad]: grown a hundredfold, its frequency is off by 1e-5 or less."""
+"""Amplitude of the swing that has to stay bounded [rad]: even a hundredfold, it changes the frequency by 1e-5 only."""
 ACCURATE_AMPLITUDE = 1e-3
-"""Of the swing that has to stay accurate [rad]: what is nonlinear is in the exact motion as well."""
+"""Amplitude of the swing that has to stay accurate [rad]: the exact motion has the same nonlinearity."""
 _FREE_FALL = 1e-2
 """Relative tolerance for saying that the last RK4 stage was in free fall. Without contact it adds -g h cos(alpha)/6 to
 lift_dot; with contact, a thousandth of that."""
@@ -29,16 +29,16 @@ lift_dot; with contact, a thousandth of that."""
 
 @dataclass(frozen=True)
 class Swings:
-    """Swings of one scene, rolled and integrated in one way; timesteps are given as omega h."""
+    """Swings of one scene with one way of rolling and one integrator. `swing` is the timestep as omega h."""
 
     scene: Scene
     rolling: str
     integrator: str
     settled: bool = True
-    """Whether a can in contact starts at the depth at which it is carried, or 1e-9 radii deep, as in `simulate`."""
+    """Whether a can in contact starts at the depth at which it is carried, or 1e-9 radii deep as in `simulate`."""
 
     def bounded(self, swing: float) -> bool:
-        """Return whether the energy stays below `GROWTH` squared times that of the start, over `PERIODS` periods."""
+        """Return whether the energy stays below `GROWTH` squared times its initial value, over `PERIODS` periods."""
         form, rest = self.scene.oscillator, self.scene.equilibrium()
         try:
             motion = self._simulate(swing, STABLE_AMPLITUDE, math.floor(PERIODS * 2 * math.pi / swing))
@@ -61,34 +61,38 @@ class Swings:
         return bool(off.max() < ACCURACY * ACCURATE_AMPLITUDE)
 
     def accurate_limit(self) -> float:
-        """Return the largest omega h of an accurate swing, as theory has it.
+        """Return the largest omega h of an accurate swing by theory.
 
-        A contact is soft, the softer the longer the timestep to which it is tuned: the can sinks in by delta, in
-        proportion to h^2, and rolls as one of the radius a - delta/2, whose equilibrium and frequency are a little
-        different. delta is read from the model at rest.
+        A contact is the softer the longer the timestep to which it is tuned. The can sinks in by delta, in proportion
+        to h^2, and rolls like one of radius a - delta/2, whose equilibrium and frequency are slightly different. delta
+        is read from the model at rest.
         """
         if self.rolling != "contact":
             return linear_stability.accurate_limit(self.integrator)
         omega, rest = self.scene.frequency(), self.scene.equilibrium()
         model = build(self.scene, self.rolling, integrator=self.integrator, timestep=1 / omega)
-        lying = settle(model, state.start(model, self.scene, rest, 0.0))
-        depth = -float(state.read(model, self.scene, lying[None], times=np.zeros(1)).lift[0])
+        settled = settle(model, state.start(model, self.scene, rest, 0.0))
+        depth = -float(state.read(model, self.scene, settled[None], times=np.zeros(1)).lift[0])
 
         def excess(swing: float) -> float:
-            form = self._sunk(depth * swing**2)
+            form = self._oscillator_at_depth(depth * swing**2)
             drift = (form.equilibrium() - rest) / ACCURATE_AMPLITUDE
             return linear_stability.error(self.integrator, swing, drift, form.frequency() / omega) - ACCURACY
 
         return linear_stability.first(excess, 5e-3, linear_stability.stable_limit(self.integrator))
 
     def loses_a_stage(self, swing: float) -> bool:
-        """Return whether the last of RK4's stages has no contact in the first step: it falls freely, at a sixth."""
+        """Return whether the last of RK4's stages in the first step has no contact and falls freely.
+
+        That stage has a weight of a sixth, so that it then adds -g h cos(alpha)/6 to lift_dot.
+        """
         timestep = swing / self.scene.frequency()
         motion = self._simulate(swing, STABLE_AMPLITUDE, 1)
         falls = -self.scene.gravity * math.cos(self.scene.incline) * timestep / 6
         return bool(abs(motion.lift_dot[1] / falls - 1) < _FREE_FALL)
 
     def _simulate(self, swing: float, amplitude: float, steps: int) -> Coordinates:
+        """Return a number of steps of a swing of an amplitude [rad]."""
         scene, timestep = self.scene, swing / self.scene.frequency()
         prepared = Prepared(scene, Setting(self.rolling, self.integrator, timestep))
         start = prepared.start(scene.equilibrium() + amplitude, 0.0)
@@ -96,8 +100,8 @@ class Swings:
         times = timestep * np.arange(steps + 1)
         return prepared.coordinates(prepared.solve(start, times).states, times)
 
-    def _sunk(self, depth: float) -> Oscillator:
-        """The oscillator of a can that has sunk in by a depth [m]."""
+    def _oscillator_at_depth(self, depth: float) -> Oscillator:
+        """Return the oscillator of a can that has sunk into the incline by a depth [m]."""
         scene = self.scene
         reduce = Oscillator.sliding if scene.attachment == "sliding" else Oscillator.frozen
         can = replace(scene.can, radius=scene.can.radius - depth / 2)

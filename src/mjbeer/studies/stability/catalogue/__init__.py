@@ -1,1 +1,1 @@
-"""Stiff and extreme scenes, and those that random search found."""
+"""A catalogue of stiff and extreme scenes, and of those in which the random search found errors."""

@@ -1,4 +1,4 @@
-"""A case of the catalogue of stiff and extreme scenes: why it is one, what theory expects, and how it is tried."""
+"""A case of the catalogue: why it is stiff or extreme, what theory expects, and in which ways it is simulated."""
 
 import dataclasses
 import math
@@ -19,25 +19,26 @@ from mjbeer.theory.trajectory import Trajectory
 SWINGS = 5.0
 """Length of a run, in natural periods."""
 _STEPS, _LARGE_STEPS = 300, 100
-"""Timesteps a natural period; the second for DOP853."""
+"""Timesteps a natural period; the second number is for DOP853."""
 _DESK = (0.1, 30.0)
-"""Shortest and longest run with the default timestep, as somebody would make it who thinks of a can on a desk [s]."""
+"""Shortest and longest run with the default settings [s], chosen as for a can on a desk, whatever the scene."""
 TOLERANCE = 1e-9
-"""Tolerance of the runs that have one [rad]."""
+"""Tolerance of the runs that are made to a tolerance [rad]."""
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """One run of a case."""
+    """One way to simulate a case."""
 
     setting: str
+    """Name of the way: of rolling, integrator, and timestep or tolerance."""
     simulate: Callable[[], Trajectory]
     expected: tuple[str, ...] = ()
     """Outcomes that theory allows. If empty, every outcome but "wrong and silent" is allowed."""
     within: float = math.inf
-    """Largest error that is expected of an accurate run [rad]."""
+    """Largest error that a run may have to be as expected [rad]."""
     sample: bool = True
-    """Whether it is part of a quick study."""
+    """Whether a quick study includes it."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +46,10 @@ class CatalogueCase:
     """A stiff or extreme case."""
 
     kind: str
-    """The list that it is on."""
+    """Part of the catalogue: "stiff", "extreme" or "found"."""
     name: str
     why: str
-    """Why it is extreme."""
+    """Why it is stiff or extreme."""
     theory: str
     """What theory expects."""
     attempts: tuple[Attempt, ...]
@@ -58,21 +59,22 @@ class CatalogueCase:
         return Task("catalogue", f"{self.kind}: {self.name}", partial(self.measure, quick))
 
     def measure(self, quick: bool) -> dict[str, Any]:
-        """Try the case, in a sample of its ways if `quick`, and return what came of it as JSON has it."""
+        """Simulate the case in all its ways, or in a sample if `quick`, and return the outcomes in a form for JSON."""
         about = {name: getattr(self, name) for name in ("kind", "name", "why", "theory")}
         return about | {"runs": [_check(attempt) for attempt in self.attempts if attempt.sample or not quick]}
 
 
 def _check(attempt: Attempt) -> dict[str, Any]:
+    """Return the outcome of a run, and whether it is among those that theory allows."""
     outcome = judge(attempt.simulate)
     allowed = outcome.verdict in attempt.expected if attempt.expected else outcome.verdict != SILENT
     allowed = allowed and (outcome.error is None or outcome.error <= attempt.within)
-    ended = dataclasses.asdict(outcome)
-    return {"setting": attempt.setting, **ended, "expected": list(attempt.expected), "as_expected": allowed}
+    about = dataclasses.asdict(outcome)
+    return {"setting": attempt.setting, **about, "expected": list(attempt.expected), "as_expected": allowed}
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
-    """Return the time in which something happens [s]: a small swing, a turn, or a fall through the radius."""
+    """Return the time scale of a motion [s]: a small swing or a turn, or else a fall through the radius."""
     turn = 2 * math.pi / abs(phi_dot0) if phi_dot0 else math.inf
     try:
         frequency = scene.frequency()
@@ -91,30 +93,31 @@ def attempts(
     expected: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
     swings: float = SWINGS,
 ) -> tuple[Attempt, ...]:
-    """Return attempts at a start in every way of rolling, with every integrator, at timesteps that suit the scene.
+    """Return attempts at a motion in every way of rolling, with every integrator, at timesteps that suit the scene.
 
-    Without another word in `expected` (by way of rolling, or "tolerance"), a reduced model is expected to be accurate
-    under RK4, DOP853 and to a tolerance, an equality under RK4 and to a tolerance where MuJoCo has such a model, and
-    nothing is expected of a contact, which may part, or of methods of first order.
+    `expected` gives the allowed outcomes by way of rolling, or for "tolerance". Where it does not, a reduced model must
+    be accurate with RK4, with DOP853 and to a tolerance, and an equality with RK4 and to a tolerance. A model that
+    MuJoCo cannot have must be refused. A contact, which may part, and methods of first order may end in any way but
+    "wrong and silent".
     """
     period = natural_period(scene, phi_dot0)
-    go = partial(simulate, scene, swings * period, phi0, phi_dot0)
-    found = []
+    start = partial(simulate, scene, swings * period, phi0, phi_dot0)
+    tries = []
     for rolling in ("reduced", "equality", "contact"):
-        able = supported(scene, rolling)
-        good = expected.get(rolling, (ACCURATE,) if rolling != "contact" else ()) if able else (REFUSED,)
+        possible = supported(scene, rolling)
+        usual = expected.get(rolling, (ACCURATE,) if rolling != "contact" else ()) if possible else (REFUSED,)
         steps = dict.fromkeys(INTEGRATORS, period / _STEPS) | {DOP853: period / _LARGE_STEPS}
         for integrator, timestep in steps.items():
             first_order = integrator not in ("RK4", DOP853)
-            run = partial(go, rolling, integrator, timestep)
-            hopes = () if able and (first_order or (rolling != "reduced" and integrator == DOP853)) else good
+            run = partial(start, rolling, integrator, timestep)
+            wanted = () if possible and (first_order or (rolling != "reduced" and integrator == DOP853)) else usual
             label = f"{rolling}, {integrator}, T/{round(period / timestep)}"
-            found.append(Attempt(label, run, hopes, sample=integrator == "RK4"))
+            tries.append(Attempt(label, run, wanted, sample=integrator == "RK4"))
         if rolling != "contact":
-            run = partial(go, rolling, timestep=period / _STEPS, tolerance=TOLERANCE)
+            run = partial(start, rolling, timestep=period / _STEPS, tolerance=TOLERANCE)
             label = f"{rolling}, to a tolerance of {TOLERANCE:g}"
-            wanted = expected.get("tolerance", good) if able else good
-            found.append(Attempt(label, run, wanted, TOLERANCE if wanted == (ACCURATE,) else math.inf))
-    shown = min(max(swings * period, _DESK[0]), _DESK[1])
-    found.append(Attempt("reduced, RK4, 1 ms", partial(simulate, scene, shown, phi0, phi_dot0)))
-    return tuple(found)
+            wanted = expected.get("tolerance", usual) if possible else usual
+            tries.append(Attempt(label, run, wanted, TOLERANCE if wanted == (ACCURATE,) else math.inf))
+    duration = min(max(swings * period, _DESK[0]), _DESK[1])
+    tries.append(Attempt("reduced, RK4, 1 ms", partial(simulate, scene, duration, phi0, phi_dot0)))
+    return tuple(tries)

@@ -1,4 +1,4 @@
-"""The catalogue of stiff and extreme cases, and of what the search found."""
+"""All cases of the catalogue: stiff ones, extreme ones, and those that the random search found."""
 
 from mjbeer.studies.stability.catalogue import extreme, found, stiff
 from mjbeer.studies.stability.catalogue.case import CatalogueCase
@@ -11,5 +11,5 @@ def cases() -> list[CatalogueCase]:
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Return one task a case; quickly, with fewer ways to try it."""
+    """Return one task a case; a `quick` study tries each in fewer ways."""
     return [case.task(quick) for case in cases()]

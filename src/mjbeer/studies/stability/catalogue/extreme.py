@@ -10,16 +10,23 @@ from mjbeer.theory.load import Load
 from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 
 _FILLS = (1e-6, 1e-3, 1 - 1e-3, 1 - 1e-6, 1.0)
+"""Heights of the beer over the can's diameter."""
 _INCLINES = (0.0, 1e-8, 89.9)
+"""Inclines [degrees]."""
 _FOLD = (-1e-2, -1e-6, 1e-6, 1e-2)
+"""Relative differences of sin(alpha) from that of the steepest incline with an equilibrium, the fold."""
 _RADII = (1e-6, 1e-3, 100.0)
+"""Radii of cans [m]."""
 _GRAVITIES = (0.0, 1e-6, 1e6)
+"""Gravities [m/s^2]."""
 _BESIDE_SEPARATRIX = (1e-2, 1e-6, 1e-10)
+"""Distances of the start from the end of the largest swing [rad]."""
 _SPINS = (1e2, 1e4)
+"""Initial rates phi_dot [rad/s]."""
 
 
 def cases() -> Iterator[CatalogueCase]:
-    """Yield the cases."""
+    """Yield the cases of this module."""
     for fill in _FILLS:
         yield from _fill(fill)
     yield from _inclines()
@@ -31,40 +38,42 @@ def cases() -> Iterator[CatalogueCase]:
     yield from _points()
     for name, scene in _everywhere():
         yield CatalogueCase(
-            "extreme", f"{name}, let go at pi", "exactly on top, where a sliding load balances and a frozen one rolls",
-            "at pi to the last bit of a double a balanced load stays, but for what rounding adds", attempts(
-                scene, math.pi, expected={"reduced": (), "equality": (), "tolerance": (ACCURATE, REFUSED)}
-            ),
-        )  # fmt: skip
+            "extreme",
+            f"{name}, let go at pi",
+            "it starts exactly on top, where a sliding load balances and a frozen one rolls down",
+            "a load that balances stays at the double nearest to pi, unless rounding pushes it off",
+            attempts(scene, math.pi, expected={"reduced": (), "equality": (), "tolerance": (ACCURATE, REFUSED)}),
+        )
 
 
 def _everywhere() -> tuple[tuple[str, Scene], ...]:
+    """Return one scene of each kind, by name."""
     metal = Can.sheet_metal()
     return ("sliding", sliding(can=metal)), ("frozen", frozen()), ("pendulum", pendulum())
 
 
 def _fill(fill: float) -> Iterator[CatalogueCase]:
-    near = f"{fill:g}" if fill < 0.5 or fill == 1 else f"1 - {1 - fill:.0e}"
+    amount = f"{fill:g}" if fill < 0.5 or fill == 1 else f"1 - {1 - fill:.0e}"
     for name, make in (("sliding", sliding), ("frozen", frozen)):
         for metal in (False, True):
             scene = make(fill=fill, can=Can.sheet_metal() if metal else None)
             theory, swings = "an oscillation like any other", SWINGS
             expected: dict[str, tuple[str, ...]] = {}
             if fill == 1:
-                theory = "b = 0: nothing restores the load, and it stays as it is"
+                theory = "b = 0: no torque acts on the load, and it stays where it is"
             elif fill > 0.5 and make is sliding:
-                # Half a swing, or what rounding makes of it takes minutes.
-                way, swings = scene.acceleration() / 2 * (natural_period(scene) / 2) ** 2, 0.5
+                # Only half a swing: where rounding disturbs the motion, a whole one would take minutes.
+                distance, swings = scene.acceleration() / 2 * (natural_period(scene) / 2) ** 2, 0.5
                 lost = (ACCURATE, INACCURATE, REFUSED)
                 theory = (
-                    f"a slow swing, while the can rolls {way:.0e} m: rounding of that is a share of "
-                    f"{2**-53 * way / scene.load.offset:.0e} of b"
+                    f"a slow swing, while the can rolls {distance:.0e} m: rounding of that distance is "
+                    f"{2**-53 * distance / scene.load.offset:.0e} of b"
                 )
                 expected = {"reduced": lost, "equality": (*lost, UNSTABLE), "tolerance": lost}
             yield CatalogueCase(
                 "extreme",
-                f"{name}, {'metal' if metal else 'massless'} can, fill {near}",
-                "a film of beer" if fill < 0.5 else "hardly any offset, or none",
+                f"{name}, {'metal' if metal else 'massless'} can, fill {amount}",
+                "a thin film of beer" if fill < 0.5 else "the centre of mass is next to the axis, or on it",
                 theory,
                 attempts(scene, 1.0, expected=expected, swings=swings),
             )
@@ -77,7 +86,7 @@ def _inclines() -> Iterator[CatalogueCase]:
             yield CatalogueCase(
                 "extreme",
                 f"{name}, incline {incline:g} degrees",
-                "level, or hardly tilted" if incline < 1 else "nearly a wall: the can is hardly pressed on it",
+                "level, or hardly tilted" if incline < 1 else "nearly a wall: hardly anything presses the can on it",
                 "an oscillation" if incline < 1 or make is sliding else "no equilibrium; the can rolls down",
                 attempts(scene, 0.5, expected={"tolerance": (ACCURATE,) if incline < 1 else (ACCURATE, REFUSED)}),
             )
@@ -89,7 +98,7 @@ def _inclines() -> Iterator[CatalogueCase]:
         yield CatalogueCase(
             "extreme",
             f"frozen, {abs(beside):.0e} {side} the fold",
-            "sin(alpha) = m b/((m + m_can) a), where the equilibrium of eq. (53) ends",
+            "near sin(alpha) = m b/((m + m_can) a), above which eq. (53) has no equilibrium",
             "below, a slow swing in a shallow well; above, a can that lingers and then rolls down",
             attempts(scene, start),
         )
@@ -102,7 +111,9 @@ def _sizes() -> Iterator[CatalogueCase]:
             yield CatalogueCase(
                 "extreme",
                 f"{name}, can of {radius:g} m",
-                "masses go with the cube of the size, inertias with the fifth power" if radius < 1 else "a gasometer",
+                "masses go with the cube of the size, inertias with the fifth power"
+                if radius < 1
+                else "the size of a gasometer",
                 "the same motion, in units of sqrt(a/g)",
                 attempts(make(can=can), 1.0),
             )
@@ -114,7 +125,7 @@ def _gravity(gravity: float) -> Iterator[CatalogueCase]:
         yield CatalogueCase(
             "extreme",
             f"{name}, g = {gravity:g} m/s^2",
-            "nothing presses the can on the incline" if gravity == 0 else "time runs as the root of g",
+            "nothing presses the can on the incline" if gravity == 0 else "times are proportional to 1/sqrt(g)",
             "a load that turns for ever" if gravity == 0 else "the same motion, in units of sqrt(a/g)",
             attempts(scene, 1.0, 3.0 if gravity == 0 else 0.0),
         )
@@ -124,16 +135,20 @@ def _separatrix() -> Iterator[CatalogueCase]:
     for name, scene in _everywhere():
         for beside in _BESIDE_SEPARATRIX:
             start = scene.separatrix()[1] - beside
-            lost = beside < 1e-3
+            sensitive = beside < 1e-3
             yield CatalogueCase(
                 "extreme",
                 f"{name}, {beside:.0e} rad inside the separatrix",
-                "the period grows as the logarithm of the distance, and with it what rounding does",
-                "a rounding of the start grows by exp(lambda t) at the top",
+                "the period grows as the logarithm of 1/distance, and so does the effect of rounding",
+                "rounding of the start grows as exp(lambda t) near the top",
                 attempts(
                     scene,
                     start,
-                    expected={"reduced": (), "equality": (), "tolerance": (ACCURATE, REFUSED) if lost else (ACCURATE,)},
+                    expected={
+                        "reduced": (),
+                        "equality": (),
+                        "tolerance": (ACCURATE, REFUSED) if sensitive else (ACCURATE,),
+                    },
                 ),
             )
 
@@ -144,8 +159,8 @@ def _spins() -> Iterator[CatalogueCase]:
             yield CatalogueCase(
                 "extreme",
                 f"{name}, spun at {spin:.0e} rad/s",
-                "the energy of the swing drowns in that of the spin",
-                "turns of 2 pi / Omega; the load would lift the can",
+                "the energy of a swing is tiny beside that of the spin",
+                "turns of 2 pi/Omega; a real can would be lifted off by its load",
                 attempts(scene, 0.5, spin),
             )
 
@@ -155,15 +170,15 @@ def _points() -> Iterator[CatalogueCase]:
     yield CatalogueCase(
         "extreme",
         "point on the rim of a hoop, let go a quarter turn from the bottom",
-        "I_cm = 0: MuJoCo wants inertia of every body that moves",
-        "at the bottom the load rests on the incline, and J is what the hoop has",
+        "I_cm = 0, but in MuJoCo every moving body needs inertia",
+        "at the bottom the point touches the incline and stands still, and J is the hoop's alone",
         attempts(hoop(), math.pi / 2),
     )
     yield CatalogueCase(
         "extreme",
         "point on the rim of a hoop of 1e-9 of its mass",
         "J at the bottom is 1e-9 of that at the top",
-        "a bounce at the bottom that is as good as instantaneous",
+        "a bounce at the bottom that takes next to no time",
         attempts(
             Scene(Can.hoop(mass=0.2e-9), rim, 0.0, "frozen"),
             math.pi / 2,
@@ -174,8 +189,8 @@ def _points() -> Iterator[CatalogueCase]:
         "extreme",
         "can with next to no inertia around a sliding load",
         "1e-20 kg m^2, far below MuJoCo's smallest (mjMINVAL, 1e-15)",
-        "reduced, masses are rescaled, and the motion is that of a massless can; with a joint of its own, the can's "
-        "1e-20 is lost beside the load's 1e-5",
+        "the reduced model rescales masses, and moves like a massless can; as a body with a joint of its own, the can "
+        "has an inertia of 1e-20 kg m^2 that rounding loses beside the load's 1e-5",
         attempts(
             Scene(Can(mass=1e-3, inertia=1e-20), Load.segment()),
             1.0,

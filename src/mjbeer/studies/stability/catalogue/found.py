@@ -1,4 +1,4 @@
-"""What the random search found, and what was mended for it."""
+"""Cases in which the random search found errors, each with the cause and with what detects or avoids it now."""
 
 import math
 from collections.abc import Iterator
@@ -14,14 +14,14 @@ from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 
 def cases() -> Iterator[CatalogueCase]:
-    """Yield the cases."""
+    """Yield the cases of this module."""
     slow = math.sqrt(0.033 / 2.8e-6)
     yield CatalogueCase(
         "found",
         "contact in a gravity of 2.8e-6 m/s^2",
-        "MuJoCo's solver stops where its cost falls by less than 1e-8 m^2/s^4: in weak gravity, before it begins. "
-        "Nothing rolled, and neither slip nor lift told",
-        "the same motion, in units of sqrt(a/g); the tolerance has to go with the square of gravity",
+        "MuJoCo's solver stops as soon as its cost falls by less than 1e-8 m^2/s^4: in weak gravity, before it begins. "
+        "Nothing rolled, and neither slip nor lift showed it",
+        "the same motion, in units of sqrt(a/g); the solver's tolerance has to scale with the square of gravity",
         tuple(
             Attempt(
                 f"contact, RK4, {name}",
@@ -34,40 +34,43 @@ def cases() -> Iterator[CatalogueCase]:
     yield CatalogueCase(
         "found",
         "a motion of a few large steps, to a tolerance",
-        "two runs with the same steps agree, whatever their error: it was 1e-8 rad, and estimated as 3e-13",
-        "steps go with the tolerance, the first one too",
+        "two runs with the same steps agree, whatever their error is: it was 1e-8 rad, and the estimate 3e-13 rad",
+        "every step, the first one too, depends on the tolerance",
         (
             Attempt(
                 "reduced, to a tolerance of 0.0001",
-                partial(
-                    simulate, _shallow(), 4.7e-3, 1.0, rolling="reduced", timestep=8.43e-6, tolerance=1e-4
-                ),
-                (ACCURATE,),
-            ),
-        ),
-    )  # fmt: skip
-    yield CatalogueCase(
-        "found",
-        "a swing through 2 rad, to a loose tolerance",
-        "two runs with large steps missed a motion alike: they were 1.4e-4 rad apart, and 1.1e-3 rad off",
-        "no order shows in steps so large; smaller ones are taken",
-        (
-            Attempt(
-                "reduced, to a tolerance of 0.001",
-                partial(simulate, _astray(), 5.04, 1.762099488321489, -10.949445992431022, tolerance=1e-3),
+                partial(simulate, _shallow(), 4.7e-3, 1.0, rolling="reduced", timestep=8.43e-6, tolerance=1e-4),
                 (ACCURATE,),
             ),
         ),
     )
-    go = partial(simulate, sliding(fill=1 - 1e-6), 2e4, 1.0)
+    yield CatalogueCase(
+        "found",
+        "a swing through 2 rad, to a loose tolerance",
+        "two runs with large steps had nearly the same error: they were 1.4e-4 rad apart, but 1.1e-3 rad off",
+        "steps so large do not show the method's order, so that smaller ones are taken",
+        (
+            Attempt(
+                "reduced, to a tolerance of 0.001",
+                partial(simulate, _heavy_can(), 5.04, 1.762099488321489, -10.949445992431022, tolerance=1e-3),
+                (ACCURATE,),
+            ),
+        ),
+    )
+    nearly_full = partial(simulate, sliding(fill=1 - 1e-6), 2e4, 1.0)
     yield CatalogueCase(
         "found",
         "sliding, fill 1 - 1e-6, twenty thousand seconds",
-        "the arm b is lost in the rounding of a distance of 3e8 m, and two runs to a tolerance lost it alike",
-        "a swing of 4000 s; only its energy tells that it is gone, unless each evaluation is made near the origin",
+        "rounding of a distance of 3e8 m exceeds the lever arm b, in both of the runs that a tolerance compares",
+        "a swing of 4000 s; only its energy shows that it is lost, unless forces are evaluated near the origin",
         (
-            Attempt("reduced, RK4, 1 s", partial(go, timestep=1.0), (INACCURATE,)),
-            Attempt("reduced, to a tolerance of 1e-06", partial(go, timestep=10.0, tolerance=1e-6), (ACCURATE,), 1e-6),
+            Attempt("reduced, RK4, 1 s", partial(nearly_full, timestep=1.0), (INACCURATE,)),
+            Attempt(
+                "reduced, to a tolerance of 1e-06",
+                partial(nearly_full, timestep=10.0, tolerance=1e-6),
+                (ACCURATE,),
+                1e-6,
+            ),
         ),
     )
     yield from _beside_a_separatrix()
@@ -75,36 +78,40 @@ def cases() -> Iterator[CatalogueCase]:
 
 def _beside_a_separatrix() -> Iterator[CatalogueCase]:
     scene, beside = pendulum(), 1.9179754510771998e-4
-    go = partial(simulate, scene, 1.8888099925141655, scene.separatrix()[1] - beside, timestep=9.52342486122195e-4)
+    inside = partial(simulate, scene, 1.8888099925141655, scene.separatrix()[1] - beside, timestep=9.52342486122195e-4)
     yield CatalogueCase(
         "found",
         "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance",
-        "a rounding grows a millionfold: two runs were 3e-9 rad from each other by chance, and 7e-7 off",
-        "the two before were not that near; and what a start 4e-14 aside does is a bound of what rounding does",
-        (Attempt("reduced, to a tolerance of 1e-08", partial(go, tolerance=1e-8), (ACCURATE, REFUSED), 1e-8),),
+        "rounding grows a millionfold: two runs were by chance only 3e-9 rad apart, and 7e-7 rad off",
+        "earlier pairs of runs were farther apart; and a start shifted by 4e-14 rad bounds the effect of rounding",
+        (Attempt("reduced, to a tolerance of 1e-08", partial(inside, tolerance=1e-8), (ACCURATE, REFUSED), 1e-8),),
     )
     can = Can(2.232597258875798, 6.697791776627394, 394.26174331092784, 1965.1939220659342)
     level = Scene(
         can, Load(144122.9903690899, 0.9475437058226647, 229790.58734976512), 1.7453292519943295e-10, "frozen"
     )
     start, timestep = 3.1415926530014993, 0.006320380984655366
-    far = partial(simulate, level, 4187 * timestep, start, 0.0, "contact", DOP853, timestep, friction=479.9389762024384)
+    beside_top = partial(
+        simulate, level, 4187 * timestep, start, 0.0, "contact", DOP853, timestep, friction=479.9389762024384
+    )
     yield CatalogueCase(
         "found",
         "frozen, 6e-10 rad beside the top, in contact",
-        "what the can's settling does is as large as the distance from the top, and a run at half the timestep settled "
-        "alike: it was 0.011 rad off, and 0.0016 by its own estimate",
-        "no contact is known so well; a second run that starts 1e-9 rad aside tells",
-        (Attempt("contact, DOP853, 6 ms", far, (INACCURATE,)),),
+        "settling into the contact moves the can as far as its start is from the top, and alike at half the timestep: "
+        "the run was 0.011 rad off, and 0.0016 rad by its own estimate",
+        "a soft contact cannot resolve such a start; a second run that starts 1e-9 rad beside it shows that",
+        (Attempt("contact, DOP853, 6 ms", beside_top, (INACCURATE,)),),
     )
 
 
 def _shallow() -> Scene:
+    """Return the scene of the motion of a few large steps."""
     can = Can(6.263714345860458e-05, 1.9e-4, 0.00023028930756246934, 9.035197730376284e-13)
     load = Load(1.1852666317467886e-06, 1.0168321325164374e-05, 2.0064495523860784e-15)
     return Scene(can, load, 0.4162788034423696, "frozen")
 
 
-def _astray() -> Scene:
+def _heavy_can() -> Scene:
+    """Return the scene of the swing through 2 rad."""
     can = Can(0.025006609705965473, 0.075, 79385.39201711072, 49.64210918385945)
     return Scene(can, Load(41429.27842882292, 0.01647772919452516), 0.1789453673759448, "sliding")

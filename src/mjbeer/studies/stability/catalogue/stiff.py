@@ -1,4 +1,4 @@
-"""The catalogue's stiff cases: hard constraints, unequal masses, and the chord that vanishes."""
+"""The catalogue's stiff cases: hard constraints, unequal masses, and starts near the top, where a tendon vanishes."""
 
 import math
 from collections.abc import Iterator
@@ -16,18 +16,27 @@ from mjbeer.theory.load import Load
 from mjbeer.theory.scene import frozen, pendulum, sliding
 
 _TIMESTEP = 1e-3
+"""Timestep of the runs with a constraint [s]."""
 _TIMECONSTS = (20e-3, 5e-3, 2e-3, 1e-3, 5e-4, 2e-4, 1e-4)
+"""Time constants of solref [s]."""
 _STIFFNESSES = tuple(10.0**k for k in range(2, 11, 2))
+"""Direct stiffnesses of solref [1/s^2]."""
 _IMPEDANCES = (0.9, 0.99, 0.999, 0.9999)
+"""Impedances, dmin and dmax of solimp."""
 _IMPRATIOS = (1.0, 10.0, 1e2, 1e3, 1e4)
+"""Ratios of the impedance of friction to that of the normal force."""
 _FRICTIONS = (1e-3, 1e-2, 0.1, 0.2, 1.0, 1e3)
+"""Friction coefficients."""
 _RATIOS = tuple(10.0**k for k in range(-6, 7, 2))
+"""Masses of the can over that of the load."""
 _BESIDE_TOP = (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3)
+"""Distances of the start from the top [rad]."""
 _QUICK = ("Euler", "RK4")
+"""Integrators of a quick study."""
 
 
 def cases() -> Iterator[CatalogueCase]:
-    """Yield the cases."""
+    """Yield the cases of this module."""
     yield from _timeconsts()
     yield from _stiffnesses()
     yield from _impedances()
@@ -37,7 +46,7 @@ def cases() -> Iterator[CatalogueCase]:
 
 
 def _rocking(label: str, softness: Softness, quick: bool = True) -> Iterator[Attempt]:
-    """A second of a frozen load's rocking from phi = 0, by equality and in contact, with every integrator."""
+    """Yield attempts at a second of a frozen load that rocks from phi = 0, by equality and in contact."""
     for rolling in ("equality", "contact"):
         for integrator in (*INTEGRATORS, DOP853):
             run = partial(
@@ -64,9 +73,9 @@ def _timeconsts() -> Iterator[CatalogueCase]:
         yield CatalogueCase(
             "stiff",
             f"solref time constant {1e3 * timeconst:g} ms at 1 ms",
-            f"the constraint's own time is {1 / ratio:g} timesteps",
-            f"semi-implicit Euler bears h/tau < 0.828, RK4 < 2.785: h/tau = {ratio:g} is {stable} the former; refsafe "
-            "raises tau to 2 ms; a soft row lets the can slip",
+            f"the constraint's time constant is {1 / ratio:g} timesteps",
+            f"semi-implicit Euler is stable for h/tau < 0.828, RK4 for h/tau < 2.785: h/tau = {ratio:g} is {stable} "
+            "the former limit; refsafe raises tau to at least 2 ms; a soft constraint lets the can slip",
             tuple(runs),
         )
 
@@ -77,8 +86,8 @@ def _stiffnesses() -> Iterator[CatalogueCase]:
         yield CatalogueCase(
             "stiff",
             f"direct solref, stiffness {stiffness:.0e} /s^2 at 1 ms",
-            "negative solref is taken as it is: refsafe does not look at it",
-            f"as a time constant of {1e3 / math.sqrt(stiffness):.2g} ms, critically damped",
+            "refsafe does not apply to a negative solref",
+            f"the same as a time constant of {1e3 / math.sqrt(stiffness):.2g} ms, critically damped",
             tuple(_rocking("", Softness(solref=(-stiffness, -damping)))),
         )
 
@@ -88,17 +97,19 @@ def _impedances() -> Iterator[CatalogueCase]:
         yield CatalogueCase(
             "stiff",
             f"solimp {impedance:g}",
-            "the share of a force that a constraint does not pass on; MuJoCo's hardest is 0.9999",
+            "a constraint leaves 1 - impedance of the unconstrained acceleration; MuJoCo's largest is 0.9999",
             f"the can slips by {1 - impedance:.1g} of what it would without a constraint",
             tuple(_rocking("", Softness(impedance=(impedance, impedance)))),
         )
     for impratio in _IMPRATIOS:
-        runs = [each for each in _rocking("", Softness(impratio=impratio)) if each.setting.startswith("contact")]
+        runs = [
+            attempt for attempt in _rocking("", Softness(impratio=impratio)) if attempt.setting.startswith("contact")
+        ]
         yield CatalogueCase(
             "stiff",
             f"impratio {impratio:g}",
-            "friction so much harder than the normal force",
-            "the less slip the more of it, until the solver cannot balance the two (1e6)",
+            "friction is harder than the normal force by this factor",
+            "the larger it is, the less the can slips, until the solver cannot balance the two forces (at 1e6)",
             tuple(runs),
         )
 
@@ -109,15 +120,15 @@ def _frictions() -> Iterator[CatalogueCase]:
     for friction in _FRICTIONS:
         runs = []
         for integrator in (*INTEGRATORS, DOP853):
-            go = partial(simulate, scene, 1.0, 0.0, 0.0, "contact", integrator, _TIMESTEP, friction=friction)
-            good = (ACCURATE,) if integrator in ("RK4", DOP853) else ()
-            expected = good if friction > needed else (INACCURATE,)
-            runs.append(Attempt(f"contact, {integrator}, 1 ms", go, expected, sample=integrator in _QUICK))
+            run = partial(simulate, scene, 1.0, 0.0, 0.0, "contact", integrator, _TIMESTEP, friction=friction)
+            rolling = (ACCURATE,) if integrator in ("RK4", DOP853) else ()
+            expected = rolling if friction > needed else (INACCURATE,)
+            runs.append(Attempt(f"contact, {integrator}, 1 ms", run, expected, sample=integrator in _QUICK))
         yield CatalogueCase(
             "stiff",
             f"friction {friction:g}",
-            "a can needs friction to roll" if friction < needed else "friction that does not give way",
-            f"rocking from phi = 0 needs a coefficient of {needed:.3f}; with less the can slips, unlike the paper's",
+            "too little friction for the can to roll" if friction < needed else "friction that holds the can",
+            f"rocking from phi = 0 needs a coefficient of {needed:.3f}; with less the can slips, unlike in the paper",
             tuple(runs),
         )
 
@@ -130,15 +141,15 @@ def _mass_ratios() -> Iterator[CatalogueCase]:
             yield CatalogueCase(
                 "stiff",
                 f"{name}, can {ratio:.0e} times the load",
-                "the mass matrix is as ill-conditioned as the masses are unequal",
-                "only ratios of masses enter, and none of them does harm: J is a sum of positive parts",
+                "the more unequal the masses, the worse the condition of the mass matrix",
+                "only the ratio of the masses matters, and none does harm, because J is a sum of positive parts",
                 attempts(make(can=can), 1.0),
             )
     yield CatalogueCase(
         "stiff",
         "pendulum on a wheel of 0.1 g",
-        "a point load of 100 g has hardly any inertia about the axis but what the wheel gives it",
-        "J falls to a thousandth at phi = 0: the load swings through there in a thousandth of the period",
+        "at phi = 0 the wheel of 0.1 g moves, and the point load of 100 g hardly does",
+        "J falls to a thousandth at phi = 0, where the load swings through in a thousandth of the period",
         attempts(pendulum(wheel_mass=1e-4), 1.0, expected={"reduced": (), "equality": (), "tolerance": (ACCURATE,)}),
     )
 
@@ -148,7 +159,7 @@ def _beside_top() -> Iterator[CatalogueCase]:
         yield CatalogueCase(
             "stiff",
             f"frozen, let go {beside:g} rad beside pi",
-            "the chord tendon that makes J has no length at pi, and no direction",
-            "J is smooth there, and the can rolls down; from 0.83 s on a real one leaves the incline",
+            "at pi the tendon that gives the model its J has no length and no direction",
+            "J is smooth there, and the can rolls down; a real one leaves the incline after 0.83 s",
             attempts(frozen(), math.pi - beside),
         )
