@@ -122,7 +122,7 @@ def _set_inertias(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
         inertia = frozen_inertia(scene)
         if inertia == 0:
             raise UnsupportedError(
-                "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo wants; "
+                "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
                 'use rolling="reduced", or give the can mass'
             )
         mass, offset = unit * scene.mass, scene.centre_of_mass
