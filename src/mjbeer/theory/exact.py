@@ -65,10 +65,10 @@ def _axis(
     """
     if scene.attachment == "frozen":
         return scene.can.radius * phi, scene.can.radius * phi_dot
-    rolling = scene.can.mass + scene.can.inertia / scene.can.radius**2
-    total = scene.load.mass + rolling
+    effective_can_mass = scene.can.mass + scene.can.inertia / scene.can.radius**2
+    total = scene.load.mass + effective_can_mass
     moment = scene.load.mass * scene.load.offset
     drive = scene.mass * scene.gravity * math.sin(scene.incline)
-    u = (drive * time**2 / 2 + moment * np.sin(phi) + rolling * (start[0] + start[1] * time)) / total
-    u_dot = (drive * time + moment * np.cos(phi) * phi_dot + rolling * start[1]) / total
+    u = (drive * time**2 / 2 + moment * np.sin(phi) + effective_can_mass * (start[0] + start[1] * time)) / total
+    u_dot = (drive * time + moment * np.cos(phi) * phi_dot + effective_can_mass * start[1]) / total
     return u, u_dot

@@ -6,10 +6,10 @@ With the rolling constraint and the conserved momentum eliminated, each scene ob
     J = base + chord sin^2(phi/2) + swing sin^2(phi),
     V = -slope phi - depth cos(phi - bottom).
 
-V is a cosine on a ramp: `slope` is the ramp's mean torque, `depth` the amplitude of the cosine, and `bottom` the angle
-of its minimum. If |slope| < depth, V has a minimum in every turn (the equilibrium) and a maximum (the barrier). A
-frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope (eq. 16, and eqs. 46 and 47
-with u eliminated). All coefficients of J are non-negative, so J never cancels.
+V is a cosine on a ramp: `slope` is the steepness of the ramp, a torque, `depth` the amplitude of the cosine, and
+`bottom` the angle of its minimum. If |slope| < depth, V has in every turn a minimum (the equilibrium) and a maximum
+(the barrier). A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope (eq. 16,
+and eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
 
 Heights of V are needed only as differences, each in a form in which nothing cancels:
 
@@ -51,14 +51,14 @@ class Oscillator:
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
         """Return the oscillator of a load that slides without friction about the axis (section 3 of the paper)."""
-        can_mass = can.mass + can.inertia / can.radius**2
-        total = load.mass + can_mass
+        effective_can_mass = can.mass + can.inertia / can.radius**2
+        total = load.mass + effective_can_mass
         moment = load.mass * load.offset
         # g sin(alpha) - A, with A the steady acceleration of footnote 4
         lag = gravity * math.sin(incline) * (can.inertia / can.radius**2) / total
         normal = gravity * math.cos(incline)
         return cls(
-            base=load.inertia + moment * load.offset * can_mass / total,
+            base=load.inertia + moment * load.offset * effective_can_mass / total,
             chord=0.0,
             swing=moment * load.offset * load.mass / total,
             slope=0.0,

@@ -147,11 +147,11 @@ class Scene:
         down faster, by the factor mean(J) / mean(sqrt(J))^2.
         """
         force = self.mass * self.gravity * math.sin(self.incline)
-        can_mass = self.can.mass + self.can.inertia / self.can.radius**2
+        effective_can_mass = self.can.mass + self.can.inertia / self.can.radius**2
         if self.attachment == "sliding":
-            return force / (self.load.mass + can_mass)
+            return force / (self.load.mass + effective_can_mass)
         load_inertia = self.load.inertia + self.load.mass * self.load.offset**2
-        return force / (self.load.mass + can_mass + load_inertia / self.can.radius**2)
+        return force / (self.load.mass + effective_can_mass + load_inertia / self.can.radius**2)
 
 
 def sliding(
