@@ -1,7 +1,7 @@
 """mjbeer: the rolling half-full beer can as a MuJoCo model that can be trusted.
 
-SI units and radians throughout; the letters of the formulas are those of K. T. McDonald,
-"The Rolling Motion of a Half-Full Beer Can", whose equation numbers the docstrings cite.
+All quantities are in SI units and radians. The letters of the formulas and the equation numbers that
+docstrings cite are from K. T. McDonald, "The Rolling Motion of a Half-Full Beer Can".
 """
 
 from importlib import import_module
@@ -35,7 +35,7 @@ __all__ = [
     "sliding",
 ]
 
-# Imported on first use, so that the exact theory is there without MuJoCo.
+# Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
     "build": "mjbeer.model.build",
     "simulate": "mjbeer.simulation.simulate",

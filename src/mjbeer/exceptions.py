@@ -1,12 +1,12 @@
-"""Every error that mjbeer raises on purpose. Catch `MjbeerError` for all of them."""
+"""The errors that mjbeer raises on purpose. Catching `MjbeerError` catches all of them."""
 
 
 class MjbeerError(Exception):
-    """Base of all mjbeer errors."""
+    """The base class of all mjbeer errors."""
 
 
 class ParameterError(MjbeerError, ValueError):
-    """A parameter is outside what is allowed; the message says what came and what is."""
+    """A parameter has a value that is not allowed; the message names the value and what is allowed."""
 
 
 class NoEquilibriumError(MjbeerError):
@@ -14,28 +14,28 @@ class NoEquilibriumError(MjbeerError):
 
 
 class NoLibrationError(MjbeerError):
-    """A period was asked for at an amplitude at or beyond the separatrix."""
+    """The motion asked for is no libration: its amplitude or start is at or beyond the separatrix."""
 
 
 class UnsupportedError(MjbeerError):
-    """An engine, MuJoCo or another, has no model of this scene in the requested way of rolling."""
+    """MuJoCo, or another engine, cannot model this scene with the requested way of rolling."""
 
 
 class DivergenceError(MjbeerError):
-    """A simulation stopped being finite; the message says when and why."""
+    """The state of a simulation stopped being finite; the message names the time and the cause."""
 
 
 class ToleranceError(MjbeerError):
-    """The requested tolerance was not met; the message says how far the run got."""
+    """A run did not reach the requested tolerance; the message names how near it came."""
 
 
 class RenderingError(MjbeerError):
-    """Off-screen rendering or video writing could not start; the message names the remedy."""
+    """Off-screen rendering or video writing could not start; the message names a remedy."""
 
 
 class TemplateError(MjbeerError):
-    """An MJCF template is missing, lacks a part that mjbeer uses, or has one that could act on the motion."""
+    """An MJCF template is missing, lacks a part that mjbeer uses, or has a part that could act on the motion."""
 
 
 class OutputError(MjbeerError):
-    """An output file could not be written, or another command is at work in its folder."""
+    """An output file could not be written, or another command is writing to its folder."""

@@ -1,4 +1,4 @@
-"""Validation at the boundary: each check returns the value or says what came and what is allowed."""
+"""Checks of arguments: each returns the valid value, or raises an error that names the value and what is allowed."""
 
 import math
 from collections.abc import Iterable
@@ -6,13 +6,14 @@ from collections.abc import Iterable
 from mjbeer.exceptions import ParameterError
 
 _LARGEST = 1e100
+"""Largest magnitude of a start [rad, rad/s]: the square of a larger one may overflow."""
 
 
 def number(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a finite float.
 
     Raises:
-      ParameterError: if it is no number, NaN or infinite.
+      ParameterError: if `value` is not a number, is NaN, or is infinite.
     """
     try:
         result = float(value)
@@ -27,7 +28,7 @@ def positive(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a finite float greater than zero.
 
     Raises:
-      ParameterError: if it is not.
+      ParameterError: if `value` is not finite and greater than zero.
     """
     result = number(name, value, unit)
     if result <= 0:
@@ -39,7 +40,7 @@ def non_negative(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a finite float of zero or more.
 
     Raises:
-      ParameterError: if it is not.
+      ParameterError: if `value` is not finite, or is negative.
     """
     result = number(name, value, unit)
     if result < 0:
@@ -48,21 +49,21 @@ def non_negative(name: str, value: float, unit: str = "") -> float:
 
 
 def store_floats(instance: object, *names: str) -> None:
-    """Make the named attributes of a frozen dataclass doubles: single precision would spread from there."""
+    """Convert the named attributes of a frozen dataclass to doubles: single precision would spread from there."""
     for name in names:
         object.__setattr__(instance, name, float(getattr(instance, name)))
 
 
 def start(phi0: float, phi_dot0: float) -> tuple[float, float]:
-    """Return a start as an angle [rad] and a rate [rad/s] that can be computed with.
+    """Return the start angle [rad] and rate [rad/s] as floats.
 
     Raises:
-      ParameterError: if one is not finite, or is so large that its square is not.
+      ParameterError: if either is not finite, or is so large that its square may overflow.
     """
     values = number("phi0", phi0, "rad"), number("phi_dot0", phi_dot0, "rad/s")
     for name, value in zip(("phi0", "phi_dot0"), values, strict=True):
         if abs(value) > _LARGEST:
-            raise ParameterError(f"{name} must be at most {_LARGEST:g} in size, got {value!r}")
+            raise ParameterError(f"{name} must be between -1e100 and 1e100, got {value!r}")
     return values
 
 
@@ -70,11 +71,11 @@ def choice(name: str, value: str, allowed: Iterable[str]) -> str:
     """Return `value` if it is one of the `allowed` names.
 
     Raises:
-      ParameterError: if it is not; the message lists the names.
+      ParameterError: if it is none of them; the message lists the names.
     """
     names = tuple(allowed)
     if not isinstance(value, str) or value not in names:
-        listed = ", ".join(repr(each) for each in names)
+        listed = ", ".join(repr(name) for name in names)
         raise ParameterError(f"{name} must be one of {listed}; got {value!r}")
     return value
 

@@ -102,8 +102,8 @@ def test_the_limit_of_a_row_under_euler_is_the_closed_form(dampratio: float) -> 
 
 def test_refsafe_saves_damping_ratios_from_the_root_of_an_eighth_on() -> None:
     assert soft_constraint.stable_ratio("Euler", math.sqrt(1 / 8)) == pytest.approx(0.5, rel=1e-7)
-    assert soft_constraint.safe(1e-4, 1e-3) == 2e-3
-    assert soft_constraint.safe(1e-2, 1e-3) == 1e-2
+    assert soft_constraint.refsafe_timeconst(1e-4, 1e-3) == 2e-3
+    assert soft_constraint.refsafe_timeconst(1e-2, 1e-3) == 1e-2
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])

@@ -56,7 +56,7 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
         ({"phi0": "1"}, "phi0 must be a finite number"),
         ({"phi_dot0": math.inf}, "phi_dot0 must be a finite number"),
-        ({"phi_dot0": 1e200}, r"phi_dot0 must be at most 1e\+100 in size, got 1e\+200"),
+        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e100 and 1e100, got 1e\+200"),
         ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
         ({"integrator": "rk4"}, "integrator must be one of 'Euler'.*'DOP853'; got 'rk4'"),
         ({"times": [0.0, 0.5]}, "between 0 and the duration 0.1 s"),

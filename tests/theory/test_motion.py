@@ -13,7 +13,7 @@ from mpmath import MPContext
 
 from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
-from mjbeer.theory.motion import libration
+from mjbeer.theory.motion import libration_through
 from tests.support.scenes import METAL, SCENES, scenes
 
 mp = MPContext()
@@ -188,7 +188,7 @@ def test_phase_of_a_start(phi_dot0: float) -> None:
     """phi and phi_dot from the phase are those that it was made from, right beside a turning point too."""
     scene, phi0 = frozen(), 1.0
     form = scene.oscillator
-    swing = libration(form, phi0, float(form.inertia(phi0)) * phi_dot0**2 / 2)
+    swing = libration_through(form, phi0, float(form.inertia(phi0)) * phi_dot0**2 / 2)
     assert swing is not None
     phase = swing.phase(phi0, phi_dot0)
     assert swing.centre + swing.half_width * math.sin(phase) == pytest.approx(phi0, rel=1e-15)

@@ -1,1 +1,1 @@
-"""A scene as a MuJoCo model; it imports `theory` and `output`."""
+"""The MuJoCo models of a scene; it imports `theory` and `output`."""

@@ -1,4 +1,4 @@
-"""How a scene looks: geoms and cameras of the templates fitted to its sizes, or taken away."""
+"""The looks of a scene: geoms and cameras of a template are fitted to the scene's sizes, or removed."""
 
 import math
 
@@ -10,57 +10,59 @@ from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.scene import Scene
 
 WALL = 0.04
-"""Thickness of the can's drawn wall, in radii: outside of the radius, so that the beer fills the inside."""
+"""Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
 _HALF_TURNS = (-20, 96)
-"""The templates' board begins and ends these half turns of the can from u = 0. Two of its stripes are one."""
+"""Where the templates' board begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
 _SPARE = 20
-"""Half turns of board beyond a motion's ends: more than a camera at the can sees."""
+"""Half turns of board beyond either end of a motion: more than a camera at the can sees."""
 _MARGIN = 1.1
-"""How much more than the motion the overview shows."""
+"""Size of what the overview shows over the size of the motion."""
 _LEAST_FILL = 1e-6
-"""Fill that is drawn of an emptier can: a mesh must not be flat, and one sees nothing of it anyway."""
+"""Smallest fill that is drawn: a mesh must not be flat, and so little beer cannot be seen."""
 _LEAST_VOLUME = 1e-12
-"""MuJoCo refuses solid meshes of under 1e-15 m^3; well before, they become shells, which look the same."""
+"""Smallest volume [m^3] of a solid mesh. A smaller mesh becomes a shell, which looks the same: below 1e-15 m^3 MuJoCo
+refuses a solid one."""
 DRAWN = (
     "geoms", "sites", "cameras", "lights", "keys", "skins", "meshes", "hfields", "materials", "textures", "numerics",
     "texts", "tuples",
 )  # fmt: skip
-"""All kinds of elements in a template that act on no motion."""
+"""The kinds of elements in a template that are only drawn and do not act on the motion."""
 _SHAPES = ("can.obj", "beer_half.obj")
-"""The templates' mesh files, in whose place a scene has shapes that fit it."""
+"""The templates' mesh files, which are replaced by shapes that fit the scene."""
 _ALONG_THE_AXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE)
+"""Types of geoms whose sides are parallel to the axes: each side is stretched by itself."""
 
 
 def strip(spec: mujoco.MjSpec) -> None:
-    """Remove all that is only drawn, from a template as it is read."""
+    """Remove all elements that are only drawn from a template."""
     for kind in DRAWN:
         for element in getattr(spec, kind):
             spec.delete(element)
 
 
 def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
-    """Fit what is drawn to the scene's sizes; the template's keyframes go, as they were another scene's."""
-    for each in spec.keys:
-        spec.delete(each)
+    """Fit what is drawn to the scene's sizes, and remove the template's keyframes, which belong to another scene."""
+    for key in spec.keys:
+        spec.delete(key)
     radius, length = scene.can.radius, scene.can.length
     size = radius / RADIUS
     for geom in spec.geoms:
         _stretch(geom, size, length)
     if (end := spec.geom("can_end")) is not None:
         end.size = [end.size[0], length / 2 - end.pos[1], 0]
-    for own in spec.meshes:
-        own.scale = np.array(own.scale) * size
+    for element in spec.meshes:
+        element.scale = np.array(element.scale) * size
     for camera in spec.cameras:
-        camera.pos = _point(camera.pos, size, length)
+        camera.pos = _scale_point(camera.pos, size, length)
     grid = spec.material("grid")
     grid.texrepeat = np.array(grid.texrepeat) / size
     spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
-    _shape(spec, "can", mesh.tube(radius, radius * (1 + WALL), length))
-    _load(spec, scene)
+    _replace_mesh(spec, "can", mesh.tube(radius, radius * (1 + WALL), length))
+    _fit_load(spec, scene)
 
 
 def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: float) -> None:
-    """Make the board long enough for a motion from u = `low` to `high` [m], and let the overview show all of it.
+    """Make the board long enough for a motion from u = `low` to `high` [m], and fit the overview camera to all of it.
 
     `aspect` is the width of the picture over its height.
     """
@@ -72,15 +74,15 @@ def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: f
         geom.size = [(last - first) / 2 * turn, *geom.size[1:]]
     planks = spec.material("planks")
     planks.texrepeat = [last - first, planks.texrepeat[1]]
-    overview, along = spec.camera("overview"), np.array([math.cos(scene.incline), 0, -math.sin(scene.incline)])
-    seen = np.abs((high - low) * along) + 10 * scene.can.radius
-    distance = _MARGIN * max(seen[0] / aspect, seen[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))
-    overview.pos = (low + high) / 2 * along + distance * _backwards(spec, overview)
+    overview, downhill = spec.camera("overview"), np.array([math.cos(scene.incline), 0, -math.sin(scene.incline)])
+    extent = np.abs((high - low) * downhill) + 10 * scene.can.radius
+    distance = _MARGIN * max(extent[0] / aspect, extent[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))
+    overview.pos = (low + high) / 2 * downhill + distance * _backwards(spec, overview)
     spec.visual.map.zfar = max(spec.visual.map.zfar, 4 * distance / spec.stat.extent)
 
 
 def _backwards(spec: mujoco.MjSpec, camera: mujoco.MjsCamera) -> np.ndarray:
-    """Return the unit vector against which a camera of the world looks."""
+    """Return the unit vector that points out of the back of a camera, in world coordinates."""
     quaternion, axes = np.array(camera.quat), np.zeros(9)
     if camera.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
         quaternion = spec.resolve_orientation(spec.compiler.degree, spec.compiler.eulerseq, camera.alt)
@@ -89,49 +91,52 @@ def _backwards(spec: mujoco.MjSpec, camera: mujoco.MjsCamera) -> np.ndarray:
 
 
 def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
-    """Put a geom of the template where it belongs on a can `size` times as wide and of a `length` [m]."""
+    """Move and scale a geom of the template to fit a can that is `size` times as wide and has a `length` [m]."""
     if not math.isnan(geom.fromto[0]):
-        geom.fromto = [*_point(geom.fromto[:3], size, length), *_point(geom.fromto[3:], size, length)]
+        geom.fromto = [*_scale_point(geom.fromto[:3], size, length), *_scale_point(geom.fromto[3:], size, length)]
         geom.size = np.array(geom.size) * size
     elif geom.type in _ALONG_THE_AXES and geom.size[0] > 0:  # an infinite plane has size 0
-        low = _point(np.array(geom.pos) - geom.size, size, length)
-        high = _point(np.array(geom.pos) + geom.size, size, length)
+        low = _scale_point(np.array(geom.pos) - geom.size, size, length)
+        high = _scale_point(np.array(geom.pos) + geom.size, size, length)
         geom.pos, geom.size = (low + high) / 2, (high - low) / 2
     else:
-        geom.pos, geom.size = _point(geom.pos, size, length), np.array(geom.size) * size
+        geom.pos, geom.size = _scale_point(geom.pos, size, length), np.array(geom.size) * size
 
 
-def _point(point: np.ndarray, size: float, length: float) -> np.ndarray:
-    """Where a point of the template goes: all grows with the radius, and keeps its distance from the can's ends."""
+def _scale_point(point: np.ndarray, size: float, length: float) -> np.ndarray:
+    """Return where a point of the template belongs on a can that is `size` times as wide and has a `length` [m].
+
+    Across the axis it scales with the radius. Along the axis its distance from the nearer end of the can does.
+    """
     x, y, z = point
     inside = LENGTH / 2 - abs(y)
-    inside = min(inside * size, inside * length / LENGTH) if inside > 0 else inside * size  # in the same half
+    inside = min(inside * size, inside * length / LENGTH) if inside > 0 else inside * size  # stays in its half
     return np.array([x * size, math.copysign(length / 2 - inside, y) if y else 0.0, z * size])
 
 
-def _load(spec: mujoco.MjSpec, scene: Scene) -> None:
+def _fit_load(spec: mujoco.MjSpec, scene: Scene) -> None:
     load = scene.load
     if load.fill is not None:
-        _shape(spec, "load", mesh.beer(max(load.fill, _LEAST_FILL), scene.can.radius, scene.can.length))
+        _replace_mesh(spec, "load", mesh.beer(max(load.fill, _LEAST_FILL), scene.can.radius, scene.can.length))
         return
-    drawn, arm = spec.geom("load"), spec.geom("load_arm")
+    ball, arm = spec.geom("load"), spec.geom("load_arm")
     if arm is not None:
-        drawn.pos = [0, drawn.pos[1], -load.offset]
+        ball.pos = [0, ball.pos[1], -load.offset]
         arm.pos, arm.size = [0, arm.pos[1], -load.offset / 2], [arm.size[0], max(load.offset / 2, arm.size[0] / 100), 0]
         return
-    depth = -min(load.offset, scene.can.radius - drawn.size[0])  # along the rim, and drawn just inside
-    if math.isnan(drawn.fromto[0]):
-        drawn.pos = [0, drawn.pos[1], depth]
+    depth = -min(load.offset, scene.can.radius - ball.size[0])  # a load on the rim is drawn just inside it
+    if math.isnan(ball.fromto[0]):
+        ball.pos = [0, ball.pos[1], depth]
     else:
-        drawn.fromto = [*drawn.fromto[:2], depth, *drawn.fromto[3:5], depth]
+        ball.fromto = [*ball.fromto[:2], depth, *ball.fromto[3:5], depth]
 
 
-def _shape(spec: mujoco.MjSpec, name: str, shape: mesh.Mesh) -> None:
-    """Put vertices in the place of the template's mesh file: the model is then complete in itself.
+def _replace_mesh(spec: mujoco.MjSpec, name: str, replacement: mesh.Mesh) -> None:
+    """Replace the file of a template's mesh by vertices, so that the model needs no file.
 
-    Another file than the one that came with mjbeer stays, and has the proportions of the template's can.
+    A file that did not come with mjbeer stays, and keeps the proportions of the template's can.
     """
-    vertices, faces = shape
+    vertices, faces = replacement
     element = spec.mesh(name)
     if element.file not in _SHAPES:
         return

@@ -1,4 +1,4 @@
-"""MuJoCo models of a scene, in three ways of rolling, made from the MJCF templates."""
+"""Builds the MuJoCo model of a scene, for each of three ways of rolling, from an MJCF template."""
 
 import math
 
@@ -16,15 +16,21 @@ _INTEGRATORS = {
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
     "RK4": mujoco.mjtIntegrator.mjINT_RK4,
-    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # it evaluates the model's forward dynamics, and steps by itself
+    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # not used: DOP853 steps by itself
 }
 _DISABLE = mujoco.mjtDisableBit
-# What no scene needs. Autoreset must go: it would hide a divergence by starting again.
+# No scene needs these stages. Autoreset must go: it would hide a divergence by starting again.
 _UNUSED = (
-    _DISABLE.mjDSBL_AUTORESET | _DISABLE.mjDSBL_CLAMPCTRL | _DISABLE.mjDSBL_DAMPER | _DISABLE.mjDSBL_FRICTIONLOSS
-    | _DISABLE.mjDSBL_ISLAND | _DISABLE.mjDSBL_LIMIT | _DISABLE.mjDSBL_MIDPHASE | _DISABLE.mjDSBL_SENSOR
+    _DISABLE.mjDSBL_AUTORESET
+    | _DISABLE.mjDSBL_CLAMPCTRL
+    | _DISABLE.mjDSBL_DAMPER
+    | _DISABLE.mjDSBL_FRICTIONLOSS
+    | _DISABLE.mjDSBL_ISLAND
+    | _DISABLE.mjDSBL_LIMIT
+    | _DISABLE.mjDSBL_MIDPHASE
+    | _DISABLE.mjDSBL_SENSOR
     | _DISABLE.mjDSBL_SPRING
-)  # fmt: skip
+)
 _UNCONSTRAINED = (
     _DISABLE.mjDSBL_CONSTRAINT | _DISABLE.mjDSBL_CONTACT | _DISABLE.mjDSBL_EQUALITY | _DISABLE.mjDSBL_WARMSTART
 )
@@ -39,29 +45,29 @@ def build(
     friction: float = FRICTION,
     softness: Softness = TUNED,
 ) -> mujoco.MjModel:
-    """A compiled MuJoCo model of a scene.
+    """Return a compiled MuJoCo model of a scene.
 
-    `rolling` is "reduced" (no constraint: the can's rotation is folded into the coordinates), "equality"
-    (a joint equality u = a roll) or "contact" (a cylinder on a plane, with a `friction` coefficient).
-    The constraints of the last two are tuned to `integrator` and `timestep` [s], but for what `softness` gives.
-    Without `visuals` the model has no geoms but those of a contact, and the stages that it does not need are disabled.
+    `rolling` is "reduced" (no constraint: the coordinates allow no other motion), "equality" (a joint equality
+    u = a roll) or "contact" (a cylinder on a plane, with a `friction` coefficient). Constraints are as hard as
+    `integrator` and `timestep` [s] allow, except where `softness` says otherwise. Without `visuals` the model has no
+    geoms but those in contact, and the stages of a step that it does not need are disabled.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
-    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. Where the scene is so
-    light that MuJoCo's smallest mass would matter, all masses are multiplied by the same power of two,
-    which changes no motion.
+    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. In a scene so light that
+    MuJoCo's smallest mass would matter, all masses are multiplied by the same power of two, which does not
+    change the motion.
 
     Raises:
-      ParameterError: on a name that does not exist or a number that is not allowed.
-      UnsupportedError: if MuJoCo has no such model, as for a massless can around a sliding load.
-      TemplateError: if a template is missing, lacks a part, or has one that is not allowed.
+      ParameterError: if a name is unknown or a number is not allowed.
+      UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
+      TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
     """
-    setting = Setting(rolling, integrator, timestep, friction=friction, softness=softness)
+    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
     return compile_model(scene, setting, visuals)
 
 
 def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjModel:
-    """The model of a scene that is rolled and stepped in a setting; errors as in `build`."""
+    """Return the compiled model of a scene in a setting, with the same errors as `build`."""
     model = compile_spec(specify(scene, setting, visuals))
     if setting.rolling == "equality" and setting.softness == TUNED:
         constrained.make_rigid(model)
@@ -69,10 +75,10 @@ def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujo
 
 
 def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """Compile a specification.
+    """Return the model that a specification compiles to.
 
     Raises:
-      UnsupportedError: if MuJoCo refuses it: for the scene's numbers, or for what a template shows.
+      UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the template.
     """
     try:
         return spec.compile()
@@ -81,9 +87,9 @@ def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
 
 
 def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
-    """The editable specification that `compile_model` compiles, with the same errors.
+    """Return the editable specification that `compile_model` compiles, with the same errors as `build`.
 
-    Compiled by itself, its joint equality is as stiff as MJCF can say; `compile_model` makes it rigid.
+    Its joint equality is as stiff as MJCF can express; `compile_model` makes that of the compiled model rigid.
     """
     rolling = setting.rolling
     spec = templates.read(templates.name(scene))
@@ -92,7 +98,8 @@ def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     else:
         appearance.strip(spec)
     _tilt(spec, scene, visuals)
-    # Without an incline to lie on, the axis is the origin: an offset far smaller than the radius keeps its digits.
+    # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
+    # in contact, must lie on the incline.
     spec.body("can").pos = [0, 0, scene.can.radius if visuals or rolling == "contact" else 0.0]
     spec.option.timestep = setting.timestep
     spec.option.integrator = int(_INTEGRATORS[setting.integrator])
@@ -100,16 +107,16 @@ def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     if rolling == "reduced":
         reduced.reduce(spec, scene, unit)
     elif rolling == "equality":
-        constrained.roll_by_equality(spec, scene, unit, setting)
+        constrained.roll_by_equality(spec, scene, unit=unit, setting=setting)
     else:
-        constrained.roll_by_contact(spec, scene, unit, setting)
+        constrained.roll_by_contact(spec, scene, unit=unit, setting=setting)
     if not visuals:
         _disable_unused(spec, rolling)
     return spec
 
 
 def _tilt(spec: mujoco.MjSpec, scene: Scene, visuals: bool) -> None:
-    """Tilt the incline if one is to see it, or else gravity: that is exact, and saves the body."""
+    """Tilt the incline if it is to be seen, and gravity otherwise, which is exact and needs no body."""
     gravity, tilt = scene.gravity, scene.incline if visuals else 0.0
     for element, angle in ((spec.body("incline"), tilt), (spec.frame("level"), -tilt)):
         element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT

@@ -1,4 +1,4 @@
-"""Stand-alone MJCF of a scene, for any MuJoCo: every number with all its digits, every mesh of mjbeer's inside."""
+"""Writes a scene as one stand-alone MJCF file, with all digits of every number and with mjbeer's meshes inside."""
 
 import os
 import pathlib
@@ -13,16 +13,18 @@ from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 
 _DIGITS = 17
-"""Decimal digits that give a double back exactly."""
+"""Decimal digits from which a double can be read back exactly."""
 _EXACT = (
     "body_mass", "body_inertia", "body_ipos", "body_iquat", "body_pos", "body_quat", "jnt_axis", "dof_armature",
     "tendon_armature", "actuator_gainprm", "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp", "pair_friction",
     "pair_solref", "pair_solimp", "key_qpos", "key_qvel",
 )  # fmt: skip
+"""Arrays of the model that must be the same after reading the file back."""
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
+"""Options of the model that must be the same after reading the file back."""
 _LEFT_OUT = float(np.finfo(float).eps)
-"""MuJoCo does not write numbers that are this near to their default: forces of 1e-16 N. Those that it writes
-are the same to the last bit, but for quaternions, which it normalizes once more."""
+"""Largest difference that is allowed. MuJoCo does not write a number that is this near to its default, such as a force
+of 1e-16 N. The numbers that it writes are read back to the last bit, except quaternions, which it normalizes again."""
 
 
 def export(
@@ -37,26 +39,28 @@ def export(
 ) -> None:
     """Write a scene as one MJCF file, with its start as the keyframe "start".
 
-    The parameters are those of `simulate`; the integrator is one of MuJoCo's. What was written is read back
-    and must be the same model. A reduced model of a frozen load turns on the spot: its one coordinate is phi.
+    The parameters are those of `simulate`, but the integrator must be one of MuJoCo's. The text is read back before
+    it is written, and must give the same model. A reduced model of a frozen load turns on the spot, because its one
+    coordinate is phi.
 
     Raises:
-      ParameterError: on a parameter that is not allowed.
-      UnsupportedError: if MuJoCo has no such model.
+      ParameterError: if a parameter is not allowed.
+      UnsupportedError: if MuJoCo cannot have such a model, or cannot write all digits.
       OutputError: if the file cannot be written.
+      MjbeerError: if the text does not give the same model.
     """
     if integrator == setting.DOP853:
         raise UnsupportedError(
             f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
         )
     spec = build.specify(scene, setting.Setting(rolling, integrator, timestep, friction=friction), visuals=True)
-    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r} "  # the template's is about another scene
+    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r} "  # replaces the template's
     folder = pathlib.Path(spec.modelfiledir).resolve()
-    # Only a template with further files of its own needs them: they are where they were.
+    # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
     spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
     built = build.compile_spec(spec)
-    start = state.start(built, scene, phi0, phi_dot0)
+    start = state.start(built, scene, phi0=phi0, phi_dot0=phi_dot0)
     spec.add_key(name="start", qpos=start[: built.nq], qvel=start[built.nq :])
     built = spec.compile()
     text = _text(spec)
@@ -65,7 +69,7 @@ def export(
 
 
 def _text(spec: mujoco.MjSpec) -> str:
-    """The specification as XML; MuJoCo writes 6 digits unless it is told."""
+    """Return the specification as XML with `_DIGITS` digits, where MuJoCo by default writes 6."""
     c = library()
     try:
         before, set_digits = c._mjPRIVATE__get_xml_precision(), c._mjPRIVATE__set_xml_precision
@@ -79,8 +83,9 @@ def _text(spec: mujoco.MjSpec) -> str:
 
 
 def _compare(built: mujoco.MjModel, reread: mujoco.MjModel) -> None:
+    """Raise an MjbeerError if the model that was read back differs from the one that was built."""
     numbers = [(name, getattr(built, name), getattr(reread, name)) for name in _EXACT]
     options = [(f"option {name}", getattr(built.opt, name), getattr(reread.opt, name)) for name in _OPTIONS]
-    for name, one, other in [*numbers, *options]:
-        if np.shape(one) != np.shape(other) or not np.allclose(one, other, rtol=0, atol=_LEFT_OUT):
-            raise MjbeerError(f"the MJCF written is not the model: {name} is {other}, not {one}")
+    for name, before, after in [*numbers, *options]:
+        if np.shape(before) != np.shape(after) or not np.allclose(before, after, rtol=0, atol=_LEFT_OUT):
+            raise MjbeerError(f"the MJCF written is not the model: {name} is {after}, not {before}")

@@ -1,7 +1,7 @@
-"""A template without its mechanics: what is drawn remains, and nothing that could enter a motion.
+"""Removes the mechanics from a template, so that what is left is drawn and cannot act on the motion.
 
-No list of harmful attributes is kept. What mjbeer makes anew is removed, and all attributes of what it keeps are set
-to those of a new element of the same kind, but for a few that only matter for pictures.
+There is no list of harmful attributes. Elements that mjbeer makes anew are removed. In elements that it keeps, all
+attributes are set to those of a new element of the same kind, except a few that only matter for pictures.
 """
 
 import functools
@@ -11,28 +11,27 @@ import mujoco
 import numpy as np
 
 _MADE_ANEW = ("joints", "equalities", "pairs")
+"""Kinds of elements that mjbeer makes anew."""
 _COLLISION = ("surface", "can")
-"""The geoms that touch where rolling is by contact, which are made anew as well."""
+"""The geoms that collide where rolling is by contact. They are made anew as well."""
 _ADDED = ("joint", "geom", "site", "equality", "pair", "tendon", "actuator")
-"""Kinds of elements that mjbeer adds: they get the defaults of the class "main", wherever they are added."""
-_SIZES = (
-    "memory", "nconmax", "njmax", "nstack", "nkey", "nuserdata", "nuser_actuator", "nuser_body", "nuser_cam",
-    "nuser_geom", "nuser_jnt", "nuser_sensor", "nuser_site", "nuser_tendon",
-)  # fmt: skip
-"""Memory and array sizes: with too little memory MuJoCo drops contacts."""
+"""Kinds of elements that mjbeer adds. They get the defaults of the class "main", wherever they are added."""
+_USER_SIZES = ("actuator", "body", "cam", "geom", "jnt", "sensor", "site", "tendon")
+_SIZES = ("memory", "nconmax", "njmax", "nstack", "nkey", "nuserdata", *(f"nuser_{kind}" for kind in _USER_SIZES))
+"""Memory and array sizes. They matter, for with too little memory MuJoCo drops contacts."""
 _LOOKS = ("meshdir", "texturedir", "degree", "eulerseq")
-"""What the compiler has to know of files and orientations of what is drawn."""
+"""Options of the compiler that say where files are and how orientations are written: drawn elements need them."""
 _IDENTITY = ("name", "classname", "childclass", "info", "userdata", "plugin")
-"""Attributes that say which element it is, and act on no motion without a plugin, which is refused."""
+"""Attributes that identify an element. They act on the motion only through a plugin, which is refused."""
 
 
 def neutralize(spec: mujoco.MjSpec) -> None:
-    """Remove joints, constraints and the geoms that touch, and set what can enter a motion to MuJoCo's defaults.
+    """Remove joints, constraints and colliding geoms, and set what can act on the motion to MuJoCo's defaults.
 
-    Elements that act on a motion and that mjbeer does not know must not be in the specification.
+    The specification must not contain elements that act on the motion and that mjbeer does not know.
     """
-    touching = [geom for geom in spec.geoms if geom.name in _COLLISION]
-    for element in (*(element for kind in _MADE_ANEW for element in getattr(spec, kind)), *touching):
+    colliding = [geom for geom in spec.geoms if geom.name in _COLLISION]
+    for element in (*(element for kind in _MADE_ANEW for element in getattr(spec, kind)), *colliding):
         spec.delete(element)
     fresh = mujoco.MjSpec()
     body = fresh.worldbody.add_body()
@@ -44,7 +43,7 @@ def neutralize(spec: mujoco.MjSpec) -> None:
     _reset(spec.compiler, fresh.compiler, _LOOKS)
     for size in _SIZES:
         setattr(spec, size, getattr(fresh, size))
-    # The mean inertia scales the solver's tolerance; centre and extent are the cameras'.
+    # The mean inertia scales the solver's tolerance. Centre and extent stay: only the cameras use them.
     spec.stat.meaninertia = spec.stat.meanmass = spec.stat.meansize = np.nan
     for geom in spec.geoms:
         geom.contype = geom.conaffinity = 0
@@ -52,7 +51,7 @@ def neutralize(spec: mujoco.MjSpec) -> None:
 
 
 def _reset(element: Any, fresh: Any, kept: tuple[str, ...] = ()) -> None:
-    """Give an element all attributes of a fresh one of its kind, but for those that are kept."""
+    """Give an element the attributes of a fresh one of its kind, except those that are kept."""
     for name in _attributes(type(fresh)):
         if name not in (*_IDENTITY, *kept):
             setattr(element, name, getattr(fresh, name))
@@ -60,5 +59,5 @@ def _reset(element: Any, fresh: Any, kept: tuple[str, ...] = ()) -> None:
 
 @functools.cache
 def _attributes(kind: type) -> tuple[str, ...]:
-    """Return the names of all attributes of a kind of element that can be set."""
+    """Return the names of all attributes that can be set in a kind of element."""
     return tuple(name for name in dir(kind) if getattr(getattr(kind, name), "fset", None) is not None)

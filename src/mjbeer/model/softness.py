@@ -1,4 +1,4 @@
-"""What MuJoCo really does with solref and solimp, read back from a compiled model."""
+"""The softness that MuJoCo's solver gives a constraint, read back from a compiled model."""
 
 from dataclasses import dataclass
 
@@ -10,27 +10,27 @@ from mjbeer.model.engine import quiet
 
 @dataclass(frozen=True)
 class Softness:
-    """A constraint's settings, as asked for and as the solver got them."""
+    """The softness of a constraint, as asked for and as the solver used it."""
 
     timeconst: float
-    """solref's time constant as asked for [s]."""
+    """Time constant that solref asks for [s]."""
     effective_timeconst: float
-    """The one that the solver got [s]: `refsafe` raises what is under two timesteps."""
+    """Time constant that the solver used [s]: `refsafe` raises one below two timesteps."""
     impedance: float
-    """The share of the force on an exact row that is let through: d of solimp."""
+    """d of solimp: the share of its reference acceleration that a row with the exact diagonal would reach."""
     effective_impedance: float
-    """The share that the row had, with the softness that the solver gave it and the inertia it really has."""
+    """The share that the row reached, with the regularizer that the solver used and the exact diagonal."""
 
     @property
     def changed(self) -> bool:
-        """Whether the solver got another time constant than was asked for."""
+        """Return whether the solver used another time constant than solref asks for."""
         return abs(self.effective_timeconst / self.timeconst - 1) > 1e-9
 
 
 def softness(model: mujoco.MjModel, state: np.ndarray) -> Softness | None:
-    """The softness of a model's rolling constraint at a `state`, shape (nq + nv,); None if nothing touches.
+    """Return the softness of the rolling constraint at a `state`, shape (nq + nv,); None if no constraint is active.
 
-    The time constant comes from the stiffness K = 1/(d tau)^2 (damping ratio 1) of MuJoCo's reference acceleration,
+    The time constant comes from the stiffness K = 1/(d tau)^2 (damping ratio 1) of MuJoCo's reference acceleration, and
     the impedance from the regularizer R and the diagonal A = J M^-1 J^T of the constraint's first row.
     """
     if not (model.neq or model.npair):
@@ -48,4 +48,9 @@ def softness(model: mujoco.MjModel, state: np.ndarray) -> Softness | None:
     mujoco.mj_fullM(model, data, mass)
     diagonal = float(jacobian @ np.linalg.solve(mass, jacobian))
     share = diagonal / (diagonal + float(data.efc_R[0]))
-    return Softness(float(solref[0, 0]), 1 / (float(solimp[0, 1]) * stiffness**0.5), impedance, share)
+    return Softness(
+        timeconst=float(solref[0, 0]),
+        effective_timeconst=1 / (float(solimp[0, 1]) * stiffness**0.5),
+        impedance=impedance,
+        effective_impedance=share,
+    )

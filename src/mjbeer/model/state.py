@@ -1,4 +1,4 @@
-"""Between a scene's coordinates (u, phi) and the joints of its model, addressed by name."""
+"""Converts between a scene's coordinates and the joints of its model, which are addressed by name."""
 
 import mujoco
 import numpy as np
@@ -8,17 +8,17 @@ from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.scene import Scene
 
 START_DEPTH = 1e-9
-"""How deep a can starts in the incline, in radii. At depth 0 rounding decides whether it touches, and if it
-does not it falls freely for a step: 5 um at 1 ms, 1e5 times this depth."""
+"""Depth in the incline at which a can in contact starts, in radii. At depth 0 rounding would decide whether it touches;
+a can that does not touch falls freely for a step, 5 um at 1 ms, which is 1e5 times this depth."""
 
 
 def places(model: mujoco.MjModel) -> dict[str, int]:
-    """Where each joint's coordinate is in qpos, and its rate in qvel."""
-    return {model.joint(i).name: int(model.joint(i).qposadr[0]) for i in range(model.njnt)}
+    """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel too."""
+    return {model.joint(joint).name: int(model.joint(joint).qposadr[0]) for joint in range(model.njnt)}
 
 
 def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """qpos and qvel of a scene's start, shape (nq + nv,)."""
+    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
     u, u_dot = scene.start(phi0, phi_dot0)
     roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
     values = {
@@ -36,22 +36,22 @@ def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> 
 
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
-    """The coordinates that states of shape (samples, nq + nv) stand for, at `times` [s] of as many samples."""
+    """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape (samples,)."""
     joints = places(model)
 
     def column(name: str) -> tuple[np.ndarray, np.ndarray]:
         return states[:, joints[name]].copy(), states[:, model.nq + joints[name]].copy()
 
-    nothing = np.zeros(len(states)), np.zeros(len(states))
+    zeros = np.zeros(len(states)), np.zeros(len(states))
     if "phi" in joints:
         phi, phi_dot = column("phi")
     else:
-        (roll, roll_dot), (swing, swing_dot) = column("roll"), column("swing") if "swing" in joints else nothing
+        (roll, roll_dot), (swing, swing_dot) = column("roll"), column("swing") if "swing" in joints else zeros
         phi, phi_dot = roll + swing, roll_dot + swing_dot
     radius = scene.can.radius
     u, u_dot = column("slide") if "slide" in joints else (radius * phi, radius * phi_dot)
     roll, roll_dot = column("roll") if "roll" in joints else (u / radius, u_dot / radius)
-    lift, lift_dot = column("lift") if "lift" in joints else nothing
+    lift, lift_dot = column("lift") if "lift" in joints else zeros
     return Coordinates(
         time=times,
         u=u,
@@ -66,24 +66,24 @@ def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndar
 
 
 def settle(model: mujoco.MjModel, state: np.ndarray) -> np.ndarray:
-    """A `state`, shape (nq + nv,), with the lift at which nothing accelerates it; as it is for a model without a lift.
+    """Return a `state`, shape (nq + nv,), with the lift at which the can has no acceleration away from the incline.
 
-    The force of a row is linear in its depth, so that two trials give the depth. A can that starts at another one
-    falls or rises to it, which is a motion that the exact one does not have.
+    A model without a lift gets its state back. The contact force is linear in the depth, so that two trials give the
+    wanted depth. From any other depth the can would fall or rise to it, unlike in the exact motion.
     """
     if "lift" not in (joints := places(model)):
         return state
-    at = joints["lift"]
-    data, settled = mujoco.MjData(model), state.copy()
+    index = joints["lift"]
+    data, balanced = mujoco.MjData(model), state.copy()
 
     def acceleration(lift: float) -> float:
         data.qpos[:], data.qvel[:] = state[: model.nq], state[model.nq :]
-        data.qpos[at], data.qacc_warmstart[:] = lift, 0.0
+        data.qpos[index], data.qacc_warmstart[:] = lift, 0.0
         with quiet():
             mujoco.mj_forward(model, data)
-        return float(data.qacc[at])
+        return float(data.qacc[index])
 
     trials = -1e-7, -2e-7
     first, second = (acceleration(lift) for lift in trials)
-    settled[at] = trials[0] - first * (trials[1] - trials[0]) / (second - first)
-    return settled
+    balanced[index] = trials[0] - first * (trials[1] - trials[0]) / (second - first)
+    return balanced

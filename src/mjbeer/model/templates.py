@@ -1,4 +1,4 @@
-"""The MJCF templates: where they are, and reading the looks of one; the mechanics are never a template's."""
+"""Finds and reads the MJCF templates, of which a model takes only the looks, never the mechanics."""
 
 import pathlib
 
@@ -9,8 +9,7 @@ from mjbeer.model import neutral
 from mjbeer.theory.scene import Scene
 
 _FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
-"""In an installed wheel, and in a checkout."""
-# What is addressed by name: kind by kind, in every template and in some alone.
+"""Where the templates are in an installed wheel, and in a checkout."""
 _EVERYWHERE = {
     "body": ("incline", "can", "load"),
     "frame": ("level",),
@@ -20,18 +19,26 @@ _EVERYWHERE = {
     "material": ("planks", "grid"),
     "default": ("collision",),
 }
+"""The elements that mjbeer addresses by name in every template, by kind."""
 _WITH_BEER: dict[str, tuple[str, ...]] = {"mesh": ("load",)}
 _FURTHER = {"sliding": _WITH_BEER, "frozen": _WITH_BEER}
+"""The elements that mjbeer addresses by name in some templates only."""
 _BODIES = {"incline": "world", "can": "incline", "load": "can"}
-"""The bodies, and which one each is in."""
+"""The bodies, with the parent of each."""
 _MECHANISM = {
     "joints": ("slide", "lift", "roll", "swing"),
     "equalities": ("rolling",),
     "pairs": ("rolling",),
-    "actuators": (), "excludes": (), "flexes": (), "plugins": (), "sensors": (), "tendons": (),
-}  # fmt: skip
-"""The names that elements which act on a motion may have: these are in the templates, and mjbeer makes its own."""
+    "actuators": (),
+    "excludes": (),
+    "flexes": (),
+    "plugins": (),
+    "sensors": (),
+    "tendons": (),
+}
+"""The names that elements which act on the motion may have, by kind. mjbeer replaces such elements by its own."""
 _SINGULAR = {"bodies": "body", "equalities": "equality", "flexes": "flex"}
+"""Names of kinds whose plural does not just add an s."""
 
 
 def folder() -> pathlib.Path:
@@ -47,46 +54,46 @@ def folder() -> pathlib.Path:
 
 
 def name(scene: Scene) -> str:
-    """Return the name of the template that shows a scene: a load without a fill is drawn as a point."""
+    """Return the name of the template for a scene; a load without a fill is drawn as a ball."""
     if scene.attachment == "sliding":
         return "pendulum" if scene.load.fill is None else "sliding"
     return "hoop" if scene.load.fill is None else "frozen"
 
 
 def read(template: str) -> mujoco.MjSpec:
-    """Return what a template shows, as an editable specification to which the mechanics are to be added.
+    """Return a template without its mechanics, as an editable specification to which those of a model can be added.
 
-    It has the bodies "incline", "can" and "load", and all that is drawn. It has no joints, no masses and no
-    constraints, and its options, like the defaults of what is added to it, are MuJoCo's own: see `neutral`.
+    It has the bodies "incline", "can" and "load", and everything that is drawn. It has no joints, no masses and no
+    constraints; its options, and the defaults of elements that are added, are MuJoCo's own, as `neutral` explains.
 
     Raises:
-      TemplateError: if it cannot be read, lacks what mjbeer addresses by name, or has what could act on the motion
-        and is unknown to mjbeer; the message names the file and the element.
+      TemplateError: if it cannot be read, lacks an element that mjbeer addresses by name, or has an unknown element
+        that could act on the motion; the message names the file and the element.
     """
     path = folder() / f"{template}.xml"
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except (ValueError, OSError) as error:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
-    wrong = _missing(spec, _EVERYWHERE) or _missing(spec, _FURTHER.get(template, {})) or _unknown(spec)
-    if wrong:
-        raise TemplateError(f"{path} {wrong}")
+    missing = _missing(spec, _EVERYWHERE) or _missing(spec, _FURTHER.get(template, {}))
+    if fault := missing or _unknown(spec):
+        raise TemplateError(f"{path} {fault}")
     neutral.neutralize(spec)
     return spec
 
 
 def _missing(spec: mujoco.MjSpec, wanted: dict[str, tuple[str, ...]]) -> str | None:
-    """Return what to say of the first element that is missing, or None."""
+    """Return the end of an error message about the first element that is missing, or None if all exist."""
     for kind, names in wanted.items():
-        look = spec.find_default if kind == "default" else getattr(spec, kind)
+        find = spec.find_default if kind == "default" else getattr(spec, kind)
         for element in names:
-            if look(element) is None:
+            if find(element) is None:
                 return f"has no {kind} named {element!r}, which mjbeer uses; restore the template"
     return None
 
 
 def _unknown(spec: mujoco.MjSpec) -> str | None:
-    """Return what to say of the first element that could act on a motion and is none of mjbeer's, or None."""
+    """Return the end of an error message about the first unknown element that could act on the motion, or None."""
     for kind, names in {"bodies": ("world", *_BODIES), **_MECHANISM}.items():
         for element in getattr(spec, kind):
             if element.name not in names:

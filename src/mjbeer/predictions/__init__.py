@@ -1,1 +1,1 @@
-"""What theory says of numerical errors in advance; it imports `theory`, and no simulator."""
+"""Numerical errors that theory predicts; it imports `theory`, and no simulator."""

@@ -1,10 +1,11 @@
-"""What linear theory says of a timestep: whether a small motion stays bounded, and how accurate it stays.
+"""The linear theory of integrators: for which timesteps a small motion stays bounded, and for which accurate.
 
 An integrator turns linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with a matrix G of
-K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside the unit circle. G of a Runge-Kutta
-method is R(h L), the polynomial R of its tableau (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II,
-section IV.2). MuJoCo's "Euler", "implicit", "implicitfast" and "discrete" are one and the same semi-implicit Euler
-for forces like gravity, whose stiffness none of them takes implicitly.
+K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside the unit circle. For a Runge-Kutta
+method G = R(h L), where R is the polynomial of its tableau and L the matrix of the equations as x' = L x (E. Hairer,
+G. Wanner, Solving Ordinary Differential Equations II, section IV.2). MuJoCo's "Euler", "implicit", "implicitfast" and
+"discrete" are all the same semi-implicit Euler for forces like gravity, whose stiffness none of them treats
+implicitly.
 """
 
 import math
@@ -16,24 +17,25 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 RUNGE_KUTTA = ("RK4", "DOP853")
+"""The integrators that are Runge-Kutta methods; all others are semi-implicit Euler."""
 PERIODS = 200
-"""Over how many periods a swing has to stay bounded."""
+"""Number of periods over which a stable swing must stay bounded."""
 GROWTH = 100.0
-"""By which factor a bounded swing may grow in that time. Half a per cent below the limit of semi-implicit Euler a
-bounded one grows to 10, half a per cent above it an unstable one to far more than this."""
+"""Largest factor by which a bounded swing may grow over `PERIODS`. Half a per cent below the limit of semi-implicit
+Euler a swing grows to 10 times its size, half a per cent above it to far more than this."""
 ACCURATE_PERIODS = 10
-"""Over how many periods a swing has to stay accurate."""
+"""Number of periods over which an accurate swing must stay accurate."""
 ACCURACY = 1e-2
-"""Largest error of an accurate swing, as a distance in the plane of (phi, phi_dot/omega), over its amplitude."""
+"""Largest error of an accurate swing: a distance in the plane of (phi, phi_dot/omega), over the amplitude."""
 _CLASSICAL = np.array([[0, 0, 0, 0], [1 / 2, 0, 0, 0], [0, 1 / 2, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6
 _TABLEAUS = {"RK4": _CLASSICAL, "DOP853": (np.asarray(DOP853.A[:12, :12]), np.asarray(DOP853.B))}
 _RATIO = 1.02
-"""Between two timesteps on the way up to the first one that fails; windows of stability narrower than that are not
-seen, and there are none."""
+"""Ratio of two successive values in the search for the first one that fails. It would miss a window of stability that
+is narrower, but there is none."""
 
 
 def polynomial(integrator: str) -> np.ndarray:
-    """Coefficients of R(z) = 1 + sum_j z^j b A^(j-1) 1 of a Runge-Kutta method, that of 1 first."""
+    """Return the coefficients of R(z) = 1 + sum_j z^j b A^(j-1) 1 of a Runge-Kutta method, the constant first."""
     stages, weights = _TABLEAUS[integrator]
     powers, coefficients = np.ones(len(weights)), [1.0]
     for _ in weights:
@@ -43,10 +45,10 @@ def polynomial(integrator: str) -> np.ndarray:
 
 
 def amplification(integrator: str, stiffness: ArrayLike, damping: ArrayLike = 0.0) -> np.ndarray:
-    """The matrix G of one step of q'' = -k q - b q', with `stiffness` K = k h^2 and `damping` B = b h.
+    """Return the matrix G of one step of q'' = -k q - b q', with `stiffness` K = k h^2 and `damping` B = b h.
 
-    Of one coordinate or, with matrices of shape (n, n), of n; its own shape is (2n, 2n). Semi-implicit Euler,
-    v += h a(q, v), q += h v, has G = ((1 - K, 1 - B), (-K, 1 - B)).
+    K and B are numbers for one coordinate, or matrices of shape (n, n) for n coordinates; G has shape (2n, 2n).
+    Semi-implicit Euler, v += h a(q, v), q += h v, has G = ((1 - K, 1 - B), (-K, 1 - B)).
     """
     k = np.atleast_2d(np.asarray(stiffness, dtype=float))
     b, one = np.broadcast_to(np.asarray(damping, dtype=float), k.shape), np.eye(len(k))
@@ -60,12 +62,12 @@ def amplification(integrator: str, stiffness: ArrayLike, damping: ArrayLike = 0.
 
 
 def spectral_radius(matrix: np.ndarray) -> float:
-    """Largest magnitude of an eigenvalue."""
+    """Return the largest magnitude of an eigenvalue."""
     return float(np.abs(np.linalg.eigvals(matrix)).max())
 
 
 def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
-    """States G^n x for n from 0 to `steps`, shape (steps + 1, len(x)), by doubling; not finite if they overflow."""
+    """Return the states G^n `start` for n = 0 to `steps`, shape (steps + 1, len(start)); not finite on overflow."""
     states, power = np.array([start], dtype=float), np.array(matrix)
     with np.errstate(over="ignore", invalid="ignore"):
         while len(states) <= steps:
@@ -75,18 +77,18 @@ def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
 
 
 def growth(integrator: str, swing: float) -> float:
-    """Natural logarithm of the factor by which a swing of omega h = `swing` grows over `PERIODS` periods."""
+    """Return the logarithm of the factor by which a swing with omega h = `swing` grows over `PERIODS` periods."""
     steps = PERIODS * 2 * math.pi / swing
     return steps * math.log(spectral_radius(amplification(integrator, swing**2)))
 
 
 def error(integrator: str, swing: float, drift: float = 0.0, pace: float = 1.0) -> float:
-    """Largest error of a swing from rest of omega h = `swing` over `ACCURATE_PERIODS` periods, as that of `ACCURACY`.
+    """Return the largest error, as in `ACCURACY`, of a swing from rest with omega h = `swing` over `ACCURATE_PERIODS`.
 
-    For small h it is omega h/2 for semi-implicit Euler, whose ellipse in the phase plane leans, and whose frequency's
-    error (omega h)^2/24 comes second; for RK4 a phase of (omega h)^4/120 and a damping of (omega h)^5/144 a radian.
-    A model that is not quite the scene has its equilibrium elsewhere, by `drift` in amplitudes, and `pace` times its
-    frequency.
+    For small h it is omega h/2 under semi-implicit Euler: its ellipse in the phase plane leans, which outweighs the
+    frequency error (omega h)^2/24. RK4 has a phase error of (omega h)^4/120 and a damping of (omega h)^5/144 per
+    radian. A model that differs from the scene has its equilibrium off by `drift`, in amplitudes, and `pace` times
+    the scene's frequency.
     """
     steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
     states = motion(amplification(integrator, (pace * swing) ** 2), np.array([1.0 - drift, 0.0]), steps)
@@ -95,27 +97,29 @@ def error(integrator: str, swing: float, drift: float = 0.0, pace: float = 1.0) 
 
 
 def stable_limit(integrator: str) -> float:
-    """Largest omega h with a bounded swing.
+    """Return the largest omega h with a bounded swing.
 
-    2 for semi-implicit Euler, 2 sqrt(2) for RK4 and 5.97 for DOP853; what an instability needs to grow makes that
-    0.15 % more for RK4.
+    It is 2 for semi-implicit Euler, 2 sqrt(2) for RK4 and 5.97 for DOP853; but 0.15 % more for RK4, as an instability
+    needs time to grow.
     """
     return first(lambda swing: growth(integrator, swing) - math.log(GROWTH), 0.05, 20.0)
 
 
 def accurate_limit(integrator: str) -> float:
-    """Largest omega h with an accurate swing."""
+    """Return the largest omega h with an accurate swing."""
     return first(lambda swing: error(integrator, swing) - ACCURACY, 5e-3, stable_limit(integrator))
 
 
 def first(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Where `excess` first turns positive between two positive values, from below; `high` if it does not.
+    """Return the smallest value between `low` and `high`, both positive, from which on `excess` is positive.
+
+    If there is none, return `high`.
 
     Raises:
-      ValueError: if it is positive at `low`.
+      ValueError: if `excess` is positive at `low`.
     """
     if excess(low) > 0:
-        raise ValueError(f"it is exceeded at {low!r} already")
+        raise ValueError(f"the limit is exceeded already at {low!r}")
     while low < high:
         above = low * _RATIO
         if excess(above) > 0:

@@ -1,7 +1,7 @@
-"""Numerical errors that theory gives in advance.
+"""The errors of semi-implicit Euler that theory predicts: of frequency, distance, angle and energy.
 
-Semi-implicit Euler, v += h a(q, v), q += h v, is MuJoCo's "Euler" and, on models without damping, what "implicit",
-"implicitfast" and "discrete" come to. What is said of a soft constraint holds for MuJoCo's, whatever integrates it.
+Semi-implicit Euler, v += h a(q, v), q += h v, is MuJoCo's "Euler". On models without damping "implicitfast" and
+"discrete" are the same method, and "implicit" differs from it only in forces that grow with the square of the rate.
 """
 
 import numpy as np
@@ -10,15 +10,15 @@ from scipy.integrate import solve_ivp
 from mjbeer.theory.scene import Scene
 
 _DIFFERENCE = 1e-5
-"""Step of the central differences [rad, or rad/s over the frequency scale]: their error is 1e-10 of the slope."""
+"""Step of the central differences [rad, or rad/s in units of sqrt(g/a)]: their relative error is 1e-10."""
 _SIGN = {"Euler": 1, "implicitfast": 1, "discrete": 1, "implicit": -1}
-"""Of what forces that go with the square of the rate do to the energy."""
+"""Sign of the energy that forces proportional to the square of the rate add in each step."""
 _NODES = 40
-"""Of a quadrature over a swing, whose integrand is smooth: 1e-15 at 1 rad."""
+"""Nodes of the quadrature over a swing. The integrand is smooth: the error is 1e-15 at an amplitude of 1 rad."""
 
 
 def frequency_shift(frequency: float, timestep: float) -> float:
-    """Relative error of a small swing's `frequency` [rad/s] under semi-implicit Euler: (omega h)^2/24.
+    """Return the relative error of a small swing's `frequency` [rad/s] with a `timestep` [s]: (omega h)^2/24.
 
     The map has eigenvalues exp(+-i nu h) with sin(nu h/2) = omega h/2.
     """
@@ -26,19 +26,19 @@ def frequency_shift(frequency: float, timestep: float) -> float:
 
 
 def distance_excess(timestep: float, duration: float) -> float:
-    """Relative error of the distance under semi-implicit Euler at constant acceleration, from rest: h/T.
+    """Return the relative error of the distance at constant acceleration a from rest: h/T.
 
-    After n = T/h steps it is a h^2 n (n + 1)/2 instead of a T^2/2.
+    After n = T/h steps the distance is a h^2 n (n + 1)/2 instead of a T^2/2.
     """
     return timestep / duration
 
 
 def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> np.ndarray:
-    """Error of phi under semi-implicit Euler, in the limit of small timesteps, per timestep [rad/s], at `times` [s].
+    """Return the error of phi over the timestep [rad/s] at `times` [s], in the limit of small timesteps.
 
     By backward error analysis the method follows q' = v + h/2 a, v' = a - h/2 (a_q v + a_v a) up to h^2 (E. Hairer,
-    C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX); the error is that perturbation, carried along
-    by the linearized motion. It holds where phi is a coordinate of the model, as in the reduced ones.
+    C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX). The error is the perturbation of order h,
+    carried along by the linearized motion. This holds for models of which phi is a coordinate, as the reduced ones.
     """
 
     def slopes(_: float, state: np.ndarray) -> np.ndarray:
@@ -47,14 +47,14 @@ def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 
         return np.array([v, a, dv + a / 2, a_q * dq + a_v * dv - (a_q * v + a_v * a) / 2])
 
     span, start = (0.0, float(times[-1])), [phi0, phi_dot0, 0.0, 0.0]
-    return solve_ivp(slopes, span, start, "DOP853", times, rtol=1e-8, atol=1e-8).y[2]
+    return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-8).y[2]
 
 
 def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: str, phi0: float) -> np.ndarray:
-    """phi [rad] at `times` [s] of the motion that semi-implicit Euler follows, up to h^2, from rest.
+    """Return phi [rad] at `times` [s] of the motion from rest that semi-implicit Euler follows, up to h^2.
 
-    The perturbed equations of `euler_error`, in full: they hold where the error is as large as the motion. "implicit"
-    turns the sign of a_v a.
+    It solves the perturbed equations of `euler_error` without linearizing them, and so holds even where the error is
+    as large as the motion. With "implicit" the term a_v a has the opposite sign.
     """
     sign, half = _SIGN[integrator], timestep / 2
 
@@ -63,36 +63,40 @@ def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: s
         a, a_q, a_v = _acceleration(scene, q, v)
         return np.array([v + half * a, a - half * (a_q * v + sign * a_v * a)])
 
-    return solve_ivp(slopes, (0.0, float(times[-1])), [phi0, 0.0], "DOP853", times, rtol=1e-8, atol=1e-8).y[0]
+    span, start = (0.0, float(times[-1])), [phi0, 0.0]
+    return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-8).y[0]
 
 
 def _acceleration(scene: Scene, q: float, v: float) -> tuple[float, float, float]:
-    """The exact acceleration, and what it changes by with angle and rate."""
-    form, rate = scene.oscillator, float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
-    e, f = _DIFFERENCE, _DIFFERENCE * rate
-    a_q = float(form.acceleration(q + e, v) - form.acceleration(q - e, v)) / (2 * e)
-    a_v = float(form.acceleration(q, v + f) - form.acceleration(q, v - f)) / (2 * f)
-    return float(form.acceleration(q, v)), a_q, a_v
+    """Return the exact acceleration a [rad/s^2] and its derivatives a_q and a_v by angle and rate."""
+    acceleration, rate = scene.oscillator.acceleration, float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
+    dq, dv = _DIFFERENCE, _DIFFERENCE * rate
+    a_q = float(acceleration(q + dq, v) - acceleration(q - dq, v)) / (2 * dq)
+    a_v = float(acceleration(q, v + dv) - acceleration(q, v - dv)) / (2 * dv)
+    return float(acceleration(q, v)), a_q, a_v
 
 
 def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator: str) -> float | None:
-    """Share of a swing's energy that semi-implicit Euler adds to it in each period, to first order in the timestep.
+    """Return the energy that a swing gains in each period over its energy, to first order in the timestep.
 
-    With the perturbation of `euler_error`, dE/dt = -h J d(v a)/dt / 2, which over a period leaves h/2 times the
-    integral of J' v^2 dv, or of J' sqrt(w) w' / 2 over the swing with w = v^2: nothing where J is constant, and the
-    method symplectic. "implicit" treats the forces that go with v^2 implicitly, which turns the sign. None for methods
-    of higher order. The swing is one of `amplitude` [rad], between turning points that lie symmetrically.
+    With the perturbation of `euler_error`, dE/dt = -h J d(v a)/dt / 2. Over a period this leaves h/2 times the
+    integral of J' v^2 dv, which is that of J' sqrt(w) w' / 2 over the swing with w = v^2. It is zero where J is
+    constant, for there the method is symplectic. "implicit" treats the forces proportional to v^2 implicitly, which
+    changes the sign. For methods of higher order the result is None. The turning points must lie symmetrically about
+    the equilibrium, `amplitude` [rad] away.
     """
     sign = _SIGN.get(integrator)
     if sign is None:
         return None
-    form, rest = scene.oscillator, scene.equilibrium()
-    psi, weight = np.polynomial.legendre.leggauss(_NODES)
+    oscillator, rest = scene.oscillator, scene.equilibrium()
+    node, weight = np.polynomial.legendre.leggauss(_NODES)
     # phi = rest + amplitude sin(x) makes sqrt(w) smooth at its zeros, the turning points.
-    x = np.pi / 2 * psi
+    x = np.pi / 2 * node
     phi, stretch = rest + amplitude * np.sin(x), amplitude * np.cos(x) * np.pi / 2 * weight
-    inertia, slope = form.inertia(phi), form.chord * np.sin(phi) / 2 + form.swing * np.sin(2 * phi)
-    square = 2 * form.drop(phi, rest + amplitude) / inertia
-    bend = (2 * -form.depth * np.sin(phi - form.bottom) + 2 * form.slope - slope * square) / inertia
-    gained = timestep / 2 * np.sum(slope * np.sqrt(np.maximum(square, 0)) * bend * stretch)
-    return float(sign * gained / form.drop(rest, rest + amplitude))
+    inertia = oscillator.inertia(phi)
+    inertia_slope = oscillator.chord * np.sin(phi) / 2 + oscillator.swing * np.sin(2 * phi)
+    w = 2 * oscillator.drop(phi, rest + amplitude) / inertia
+    torque = -oscillator.depth * np.sin(phi - oscillator.bottom)
+    w_slope = (2 * torque + 2 * oscillator.slope - inertia_slope * w) / inertia
+    gain = timestep / 2 * np.sum(inertia_slope * np.sqrt(np.maximum(w, 0)) * w_slope * stretch)
+    return float(sign * gain / oscillator.drop(rest, rest + amplitude))

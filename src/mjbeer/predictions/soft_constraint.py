@@ -1,13 +1,18 @@
 """The linear theory of MuJoCo's soft constraints: which solref is stable at which timestep.
 
-Along a row with the residual r, MuJoCo asks for the reference acceleration r'' = -b r' - k r and gets a share of it,
-r'' = s (-b r' - k r) + (1 - s) a_free. With solref (tau, zeta) and a constant impedance d (solimp's dmin = dmax),
+In the solver a constraint is one row or several. A row has a residual r, for instance u - a roll, and a reference
+acceleration -b r' - k r. Because it is soft, only a share s of that is reached:
+
+    r'' = s (-b r' - k r) + (1 - s) a_free,
+
+where a_free is the acceleration without the constraint. With solref (tau, zeta) and a constant impedance d (solimp's
+dmin = dmax),
 
     b = 2/(d tau),   k = d/(d tau zeta)^2,
 
-so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: the impedance drops out, and stability is a matter
-of h/tau and zeta alone. It does not drop out where MuJoCo overestimates the row's diagonal by a factor, which is the
-default: then s < d, and the row is softer and stable for longer timesteps than it looks.
+so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: the impedance drops out, and stability depends on
+h/tau and zeta alone. It does not drop out where MuJoCo overestimates the row's diagonal, as it does by default: then
+s < d, and the row is softer, and stable for longer timesteps, than its solref suggests.
 """
 
 import math
@@ -20,20 +25,20 @@ from mjbeer.theory.scene import Scene
 
 
 def residual_slip(penetration: float, radius: float) -> float:
-    """Slip over distance rolled of a can that sinks into the incline by `penetration` [m]: -delta/2a.
+    """Return the slip over the distance rolled of a can that sinks by `penetration` [m] into the incline: -delta/2a.
 
-    MuJoCo's contact point lies midway between the two surfaces, at a - delta/2 from the axis: the can rolls as one
-    with that radius.
+    MuJoCo's contact point lies midway between the two surfaces, at a - delta/2 from the axis, and the can rolls as if
+    that were its radius.
     """
     return -penetration / (2 * radius)
 
 
 def diagonal_excess(scene: Scene) -> float:
-    """By what MuJoCo overestimates the diagonal of the equality u = a roll.
+    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
 
-    It adds the joints' inverse inertias as they are, metres and radians alike: (1/m_u + 1/I)/(1/m_u + a^2/I) where
-    the two are not coupled, with m_u and I the inverses of the diagonal of M^-1. A frozen load couples them, in the
-    position phi = 0 by -m b, and the true diagonal is J M^-1 J^T with J = (1, -a).
+    MuJoCo adds the inverse inertias 1/m_u and 1/I of the two joints, which are the diagonal of M^-1, without regard to
+    metres and radians. If the joints are not coupled, the factor is (1/m_u + 1/I)/(1/m_u + a^2/I). A frozen load
+    couples them by -m b; the true diagonal is J M^-1 J^T with J = (1, -a).
     """
     can, load, moment = scene.can, scene.load, scene.load.mass * scene.load.offset
     if scene.attachment == "frozen":
@@ -49,105 +54,108 @@ def diagonal_excess(scene: Scene) -> float:
     return float(np.trace(inverse) / (row @ inverse @ row))
 
 
-def softened(impedance: float, excess: float) -> float:
-    """Share of a constraint's force that is let through where its diagonal is overestimated by a factor `excess`.
+def reached_share(impedance: float, excess: float) -> float:
+    """Return the share s of a row whose diagonal MuJoCo overestimates by a factor `excess`.
 
-    The regularizer is R = (1 - d)/d times MuJoCo's diagonal, the share A/(A + R) with the true one A.
+    The regularizer R is (1 - d)/d times MuJoCo's diagonal; the share is A/(A + R) with the true diagonal A.
     """
     return 1 / (1 + (1 - impedance) / impedance * excess)
 
 
 MAX_IMPEDANCE = 0.9999
-"""mjMAXIMP: the hardest row that MuJoCo takes."""
+"""Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
 _BOUNDED = 1 + 1e-9
-"""Spectral radius of what counts as bounded; the double eigenvalue of a critically damped row is known to 1e-8."""
+"""Largest spectral radius that counts as bounded."""
 
 
 @dataclass(frozen=True)
 class SoftRow:
-    """A row's reference acceleration -b r' - k r, and its impedance."""
+    """One row of a soft constraint: its reference acceleration -b r' - k r, and its impedance."""
 
     stiffness: float
     """k [1/s^2], MuJoCo's K times the impedance."""
     damping: float
     """b [1/s]."""
     impedance: float
-    """d, the share of the reference that an exact row gets."""
+    """d, the share of the reference acceleration that a row with the exact diagonal reaches."""
 
     def at_end_of_step(self, timestep: float) -> "SoftRow":
-        """What "discrete" makes of it: the reference of the end of the step, as a row of its start.
+        """Return the row that MuJoCo's "discrete" solves in place of this one.
 
-        Put r' + h r'' and r + h r' + h^2 r'' into -b r' - k r: with S = 1 + h b + h^2 k the row is
-        -((b + h k) r' + k r)/S, and its softness (1 - d)/d is divided by S, down to that of `MAX_IMPEDANCE`.
+        Its reference acceleration is that of the residual at the end of the step: r' + h r'' and r + h r' + h^2 r''
+        in -b r' - k r. With S = 1 + h b + h^2 k that is -((b + h k) r' + k r)/S at the start of the step. The
+        softness (1 - d)/d is divided by S, but stays at least that of `MAX_IMPEDANCE`.
         """
         h = timestep
         scale = 1 + h * self.damping + h**2 * self.stiffness
-        impedance = min(softened(self.impedance, 1 / scale), MAX_IMPEDANCE)
+        impedance = min(reached_share(self.impedance, 1 / scale), MAX_IMPEDANCE)
         return SoftRow(self.stiffness / scale, (self.damping + h * self.stiffness) / scale, impedance)
 
 
 def spring(timeconst: float, dampratio: float, impedance: float) -> SoftRow:
-    """The row of solref = (timeconst [s], dampratio)."""
+    """Return the row of solref = (timeconst [s], dampratio)."""
     damping = 2 / (impedance * timeconst)
     return SoftRow(damping**2 * impedance / (4 * dampratio**2), damping, impedance)
 
 
 def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
-    """The row of solref = (-stiffness [1/s^2], -damping [1/s])."""
+    """Return the row of solref = (-stiffness [1/s^2], -damping [1/s])."""
     return SoftRow(stiffness / impedance, damping / impedance, impedance)
 
 
-def safe(timeconst: float, timestep: float) -> float:
-    """The time constant [s] that refsafe makes of one: at least two timesteps.
+def refsafe_timeconst(timeconst: float, timestep: float) -> float:
+    """Return the time constant [s] that MuJoCo's refsafe uses instead of `timeconst` [s]: at least two timesteps.
 
-    It asks for solref's first number alone: a damping ratio under 0.354 is still unstable at a time constant of two
-    timesteps under semi-implicit Euler, and a direct (negative) solref is left as it is.
+    Refsafe looks only at solref's first number. Under semi-implicit Euler a damping ratio below 0.354 is unstable even
+    at a time constant of two timesteps, and a direct (negative) solref is not changed.
     """
     return max(timeconst, 2 * timestep)
 
 
-def resolved(timeconst: float, dampratio: float, impedance: float, timestep: float) -> float:
-    """The time constant [s] that refsafe makes of a contact's under "discrete": at least h/(zeta sqrt(d)).
+def discrete_refsafe_timeconst(timeconst: float, dampratio: float, impedance: float, timestep: float) -> float:
+    """Return the time constant [s] that refsafe uses for a contact under "discrete": at least h/(zeta sqrt(d)).
 
-    That is the row whose k h^2 is 1: it takes back all of its residual in one step. MuJoCo's manual puts the threshold
-    at tau zeta = h, without the impedance; what it solves is this.
+    At that limit k h^2 = 1, and the row corrects all of its residual in one step. MuJoCo's manual gives the limit
+    tau zeta = h, without the impedance, but this is what MuJoCo solves.
     """
     return max(timeconst, timestep / (dampratio * math.sqrt(impedance)))
 
 
 def radius(integrator: str, row: SoftRow, timestep: float, excess: float = 1.0) -> float:
-    """Spectral radius of a step of a row that is alone, with its diagonal overestimated by a factor `excess`."""
+    """Return the spectral radius of one step of a single row, whose diagonal MuJoCo overestimates by `excess`."""
     if integrator == "discrete":
         row = row.at_end_of_step(timestep)
-    share = softened(row.impedance, excess)
+    share = reached_share(row.impedance, excess)
     scaled = share * row.stiffness * timestep**2, share * row.damping * timestep
     return spectral_radius(amplification(integrator, *scaled))
 
 
 def stable_timestep(integrator: str, row: SoftRow, excess: float = 1.0) -> float:
-    """Largest timestep [s] with a bounded row; infinite under "discrete", whatever the row.
+    """Return the largest timestep [s] with a bounded row; infinite under "discrete", whatever the row.
 
-    Under semi-implicit Euler 4 > 2 h b + h^2 k with the shares of b and k (Jury's criterion, with h b < 2).
+    Under semi-implicit Euler it is the largest h with 4 > 2 h s b + h^2 s k (Jury's criterion, with h s b < 2).
     """
     scale = 1 / max(row.damping, math.sqrt(row.stiffness))
-    limit = first(lambda h: radius(integrator, row, h, excess) - _BOUNDED, 1e-2 * scale, 1e6 * scale)
+    limit = first(lambda h: radius(integrator, row, timestep=h, excess=excess) - _BOUNDED, 1e-2 * scale, 1e6 * scale)
     return math.inf if limit == 1e6 * scale else limit
 
 
 def stable_ratio(integrator: str, dampratio: float = 1.0) -> float:
-    """Largest h/timeconst with a bounded row.
+    """Return the largest h/timeconst with a bounded row.
 
-    Under semi-implicit Euler 2 zeta (sqrt(zeta^2 + 1) - zeta), 0.828 at zeta = 1; 2.785 under RK4, 6.39 under DOP853.
+    Under semi-implicit Euler it is 2 zeta (sqrt(zeta^2 + 1) - zeta). At zeta = 1 that is 0.828; RK4 has 2.785 there and
+    DOP853 6.39.
     """
     return stable_timestep(integrator, spring(1.0, dampratio, 1.0))
 
 
 def stable_slip(integrator: str) -> float:
-    """Largest h/timeconst of a friction row, which has the damping b = 2/timeconst and no stiffness.
+    """Return the largest h/timeconst with a bounded friction row, which has a damping and no stiffness.
 
-    1 under semi-implicit Euler, and under a Runge-Kutta method half of its limit on the negative real axis, 1.393 for
-    RK4: a contact bears half of the timestep that an equality does. That is for an impedance of 1. A friction row that
-    `impratio` makes much harder than its contact gets all of its reference, b = 2/(d tau), and bears d times as much.
+    It is 1 under semi-implicit Euler, and half of the stability limit on the negative real axis under a Runge-Kutta
+    method, 1.393 for RK4: with RK4 a contact is stable up to half of the timestep of an equality. This is for an
+    impedance of 1. A friction row that `impratio` makes much harder than its contact reaches all of its reference
+    acceleration, b = 2/(d tau), and is stable up to d times the limit.
     """
     if integrator == "discrete":
         return math.inf

@@ -1,8 +1,9 @@
-"""Small motions of a frozen load on the level, held to rolling by soft constraints: equations of motion as matrices.
+"""Small motions of a frozen load on level ground that soft constraints keep rolling, as matrices.
 
     q'' = -P q + G (c - J (-P q)),   c_i = -b_i (J q')_i - k_i (J q)_i,   G = M^-1 J^T (J M^-1 J^T + R)^-1
 
-with P = M^-1 times the stiffness of gravity and MuJoCo's regularizer R. They come to q'' = -K q - B q'.
+with P = M^-1 times the stiffness of gravity, the Jacobian J of the constraint rows i, and MuJoCo's regularizer R.
+Written out, they are q'' = -K q - B q'.
 """
 
 from dataclasses import dataclass
@@ -16,59 +17,61 @@ from mjbeer.theory.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class System:
-    """Mass matrix, gravity's stiffness and constraint rows of a few coordinates q."""
+    """The linear equations of motion of a few coordinates q: masses, gravity and constraint rows."""
 
     coordinates: tuple[str, ...]
     """The joints of the model, in the order of the matrices."""
     mass: np.ndarray
+    """Mass matrix M, shape (n, n)."""
     gravity: np.ndarray
+    """Stiffness matrix of gravity, shape (n, n)."""
     rows: tuple[tuple[np.ndarray, str], ...]
-    """Each row's Jacobian, and what it is: "equality", "normal" or "friction"."""
+    """The Jacobian and the kind of each row: "equality", "normal" or "friction"."""
     excess: float = 1.0
-    """By what MuJoCo overestimates an equality's diagonal."""
+    """Factor by which MuJoCo overestimates the diagonal of an equality."""
     impratio: float = 1.0
-    """How much harder the friction rows are than the normal ones."""
+    """Hardness of the friction rows over that of the normal rows."""
 
     def step(self, integrator: str, row: SoftRow, timestep: float) -> np.ndarray:
-        """The matrix of one step of (q, h q')."""
-        solved = row.at_end_of_step(timestep) if integrator == "discrete" else row
-        slipping = SoftRow(0.0, row.damping, row.impedance)
-        slipped = slipping.at_end_of_step(timestep) if integrator == "discrete" else slipping
-        jacobian = np.array([each for each, _ in self.rows])
-        across = np.linalg.solve(self.mass, jacobian.T)
-        delassus = jacobian @ across
-        softness = (1 - solved.impedance) / solved.impedance * delassus[0, 0]
+        """Return the matrix of one step of (q, h q') with a `timestep` h [s]; all but friction rows are like `row`."""
+        friction = SoftRow(0.0, row.damping, row.impedance)
+        if integrator == "discrete":
+            row, friction = row.at_end_of_step(timestep), friction.at_end_of_step(timestep)
+        jacobian = np.array([row_jacobian for row_jacobian, _ in self.rows])
+        mass_to_rows = np.linalg.solve(self.mass, jacobian.T)
+        delassus = jacobian @ mass_to_rows
+        softness = (1 - row.impedance) / row.impedance * delassus[0, 0]
         soft = {"equality": self.excess * softness, "normal": softness, "friction": softness / self.impratio}
         regularizer = np.diag([soft[kind] for _, kind in self.rows])
-        pulled = across @ np.linalg.inv(delassus + regularizer)
-        stiffness = np.diag([0.0 if kind == "friction" else solved.stiffness for _, kind in self.rows])
-        damping = np.diag([(slipped if kind == "friction" else solved).damping for _, kind in self.rows])
+        gain = mass_to_rows @ np.linalg.inv(delassus + regularizer)
+        stiffness = np.diag([0.0 if kind == "friction" else row.stiffness for _, kind in self.rows])
+        damping = np.diag([(friction if kind == "friction" else row).damping for _, kind in self.rows])
         free = np.linalg.solve(self.mass, self.gravity)
-        total = free - pulled @ jacobian @ free + pulled @ stiffness @ jacobian
-        return amplification(integrator, total * timestep**2, pulled @ damping @ jacobian * timestep)
+        total = free - gain @ jacobian @ free + gain @ stiffness @ jacobian
+        return amplification(integrator, total * timestep**2, gain @ damping @ jacobian * timestep)
 
 
 def by_equality(scene: Scene, excess: float = 1.0) -> System:
-    """A frozen load on the level with the joint equality u = a roll."""
-    mass, gravity = _frozen(scene)
-    return System(("slide", "roll"), mass, gravity, ((np.array([1.0, -scene.can.radius]), "equality"),), excess)
+    """Return the system of a frozen load on level ground with the joint equality u = a roll."""
+    mass, gravity = _mass_and_gravity(scene)
+    rows = ((np.array([1.0, -scene.can.radius]), "equality"),)
+    return System(("slide", "roll"), mass, gravity, rows=rows, excess=excess)
 
 
 def by_contact(scene: Scene, depth: float, points: int, impratio: float) -> System:
-    """A frozen load on the level with a cylinder on a plane, which touches in several `points`.
+    """Return the system of a frozen load in a cylinder on a level plane, which touches at several `points`.
 
-    The can lies in the plane by a `depth` [m] and rolls as one of the radius a - depth/2, where MuJoCo's contact is.
+    The can sinks into the plane by `depth` [m] and rolls as if its radius were a - depth/2, where MuJoCo's contact is.
     """
-    flat, restoring = _frozen(scene)
     mass, gravity = np.diag([0.0, scene.mass, 0.0]), np.zeros((3, 3))
-    mass[np.ix_([0, 2], [0, 2])], gravity[np.ix_([0, 2], [0, 2])] = flat, restoring
+    mass[np.ix_([0, 2], [0, 2])], gravity[np.ix_([0, 2], [0, 2])] = _mass_and_gravity(scene)
     normal, friction = np.array([0.0, 1.0, 0.0]), np.array([-1.0, 0.0, scene.can.radius - depth / 2])
     rows = ((normal, "normal"), (friction, "friction")) * points
-    return System(("slide", "lift", "roll"), mass, gravity, rows, impratio=impratio)
+    return System(("slide", "lift", "roll"), mass, gravity, rows=rows, impratio=impratio)
 
 
-def _frozen(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
-    """Mass matrix and stiffness of gravity of (u, roll) at the equilibrium phi = 0."""
+def _mass_and_gravity(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mass matrix and the stiffness matrix of gravity for (u, roll) at the equilibrium phi = 0."""
     moment = scene.load.mass * scene.load.offset
     inertia = scene.can.inertia + scene.load.inertia + moment * scene.load.offset
     mass = np.array([[scene.mass, -moment], [-moment, inertia]])

@@ -1,1 +1,1 @@
-"""From a scene to a trajectory; it imports `theory` and `model`."""
+"""Simulates a scene with MuJoCo; it imports `theory` and `model`."""

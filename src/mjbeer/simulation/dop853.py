@@ -1,4 +1,4 @@
-"""Eighth-order integration of a model, set up once and run often."""
+"""The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics."""
 
 import copy
 import math
@@ -14,26 +14,32 @@ from mjbeer.simulation import dop853_kernel
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
 _EVERYTHING = ("mj_forward",)
+"""The function that computes the acceleration of any model."""
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
-"""What mj_forward calls to find the acceleration where nothing is constrained or actuated: the same to the last bit,
-in three quarters of the time."""
+"""The functions by which mj_forward computes the acceleration of a model without constraints and actuators. Calling
+them directly gives the same numbers to the last bit, in three quarters of the time."""
 
 
 class Integrator:
-    """The DOP853 method around the forward dynamics of one model."""
+    """The DOP853 method around the forward dynamics of one model, set up once and run often.
+
+    Raises:
+      ValueError: if the model has joints other than slides and hinges.
+    """
 
     def __init__(self, model: mujoco.MjModel) -> None:
         if model.nq != model.nv:
             raise ValueError("only slide and hinge joints can be integrated component by component")
         self._size = model.nq + model.nv
         self._model, self._data = _with_constant_forces(model)
-        smooth = bool(self._model.opt.disableflags & _CONSTRAINT) and not _acts(self._model)
-        functions = np.array([address(each) for each in (_SMOOTH if smooth else _EVERYTHING)])
+        smooth = bool(self._model.opt.disableflags & _CONSTRAINT) and not _has_actuators(self._model)
+        functions = np.array([address(name) for name in (_SMOOTH if smooth else _EVERYTHING)])
         self._pointers = (functions, self._model._address, self._data._address)
         acceleration = self._data.qacc_smooth if smooth else self._data.qacc
-        self._views = (self._data.qpos, self._data.qvel, acceleration, _matters(self._model, smooth))
+        needed = _needed_positions(self._model, smooth)
+        self._views = (self._data.qpos, self._data.qvel, acceleration, needed)
         self.evaluations = 0
-        """Evaluations of the forward dynamics that the last run took."""
+        """Number of evaluations of the forward dynamics in the last run."""
 
     def run(
         self,
@@ -44,13 +50,13 @@ class Integrator:
         scale: np.ndarray | None = None,
         limit: float = math.inf,
     ) -> np.ndarray:
-        """States at the increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
+        """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        A `timestep` [s] fixes the step. Otherwise each step keeps its local error below `tolerance` times
-        (`scale` + |state|), with `scale` of shape (nq + nv,). More than `limit` evaluations are given up.
+        With a `timestep` [s] the step is fixed. Without it each step keeps its local error below `tolerance` times
+        (`scale` + |state|), with `scale` of shape (nq + nv,). The run is given up after `limit` evaluations.
 
         Raises:
-          DivergenceError: if the motion stops being finite, the step vanishes, or the limit is reached.
+          DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
         """
         state, samples = start.copy(), np.empty((len(times), self._size))
         slopes = np.zeros((dop853_kernel.ROWS, self._size))
@@ -59,11 +65,19 @@ class Integrator:
         self.evaluations, status = 0, dop853_kernel.BLOCK_END
         with quiet(), untimed():
             while status == dop853_kernel.BLOCK_END:
-                status, place, spent = dop853_kernel.advance(
-                    self._pointers, self._views, state, slopes, times, samples, place,
-                    timestep is not None, tolerance, scale,
-                )  # fmt: skip
-                self.evaluations += spent
+                status, place, evaluations = dop853_kernel.advance(
+                    pointers=self._pointers,
+                    views=self._views,
+                    state=state,
+                    slopes=slopes,
+                    times=times,
+                    samples=samples,
+                    place=place,
+                    fixed=timestep is not None,
+                    tolerance=tolerance,
+                    scale=scale,
+                )
+                self.evaluations += evaluations
                 if status == dop853_kernel.BLOCK_END and self.evaluations > limit:
                     raise DivergenceError(
                         f"the DOP853 run was given up at t = {place[0]:.6g} s after {self.evaluations} evaluations"
@@ -76,36 +90,37 @@ class Integrator:
 
 
 def integrate(model: mujoco.MjModel, start: np.ndarray, times: np.ndarray, timestep: float) -> np.ndarray:
-    """States at the increasing `times` [s] of one run with a fixed `timestep` [s], as `Integrator.run`."""
+    """Return the states at increasing `times` [s] of one run with a fixed `timestep` [s], as `Integrator.run` does."""
     return Integrator(model).run(start, times, timestep)
 
 
-def _matters(model: mujoco.MjModel, smooth: bool) -> np.ndarray:
-    """Which components of qpos an acceleration depends on: all but the slide, where nothing ties it to the others.
+def _needed_positions(model: mujoco.MjModel, smooth: bool) -> np.ndarray:
+    """Return a mask of the components of qpos on which the acceleration depends, shape (nq,).
 
-    Evaluations are made at the origin of the slide then. MuJoCo computes torques from positions in the world, in whose
-    rounding a short arm is lost after a long way.
+    Without constraints it does not depend on the slide, and is evaluated at the slide's origin: MuJoCo computes torques
+    from positions in the world, whose rounding would hide a short arm far from the origin.
     """
-    matters = np.ones(model.nq, np.bool_)
+    needed = np.ones(model.nq, np.bool_)
     if smooth and "slide" in (joints := places(model)):
-        matters[joints["slide"]] = False
-    return matters
+        needed[joints["slide"]] = False
+    return needed
 
 
-def _acts(model: mujoco.MjModel) -> bool:
+def _has_actuators(model: mujoco.MjModel) -> bool:
+    """Return whether the model has actuators that are enabled."""
     return model.nu > 0 and not model.opt.disableflags & _ACTUATION
 
 
 def _with_constant_forces(model: mujoco.MjModel) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """A model and its data; forces of actuators that depend on nothing are applied once and for all.
+    """Return a model and its data, in which constant forces of actuators are applied forces instead.
 
-    An actuator takes a tenth of an evaluation of the frozen load's reduced model.
+    This saves a tenth of the time of an evaluation of the frozen load's reduced model.
     """
-    if not _acts(model) or model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any():
+    if not _has_actuators(model) or model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any():
         return model, mujoco.MjData(model)
-    free = copy.copy(model)
-    free.opt.disableflags |= _ACTUATION
-    once, data = mujoco.MjData(model), mujoco.MjData(free)
-    mujoco.mj_forward(model, once)
-    data.qfrc_applied[:] = once.qfrc_actuator
-    return free, data
+    without = copy.copy(model)
+    without.opt.disableflags |= _ACTUATION
+    actuated, data = mujoco.MjData(model), mujoco.MjData(without)
+    mujoco.mj_forward(model, actuated)
+    data.qfrc_applied[:] = actuated.qfrc_actuator
+    return without, data

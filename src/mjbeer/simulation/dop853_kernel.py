@@ -1,4 +1,4 @@
-"""Steps of the eighth-order Dormand-Prince method around MuJoCo's own forward dynamics, in compiled code.
+"""The compiled loop of DOP853: steps of the eighth-order Dormand-Prince method around MuJoCo's forward dynamics.
 
 The twelve stages, the error estimate and the seventh-order continuous output are those of
 E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I, section
@@ -16,23 +16,23 @@ from numba.extending import intrinsic
 from scipy.integrate import DOP853
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
-"""What `advance` says: how it ended."""
+"""The statuses with which `advance` can end."""
 ROWS = 16
-"""Slopes that are kept: those of the stages, the new one, and three more of the continuous output."""
+"""Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""
 _A, _B = DOP853.A[:12, :12].copy(), DOP853.B.copy()
 _E3, _E5 = DOP853.E3.copy(), DOP853.E5.copy()
 _A_EXTRA, _D = np.asarray(DOP853.A_EXTRA).copy(), np.asarray(DOP853.D).copy()
 _STAGES = 12
 _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
-_MEMORY = 0.04  # its beta: looks back one step, which saves two of three rejected ones here
-_LEAST = 1e-4  # least error that it looks back at
+_MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
+_LEAST = 1e-4  # smallest error of the step before that counts
 _BLOCK = 20_000  # steps between two returns to Python, so that a long run can be interrupted
-_LARGEST = 1e10  # mjMAXVAL: what MuJoCo itself calls a diverged state
+_LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
 
 
 @intrinsic
 def _call(typing_context, function, model, data):
-    """Call the C function at an address with two pointers; compiled code can be cached, as no address is in it."""
+    """Call the C function at the address `function` with two pointers; no address is compiled in, so caching works."""
 
     def generate(context, builder, signature, arguments):
         pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
@@ -45,11 +45,12 @@ def _call(typing_context, function, model, data):
 
 @njit(cache=True)
 def _slope(pointers, views, state, out):
+    """Write the time derivative of a state to `out`."""
     functions, model, data = pointers
-    qpos, qvel, qacc, matters = views
+    qpos, qvel, qacc, needed = views
     n = qpos.size
     for i in range(n):
-        qpos[i] = state[i] if matters[i] else 0.0
+        qpos[i] = state[i] if needed[i] else 0.0
         qvel[i] = state[n + i]
     for function in functions:
         _call(function, model, data)
@@ -60,7 +61,7 @@ def _slope(pointers, views, state, out):
 
 @njit(cache=True)
 def _combine(weights, count, slopes, out):
-    """Weighted sum of the first `count` slopes, row by row: no sum waits for the one before."""
+    """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
     for i in range(out.size):
         out[i] = 0.0
     for j in range(count):
@@ -71,14 +72,20 @@ def _combine(weights, count, slopes, out):
 
 
 @njit(cache=True)
-def advance(
-    pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale
-):  # fmt: skip
-    """Take up to a block of steps, from `state` on, and fill in the `samples` that they pass.
+def advance(pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale):
+    """Take up to a block of steps, and return the status, the new place and the number of evaluations.
 
-    `place` is where the run is: time, step, next sample, number of steps, error of the last step; it comes back
-    anew. A step is `fixed`, or keeps its error below the `tolerance`. Also returned: how it ended, and the
-    evaluations spent.
+    Args:
+      pointers: addresses of the functions that compute an acceleration, of the model and of its data.
+      views: qpos, qvel and acceleration in that data, and the mask of the components of qpos that are needed.
+      state: the state at the start of the block; at the end it is the state reached.
+      slopes: work space of shape (ROWS, states); its first row must be the slope at `state`, except in the first block.
+      times: increasing times of the samples [s].
+      samples: states at `times`; the rows that the steps pass are filled in.
+      place: time, step, index of the next sample, number of steps, and error of the last step.
+      fixed: whether the step is fixed, or keeps its error below the tolerance.
+      tolerance: local tolerance of a step.
+      scale: size below which an error of each component counts absolutely.
     """
     time, step, sample, steps, before = place
     size = state.size
@@ -155,9 +162,9 @@ def advance(
 
 @njit(cache=True)
 def _first_step(pointers, views, state, slopes, tolerance, scale, work):
-    """Starting step size, Hairer's algorithm in section II.4.
+    """Return the first step [s], by Hairer's algorithm in section II.4.
 
-    It goes with the tolerance, like every other step: two runs that judge each other must not have the same steps.
+    Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
     """
     size = state.size
     d0 = d1 = 0.0
@@ -181,6 +188,7 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
 
 @njit(cache=True)
 def _error(state, new, slopes, step, tolerance, scale, five, three):
+    """Return the estimated error of a step over the tolerated one."""
     fifth = third = 0.0
     _combine(_E5, _STAGES, slopes, five)
     _combine(_E3, _STAGES, slopes, three)
@@ -194,7 +202,7 @@ def _error(state, new, slopes, step, tolerance, scale, five, three):
 
 @njit(cache=True)
 def _prepare(pointers, views, state, new, slopes, step, work, weights):
-    """Polynomial of the continuous output over the step just made."""
+    """Write the coefficients of the continuous output over the last step to `weights`."""
     for row in range(3):
         _combine(_A_EXTRA[row], _STAGES + 1 + row, slopes, work)
         for i in range(state.size):
@@ -213,6 +221,7 @@ def _prepare(pointers, views, state, new, slopes, step, work, weights):
 
 @njit(cache=True)
 def _interpolate(state, weights, part, out):
+    """Write the state after the fraction `part` of a step from `state` to `out`."""
     for i in range(state.size):
         value = 0.0
         for k in range(6, -1, -1):

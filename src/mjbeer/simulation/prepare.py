@@ -1,4 +1,4 @@
-"""A scene made ready to be stepped: set up once, run often."""
+"""A scene with its model and integrator, set up once and run often."""
 
 from dataclasses import replace
 
@@ -15,10 +15,11 @@ from mjbeer.theory.scene import Scene
 
 
 class Prepared:
-    """A scene set up to be stepped in a setting; `solve` is all that takes time, and all that the benchmark times.
+    """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
 
     Raises:
-      UnsupportedError: if MuJoCo has no such model.
+      UnsupportedError: if MuJoCo cannot have such a model.
+      TemplateError: if the template of the scene is missing or not as it should be.
     """
 
     def __init__(self, scene: Scene, setting: Setting) -> None:
@@ -32,11 +33,11 @@ class Prepared:
             self._method = Integrator(self.model) if setting.integrator == DOP853 else Stepper(self.model)
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
-        """The state from which a run starts at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
-        return state.start(self.model, self.scene, phi0, phi_dot0)
+        """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
+        return state.start(self.model, self.scene, phi0=phi0, phi_dot0=phi_dot0)
 
     def solve(self, start: np.ndarray, times: np.ndarray) -> Solution:
-        """States at `times` [s] of the motion from a `start`; MuJoCo's integrators take the nearest timesteps.
+        """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.
 
         Raises:
           DivergenceError: if the motion stops being finite.
@@ -51,5 +52,5 @@ class Prepared:
         return Solution(self._method.run(start[None], steps)[0])
 
     def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
-        """The coordinates of states of shape (samples, nq + nv) at `times` [s]."""
-        return state.read(self.model, self.scene, states, times)
+        """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
+        return state.read(self.model, self.scene, states=states, times=times)

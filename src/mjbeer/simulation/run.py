@@ -1,4 +1,4 @@
-"""A simulated motion that knows how it was made, and so can be made again, more finely."""
+"""A simulated motion with its setting, which allows a second run at half the timestep to estimate the error."""
 
 import math
 from dataclasses import dataclass, replace
@@ -19,43 +19,45 @@ _SAFETY = 2.5
 """Error estimate over the distance to a run at half the timestep. A first-order method needs 2, because halving the
 step halves its error; 2.5 allows for an order that has not settled."""
 _ASIDE = 4e-14
-"""How far beside the start the run at half the timestep starts [rad]: a hundred roundings. In contact it is the depth
-at which the can starts, in radii, which no two models would have alike. Beside a separatrix all depends on it."""
+"""Distance between the starts of a run and of the run at half its timestep [rad]: a hundred times their rounding.
+Beside a separatrix it shows how much rounding matters. In contact it is `START_DEPTH` instead, as no two models would
+have the same depth."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Trajectory):
-    """A simulated motion, and how it was made."""
+    """A simulated motion, its start and its setting."""
 
     phi0: float
     """Start angle phi [rad]."""
     phi_dot0: float
     """Start rate of phi [rad/s]."""
     setting: Setting
+    """How the can was made to roll and how it was stepped."""
     estimate: float | None = None
-    """Estimated error that the run came with [rad]: that of a run to a tolerance."""
+    """Estimated error [rad] of a run with a tolerance, which comes with the run; None without a tolerance."""
 
     @property
     def rolling(self) -> str:
-        """How the can was made to roll: "reduced", "equality" or "contact"."""
+        """Return how the can was made to roll: "reduced", "equality" or "contact"."""
         return self.setting.rolling
 
     @property
     def integrator(self) -> str:
-        """Name of the integrator; with a tolerance it is "DOP853"."""
+        """Return the name of the integrator, which is "DOP853" with a tolerance."""
         return self.setting.integrator if self.setting.tolerance is None else DOP853
 
     @property
     def timestep(self) -> float | None:
-        """Fixed step of the integrator [s]; None with a tolerance."""
+        """Return the fixed timestep of the integrator [s]; None with a tolerance."""
         return self.setting.timestep if self.setting.tolerance is None else None
 
     @cached_property
     def error_estimate(self) -> float | None:
-        """Estimated global error of phi and u/a [rad], relative to the total angle where that exceeds 1 rad.
+        """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It is by a second run: the one that a tolerance took anyway, or one at half the timestep, which is made when
-        this is first asked for and takes twice as long as the first. It is infinite if that one diverges.
+        It rests on the distance from a second run. With a tolerance that was made already. Otherwise the first access
+        makes a run at half the timestep, which takes twice as long as this one; the error is infinite if it diverges.
         """
         if self.estimate is not None:
             return self.estimate
@@ -65,21 +67,21 @@ class Run(Trajectory):
             return math.inf
 
     def finer(self) -> "Run":
-        """The same motion at half the timestep, from a start a little aside.
+        """Return the same motion at half the timestep, from a start that is `_ASIDE` from this one.
 
-        Constraints that are tuned to the timestep get harder with it, so that the distance shows what their softness
-        does too; and the start aside shows what the motion makes of rounding.
+        Constraints that are tuned to the timestep are harder in it, so that its distance from this motion includes the
+        effect of their softness. The other start includes the effect of rounding.
 
         Raises:
-          DivergenceError: if it stops being finite.
+          DivergenceError: if the motion stops being finite.
         """
         aside = START_DEPTH if self.rolling == "contact" else _ASIDE
         setting = replace(self.setting, timestep=self.setting.timestep / 2)
-        return integrate(self.scene, self.phi0 + aside, self.phi_dot0, setting, self.time)
+        return integrate(self.scene, phi0=self.phi0 + aside, phi_dot0=self.phi_dot0, setting=setting, times=self.time)
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
-    """The motion of a scene in a setting, at increasing `times` [s]; errors as in `simulate`."""
+    """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
     prepared = Prepared(scene, setting)
     solution = prepared.solve(prepared.start(phi0, phi_dot0), times)
     coordinates = prepared.coordinates(solution.states, times)
@@ -97,16 +99,20 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
 
 
 def _check_conserved(run: Run, tolerance: float) -> None:
-    """Refuse what two runs lose alike: a short arm in the rounding of a long way, or an equality's hardness."""
+    """Check what the comparison of two runs cannot show, because both are wrong alike: lost digits, and slip.
+
+    Raises:
+      ToleranceError: if energy, momentum or slip implies an error above the tolerance.
+    """
     implied, radius = implied_error(run.scene, run), run.scene.can.radius
     if implied > max(tolerance, ERROR):
         raise ToleranceError(
             f"tolerance {tolerance:g} rad is not reached: two runs agree, but energy or momentum drift like an error "
             f"of {implied:.2g} rad; the model loses in rounding what moves it"
         )
-    slid = float(np.abs(run.slip).max() / max(radius, np.abs(run.u - run.u[0]).max()))
-    if slid > tolerance:
+    slip = float(np.abs(run.slip).max() / max(radius, np.abs(run.u - run.u[0]).max()))
+    if slip > tolerance:
         raise ToleranceError(
-            f"tolerance {tolerance:g} rad is not reached: the can slips by {slid:.2g} of its way; with masses so "
+            f"tolerance {tolerance:g} rad is not reached: the can slips by {slip:.2g} of its way; with masses so "
             'unequal MuJoCo has no harder equality, and rolling="reduced" needs none'
         )

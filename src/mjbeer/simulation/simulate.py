@@ -1,4 +1,4 @@
-"""Simulate a scene with MuJoCo."""
+"""The function `simulate`, which checks its arguments and runs MuJoCo."""
 
 import math
 
@@ -11,9 +11,9 @@ from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
 
 _ON_A_STEP = 1e-6
-"""How far from a multiple of the timestep a requested time may be, in timesteps: what rounding can do to it."""
+"""Largest distance of a requested time from a multiple of the timestep, in timesteps: it allows for rounding."""
 _MOST_SAMPLES = 1e8
-"""Most samples that are kept unasked: ten gigabytes."""
+"""Largest number of samples at every timestep: they take ten gigabytes."""
 
 
 def simulate(
@@ -29,34 +29,43 @@ def simulate(
     friction: float = FRICTION,
     softness: Softness = TUNED,
 ) -> Run:
-    """Motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
+    """Return the motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
 
-    The start is `phi0` [rad], `phi_dot0` [rad/s], with the axis as in `exact`. `rolling`, `friction` and
-    `softness` are those of `build`. `integrator` is one of MuJoCo's five, or "DOP853", an eighth-order one
-    around MuJoCo's forward dynamics; `timestep` [s] is fixed. Samples are at every timestep, or at `times`
-    [s] from 0 on: any for DOP853, multiples of the timestep for the others. MuJoCo's integrators end on the
+    The motion starts at `phi0` [rad] with `phi_dot0` [rad/s], and the axis as in `exact`. `rolling`, `friction` and
+    `softness` are those of `build`. `integrator` is one of MuJoCo's five, or "DOP853", a method of eighth order
+    around MuJoCo's forward dynamics; `timestep` [s] is fixed. Samples are at every timestep, or at `times` [s] from 0
+    on, which must be multiples of the timestep unless the integrator is DOP853. Samples at every timestep end with the
     first multiple of the timestep at or after `duration`.
 
-    With a `tolerance` [rad] the run is DOP853 with steps of its own, and is repeated until the error of phi
-    and u/a over the whole motion is below it (relative to the angle where that exceeds 1 rad); the estimate
-    is kept on the trajectory. `timestep` is then only the sampling interval, and what constraints are tuned
-    to. It is the error of integrating the model: that of the model itself is zero for "reduced" and "equality",
-    but not for a soft contact. Without a tolerance the error is estimated when one asks the trajectory for it.
+    With a `tolerance` [rad] the integrator is DOP853, which chooses its own steps. The run is repeated until the
+    error of phi and u/a over the whole motion is below the tolerance, relative to the angle where that exceeds 1 rad;
+    the trajectory has the estimate. `timestep` is then the sampling interval, and what a contact is tuned to. The
+    tolerance bounds the error of integrating the model. The model itself is exact for "reduced" and "equality", but
+    not for a soft contact. Without a tolerance the trajectory estimates its error when it is asked for it.
 
     Raises:
-      ParameterError: on a parameter that is not allowed.
-      UnsupportedError: if MuJoCo has no such model.
+      ParameterError: if a parameter is not allowed.
+      UnsupportedError: if MuJoCo cannot have such a model.
+      TemplateError: if the template of the scene is missing or not as it should be.
       DivergenceError: if the motion stops being finite.
       ToleranceError: if the tolerance is not reached.
     """
     require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    setting = Setting(rolling, integrator, timestep, tolerance, friction, softness)
-    return integrate(scene, phi0, phi_dot0, setting, _sample_times(duration, setting, times))
+    setting = Setting(
+        rolling=rolling,
+        integrator=integrator,
+        timestep=timestep,
+        tolerance=tolerance,
+        friction=friction,
+        softness=softness,
+    )
+    sample_times = _sample_times(duration, setting, times)
+    return integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
 
 
 def _sample_times(duration: float, setting: Setting, times: np.ndarray | None) -> np.ndarray:
-    """The times of the samples [s]; for MuJoCo's integrators exactly those of timesteps."""
+    """Return the times of the samples [s], which for MuJoCo's integrators are exact multiples of the timestep."""
     timestep = setting.timestep
     if times is None:
         if duration / timestep > _MOST_SAMPLES:

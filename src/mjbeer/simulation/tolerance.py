@@ -1,4 +1,4 @@
-"""Integration to a global tolerance: two runs of the eighth-order integrator judge each other."""
+"""Integration to a global tolerance, with an error estimate from the distance of two runs of DOP853."""
 
 from dataclasses import dataclass
 
@@ -12,44 +12,48 @@ from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 
 _FIRST = 0.07
-"""Local tolerance of the first run per global tolerance. Over some ten periods local errors add up to 2-20 times
-themselves (measured on all scenes)."""
+"""Local tolerance of the first run over the global tolerance. Over some ten periods the local errors add up to 2-20
+times a local tolerance (measured on all scenes)."""
 _COARSEST = 1e-6
-"""Largest local tolerance. With larger steps a motion that spins up goes astray before the order shows, and two runs
-may miss alike: one of 2,000 was 7.5 times as far off as from the other."""
+"""Largest local tolerance. With larger steps the two runs of a motion that spins up may have much the same error: one
+of 2,000 runs was 7.5 times as far from the exact motion as from the other run."""
 _RATIO = 8.0
-"""Local tolerance of one run over that of the next: 1.3 times the evaluations at order 8."""
+"""Local tolerance of one run over that of the next. At order 8 the next one takes 1.3 times the evaluations."""
 _SMALLEST = 1e-16
-"""Local tolerance below which a step's error is rounding."""
-_CAUTION, _MORE_CAUTION = 1.5, 3.0
-"""The estimate over the distance of two runs; the method leaves an eighth of it in the finer one. The greater one
-is for pairs that may be near each other by chance: later ones, which start at the same place, and those of ..."""
-_SMOOTH = (1e-11, 1e-5)
-"""... tolerances outside these, where rounding rules, or where steps are too large for the method's order."""
-_PROGRESS = 0.75
-"""The distance of two runs over that of the two before, above which the finer ones brought nothing."""
+"""Local tolerance below which the error of a step is rounding."""
+_SAFETY = 1.5
+"""Error estimate over the distance of two runs."""
+_SAFETY_BY_CHANCE = 3.0
+"""The same where two runs may agree by chance: from the third run on, and for tolerances outside `_ASYMPTOTIC`, where
+rounding or large steps hide the method's order."""
+_ASYMPTOTIC = (1e-11, 1e-5)
+"""Range of tolerances in which the method's order shows: the finer run has an eighth of the other one's error."""
+_STALLED = 0.75
+"""Distance of two runs over that of the two runs before, above which the finer runs were no progress."""
 _PATIENCE = 1
-"""How often in a row they may: steps that are too large for a motion miss by anything."""
+"""Number of times in a row that finer runs may be no progress: with too large steps their distance is arbitrary."""
 _NUDGE = 4e-14
-"""How far from the start the first run starts, relative to the scales. What a motion beside a separatrix makes of that
-is in the distance of the first two."""
-_OF_NUDGE = 3 / 40
-"""The estimate of what rounding does, over what the nudge does: rounding adds some 1e-15 to a run."""
+"""Distance of the first run's start from the given start, relative to `scales`. The distance of the first two runs then
+includes the effect of a small change of the start, which is large beside a separatrix."""
+_ROUNDING_OVER_NUDGE = 3 / 40
+"""Estimated effect of rounding over the effect of `_NUDGE`: the rounding of a run is like a nudge of some 1e-15, with a
+safety factor of 3."""
 _EVALUATIONS = 5_000_000
-"""Most evaluations that one run may take: some seconds. A smooth motion takes thousands."""
+"""Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """States, shape (samples, nq + nv), and the estimate of their error [rad], relative beyond 1 rad."""
+    """The states of a run and an estimate of their error."""
 
     states: np.ndarray
+    """States, shape (samples, nq + nv)."""
     estimate: float | None = None
-    """None where nothing has been compared."""
+    """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
 
 
 class Solver:
-    """A model of a scene set up to be integrated to tolerances."""
+    """A model of a scene, set up to be integrated to global tolerances."""
 
     def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
         self._integrator, self._scale = Integrator(model), scales(model, scene)
@@ -58,23 +62,24 @@ class Solver:
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
 
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float) -> Solution:
-        """States at `times` [s] whose error in phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
+        """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
-        Each run keeps its steps' errors below an eighth of what the run before did, and the first one starts a little
-        beside the `start`. The estimate is a multiple of the distance of the last two, or of an eighth of the one
-        before: later ones may be near each other by chance. Nor do they show what the motion makes of rounding, which
-        is looked at apart where the first two were so far from each other that it may matter.
+        Each run has a local tolerance of an eighth of that of the run before, and the first starts `_NUDGE` from
+        `start`. The error estimate is a multiple of the distance of the last two runs. From the third run on these may
+        be close by chance, and so an eighth of the distance before counts if that is larger. Their distance does not
+        show the effect of rounding either; it is estimated by further runs if the first two were so far apart that it
+        may matter.
 
         Raises:
-          ToleranceError: if the runs do not come that close; the message says how close they came.
+          ToleranceError: if the runs do not come that close; the message names how close they came.
         """
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
-        caution = _CAUTION if _SMOOTH[0] < tolerance < _SMOOTH[1] else _MORE_CAUTION
-        coarse = self._run(start + _NUDGE * self._scale, times, local, tolerance)
-        fine = self._run(start, times, local / _RATIO, tolerance)
+        safety = _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
+        coarse = self._run(start + _NUDGE * self._scale, times, local=local, tolerance=tolerance)
+        fine = self._run(start, times, local=local / _RATIO, tolerance=tolerance)
         first = before = self._distance(coarse, fine)
-        if caution * first <= tolerance:
-            return Solution(fine, caution * first)
+        if safety * first <= tolerance:
+            return Solution(fine, safety * first)
         while True:
             local /= _RATIO
             if local < _RATIO * _SMALLEST:
@@ -82,61 +87,72 @@ class Solver:
                     f"tolerance {tolerance:g} rad is not reached: two runs at the limit of rounding differ by "
                     f"{before:.2g} rad"
                 )
-            coarse, fine = fine, self._run(start, times, local / _RATIO, tolerance)
-            apart = self._distance(coarse, fine)
-            estimate = _MORE_CAUTION * max(apart, before / _RATIO)
+            coarse, fine = fine, self._run(start, times, local=local / _RATIO, tolerance=tolerance)
+            distance = self._distance(coarse, fine)
+            estimate = _SAFETY_BY_CHANCE * max(distance, before / _RATIO)
             if estimate <= tolerance:
-                rounding = _OF_NUDGE * first
+                rounding = _ROUNDING_OVER_NUDGE * first
                 if rounding > tolerance:
-                    rounding = self._of_rounding(fine, start, times, local / _RATIO, tolerance)
+                    rounding = self._rounding_effect(
+                        fine, start=start, times=times, local=local / _RATIO, tolerance=tolerance
+                    )
                 return Solution(fine, max(estimate, rounding))
-            stalled = stalled + 1 if apart > _PROGRESS * before else 0
+            stalled = stalled + 1 if distance > _STALLED * before else 0
             if stalled > _PATIENCE:
                 raise ToleranceError(
                     f"tolerance {tolerance:g} rad is not reached: two runs differ by {before:.2g} rad, and finer "
-                    f"ones by {apart:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
+                    f"ones by {distance:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
                 )
-            before = apart
+            before = distance
 
-    def _of_rounding(
+    def _rounding_effect(
         self, fine: np.ndarray, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
     ) -> float:
-        """What the motion makes of rounding [rad], by runs that start a little beside the start, on either side: from
-        the top of a barrier all that start on one side fall alike."""
-        nudged = (self._run(start + side * _NUDGE * self._scale, times, local, tolerance) for side in (1, -1))
-        made = _OF_NUDGE * max(self._distance(each, fine) for each in nudged)
-        if made > tolerance:
+        """Return the estimated effect of rounding on phi and u/a [rad], from two runs that start beside `start`.
+
+        They start on either side, because from one side of a barrier's top all motions fall the same way.
+
+        Raises:
+          ToleranceError: if the effect is above `tolerance` [rad].
+        """
+        distances = []
+        for side in (1, -1):
+            nudged = self._run(start + side * _NUDGE * self._scale, times, local=local, tolerance=tolerance)
+            distances.append(self._distance(nudged, fine))
+        effect = _ROUNDING_OVER_NUDGE * max(distances)
+        if effect > tolerance:
             raise ToleranceError(
-                f"tolerance {tolerance:g} rad is not reached: the motion makes {made:.2g} rad of a start's rounding"
+                f"tolerance {tolerance:g} rad is not reached: the rounding of the start grows to {effect:.2g} rad"
             )
-        return made
+        return effect
 
     def _run(self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float) -> np.ndarray:
+        """Return the states of one run with a `local` tolerance; `tolerance` is only for the error message."""
         try:
             return self._integrator.run(start, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
         except DivergenceError as error:
             raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
 
-    def _distance(self, one: np.ndarray, other: np.ndarray) -> float:
-        """Largest difference of phi and of u/a [rad], relative to the angle where that exceeds 1 rad."""
-        angles, truth = one @ self._angles, other @ self._angles
+    def _distance(self, coarse: np.ndarray, fine: np.ndarray) -> float:
+        """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
+        angles, truth = coarse @ self._angles, fine @ self._angles
         return max(angle_distance(angles[:, column], truth[:, column]) for column in (0, 1))
 
 
 def tuning(scene: Scene, rolling: str, timestep: float) -> float:
-    """The timestep [s] to tune a model's constraints to where the steps are the integrator's own.
+    """Return the timestep [s] to which a model's constraints are tuned if the integrator chooses its own steps.
 
-    A rigid equality only takes back what rounding lets slip. In half a swing of the smallest pendulum that fits into
-    the can, sqrt(a/g), it does so gently enough not to limit the steps.
+    A rigid equality only has to correct the slip that rounding causes. With sqrt(a/g)/2, a twelfth of the period
+    of a pendulum of length a, the correction is too slow to limit the steps.
     """
     slow = scene.gravity > 0 and rolling == "equality"
     return float(np.sqrt(scene.can.radius / scene.gravity)) / 2 if slow else timestep
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
-    """Size of each component of the state below which an error counts absolutely, shape (nq + nv,).
+    """Return the size of each component of the state below which its error counts absolutely, shape (nq + nv,).
 
-    Lengths count in radii, rates per sqrt(a/g).
+    It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
     """
     radius = scene.can.radius
     slides = np.array([model.joint(i).type[0] == mujoco.mjtJoint.mjJNT_SLIDE for i in range(model.njnt)])

@@ -1,1 +1,1 @@
-"""What a can does, exactly; it imports NumPy, SciPy, `require` and `exceptions`, and no simulator."""
+"""The exact theory of the can; it imports NumPy, SciPy, `require` and `exceptions`, and no simulator."""

@@ -11,14 +11,14 @@ RADIUS = 0.033
 LENGTH = 0.12
 """Length of a 12-oz can [m]; paper, after eq. (31)."""
 THICKNESS = 1e-4
-"""Wall of an aluminium drinks can [m]; a common value (0.1 mm), the paper gives none."""
+"""Wall thickness of an aluminium drinks can [m]; a common value (0.1 mm), as the paper gives none."""
 ALUMINIUM = 2700.0
 """Density of aluminium [kg/m^3]; handbook value."""
 
 
 @dataclass(frozen=True)
 class Can:
-    """A can, seen as what its rolling depends on.
+    """The properties of a can on which its rolling depends.
 
     Raises:
       ParameterError: on a size that is not positive, a negative or non-finite mass or
@@ -28,7 +28,7 @@ class Can:
     radius: float = RADIUS
     """Outer radius a [m]."""
     length: float = LENGTH
-    """Length l along the axis [m]; it enters the drawing, and the mass of what is made of it."""
+    """Length l along the axis [m]; it decides how the can is drawn, and enters masses computed from densities."""
     mass: float = 0.0
     """Mass m_can [kg], eq. (30)."""
     inertia: float = 0.0
@@ -47,16 +47,19 @@ class Can:
 
     @classmethod
     def massless(cls, radius: float = RADIUS, length: float = LENGTH) -> "Can":
-        """A can of no mass, as in section 2 of the paper."""
+        """Return a can without mass, as in section 2 of the paper."""
         return cls(radius, length)
 
     @classmethod
     def sheet_metal(
         cls, radius: float = RADIUS, length: float = LENGTH, thickness: float = THICKNESS, density: float = ALUMINIUM
     ) -> "Can":
-        """A can of thin sheet, wall and two ends: eqs. (30) and (31).
+        """Return a can of thin metal sheet, a wall and two ends: eqs. (30) and (31).
 
-        `thickness` of the sheet [m], `density` of the metal [kg/m^3].
+        `thickness` is the sheet's [m], `density` the metal's [kg/m^3].
+
+        Raises:
+          ParameterError: if one of the numbers is not positive.
         """
         require.positive("can radius", radius, "m")
         require.positive("can length", length, "m")
@@ -69,7 +72,11 @@ class Can:
 
     @classmethod
     def hoop(cls, radius: float = RADIUS, length: float = LENGTH, mass: float = 0.05) -> "Can":
-        """A hoop: all of the `mass` [kg] at the rim, I_can = m_can a^2 (appendices A.4 and B)."""
+        """Return a hoop, which has all of its `mass` [kg] at the rim: I_can = m_can a^2 (appendices A.4 and B).
+
+        Raises:
+          ParameterError: if `radius` or `mass` is not positive.
+        """
         require.positive("hoop radius", radius, "m")
         require.positive("hoop mass", mass, "kg")
-        return cls(radius, length, mass, mass * radius**2)
+        return cls(radius, length, mass=mass, inertia=mass * radius**2)

@@ -1,4 +1,4 @@
-"""Where can and load are at some times, and how fast they move."""
+"""Positions and velocities of can and load at some times."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coordinates:
-    """A motion in the coordinates of the paper's Fig. 3, one row a sample; names with `_dot` are rates [per s]."""
+    """A motion in the coordinates of the paper's Fig. 3; every array has shape (samples,)."""
 
     time: np.ndarray
     """Time [s]."""
@@ -16,10 +16,14 @@ class Coordinates:
     phi: np.ndarray
     """Angle of the load's flat surface to the incline [rad]."""
     u_dot: np.ndarray
+    """Velocity of the axis down the incline [m/s]."""
     phi_dot: np.ndarray
+    """Rate of phi [rad/s]."""
     roll: np.ndarray
     """Angle by which the can has rolled [rad]; u/a where it does not slip."""
     roll_dot: np.ndarray
+    """Rate of roll [rad/s]."""
     lift: np.ndarray
     """Height of the can above the incline [m]; slightly negative in a soft contact."""
     lift_dot: np.ndarray
+    """Velocity of the can away from the incline [m/s]."""

@@ -1,8 +1,8 @@
-"""What the incline must do to keep a can rolling: normal force N and friction force F.
+"""The normal force N and the friction force F with which the incline keeps a can rolling.
 
 Both follow from Newton's second law for the centre of mass of can and load, with the
 accelerations that rolling without slipping implies. N < 0 means that the incline would
-have to pull; |F| > mu N that friction cannot hold.
+have to pull; |F| > mu N means that the can would slip.
 """
 
 import math
@@ -15,34 +15,34 @@ from mjbeer.theory.scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class Forces:
-    """Forces of the incline on the can along a motion, one row a sample."""
+    """Forces of the incline on the can along a motion; both arrays have shape (samples,)."""
 
     normal: np.ndarray
-    """N, away from the incline [N]."""
+    """N [N], positive away from the incline."""
     friction: np.ndarray
-    """F, up the incline [N]."""
+    """F [N], positive up the incline."""
 
     @property
     def needed(self) -> np.ndarray:
-        """Friction coefficient that holds the can, |F|/N; infinite where the incline would have to pull."""
+        """Return the friction coefficient |F|/N that rolling needs; infinite where the incline would have to pull."""
         ratio = np.full_like(self.normal, np.inf)
         return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
 
 
 def accelerations(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping, at given phi and phi_dot."""
-    turning = scene.oscillator.acceleration(phi, phi_dot)
+    """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping at `phi` [rad] and `phi_dot` [rad/s]."""
+    phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
     if scene.attachment == "frozen":
-        return scene.can.radius * turning, turning
-    rolling = scene.mass + scene.can.inertia / scene.can.radius**2
+        return scene.can.radius * phi_ddot, phi_ddot
+    effective_mass = scene.mass + scene.can.inertia / scene.can.radius**2
     moment = scene.load.mass * scene.load.offset
-    along = scene.mass * scene.gravity * math.sin(scene.incline)
-    along = along + moment * (np.cos(phi) * turning - np.sin(phi) * phi_dot**2)  # eq. (46)
-    return along / rolling, turning
+    force = scene.mass * scene.gravity * math.sin(scene.incline)
+    force = force + moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)  # eq. (46)
+    return force / effective_mass, phi_ddot
 
 
 def rolling_forces(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> Forces:
-    """N and F [N] that rolling without slipping needs at `phi` [rad] and `phi_dot` [rad/s]."""
+    """Return N and F [N] that rolling without slipping needs at `phi` [rad] and `phi_dot` [rad/s]."""
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot)
     moment, weight = scene.load.mass * scene.load.offset, scene.mass * scene.gravity
     normal = weight * math.cos(scene.incline) + moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)

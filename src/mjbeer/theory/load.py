@@ -1,4 +1,4 @@
-"""The load: what the can carries, the "beer" of the paper or a point mass."""
+"""The load that the can carries: the beer of the paper, or a point mass."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.segment import segment
 
 BEER = 1000.0
-"""Density of beer [kg/m^3]: water's, rounded; beer is within 1 % of it."""
+"""Density of beer [kg/m^3]: that of water, rounded, from which beer differs by about 1 %."""
 
 
 @dataclass(frozen=True)
 class Load:
-    """A load, seen as what its motion depends on.
+    """The properties of a load on which its motion depends.
 
     Raises:
       ParameterError: on a mass that is not positive, a negative or non-finite offset or
@@ -36,31 +36,34 @@ class Load:
         require.non_negative("load inertia", self.inertia, "kg m^2")
         require.store_floats(self, "mass", "offset", "inertia")
         if self.fill is not None:
-            _fill(self.fill)
+            _checked_fill(self.fill)
             require.store_floats(self, "fill")
 
     @classmethod
     def segment(
         cls, radius: float = RADIUS, length: float = LENGTH, fill: float = 0.5, density: float = BEER
     ) -> "Load":
-        """Beer of `density` [kg/m^3] in a can of `radius` and `length` [m]: eqs. (32)-(37).
+        """Return beer of `density` [kg/m^3] in a can of `radius` and `length` [m]: eqs. (32)-(37).
 
         `fill` is h/2a of eq. (32), 0 < fill <= 1.
+
+        Raises:
+          ParameterError: if `fill` is outside (0, 1], or another number is not positive.
         """
         require.positive("load radius", radius, "m")
         require.positive("load length", length, "m")
         require.positive("load density", density, "kg/m^3")
-        shape = segment(_fill(fill))
+        shape = segment(_checked_fill(fill))
         mass = density * length * radius**2 * shape.area
-        return cls(mass, radius * shape.offset, mass * radius**2 * shape.inertia, fill)
+        return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
 
     @classmethod
     def point(cls, mass: float, offset: float) -> "Load":
-        """A point of `mass` [kg] at `offset` [m] from the axis (appendices A.4 and B)."""
+        """Return a point of `mass` [kg] at `offset` [m] from the axis (appendices A.4 and B)."""
         return cls(mass, offset, 0.0)
 
 
-def _fill(fill: float) -> float:
+def _checked_fill(fill: float) -> float:
     require.number("fill", fill)
     if not 0 < fill <= 1:
         raise ParameterError(f"fill (height of the beer over the can's diameter) must be in (0, 1], got {fill!r}")

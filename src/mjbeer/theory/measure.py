@@ -1,4 +1,4 @@
-"""What is measured on a motion: slip, turning points, take-off, and how far it is from another."""
+"""Quantities measured on a motion: slip, turning points, take-off, and its distance from another motion."""
 
 import math
 
@@ -10,16 +10,17 @@ from mjbeer.theory.oscillator import Oscillator
 
 
 def angle_distance(angles: np.ndarray, truth: np.ndarray, relative: bool = True) -> float:
-    """Largest distance of `angles` from `truth` [rad].
+    """Return the largest distance of `angles` from `truth` [rad].
 
-    If `relative`, it is divided by how far `truth` has come from its start by then, where that exceeds 1 rad.
+    If `relative`, each distance is divided by the largest angle that `truth` has turned from its start so far, where
+    that exceeds 1 rad.
     """
-    way = np.maximum.accumulate(np.abs(truth - truth[0])) if relative else np.zeros_like(truth)
-    return float(np.max(np.abs(angles - truth) / np.maximum(1, way)))
+    turned = np.maximum.accumulate(np.abs(truth - truth[0])) if relative else np.zeros_like(truth)
+    return float(np.max(np.abs(angles - truth) / np.maximum(1, turned)))
 
 
 def distance(motion: Coordinates, truth: Coordinates, radius: float, relative: bool = True) -> float:
-    """Largest distance of phi and of u/a [rad] from another motion at the same times, as `angle_distance`."""
+    """Return the larger of `angle_distance` for phi and for u/a [rad] from another motion at the same times."""
     return max(
         angle_distance(motion.phi, truth.phi, relative),
         angle_distance(motion.u / radius, truth.u / radius, relative),
@@ -27,27 +28,27 @@ def distance(motion: Coordinates, truth: Coordinates, radius: float, relative: b
 
 
 def slip(motion: Coordinates, radius: float) -> np.ndarray:
-    """Distance that a can has slid instead of rolled, u - a roll less its value at the first sample [m]."""
-    gap = motion.u - radius * motion.roll
-    return gap - gap[0]
+    """Return the distance that a can has slid instead of rolled: u - a roll less its value at the first sample [m]."""
+    slid = motion.u - radius * motion.roll
+    return slid - slid[0]
 
 
 def mean_acceleration(motion: Coordinates) -> float:
-    """Mean acceleration of the axis down the incline [m/s^2], of a motion that starts at rest."""
+    """Return the mean acceleration of the axis down the incline [m/s^2] of a motion that starts at rest."""
     return float(2 * (motion.u[-1] - motion.u[0]) / motion.time[-1] ** 2)
 
 
 def takeoff(motion: Coordinates, radius: float) -> float | None:
-    """Angle from the top [rad] at which the load is when the can leaves the incline; None if it does not.
+    """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
 
-    Touching is to be within 1e-9 of a radius: a soft contact sinks in by more than that.
+    A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
     """
     above = np.flatnonzero(motion.lift > 1e-9 * radius)
     return None if not len(above) else math.pi - float(motion.phi[above[0]])
 
 
 def rolls_until(time: np.ndarray, forces: Forces, friction: float = math.inf) -> float:
-    """First time [s] at which N > 0 or |F| <= friction N fails, interpolated between samples; else infinity."""
+    """Return the first time [s] at which N < 0 or |F| > friction N, interpolated between samples; infinity if none."""
     margin = forces.normal
     if math.isfinite(friction):
         margin = np.minimum(margin, friction * forces.normal - np.abs(forces.friction))
@@ -58,23 +59,23 @@ def rolls_until(time: np.ndarray, forces: Forces, friction: float = math.inf) ->
     if after == 0:
         return float(time[0])
     before = after - 1
-    part = margin[before] / (margin[before] - margin[after])
-    return float(time[before] + part * (time[after] - time[before]))
+    fraction = margin[before] / (margin[before] - margin[after])
+    return float(time[before] + fraction * (time[after] - time[before]))
 
 
 def turning_times(motion: Coordinates, oscillator: Oscillator) -> np.ndarray:
-    """Times [s] at which phi_dot changes sign.
+    """Return the times [s] at which phi_dot changes sign, with an error of fourth order in the sampling interval.
 
-    Between the two samples around each, phi_dot is the cubic that has the sampled phi_dot and the
-    sampled phi_ddot (from the equation of motion, so the value holds for any state), which leaves an
-    error of fourth order in the sampling interval.
+    Between the two samples around a change of sign, phi_dot is replaced by the cubic that has its values and its
+    derivatives at both. The derivatives, phi_ddot, come from the equation of motion.
     """
-    time, rate = motion.time, motion.phi_dot
-    slope = oscillator.acceleration(motion.phi, rate)
+    time, phi_dot = motion.time, motion.phi_dot
+    phi_ddot = oscillator.acceleration(motion.phi, phi_dot)
     turns = []
-    for before in np.flatnonzero((rate[:-1] > 0) != (rate[1:] > 0)):
+    for before in np.flatnonzero((phi_dot[:-1] > 0) != (phi_dot[1:] > 0)):
         step = time[before + 1] - time[before]
-        p0, p1, m0, m1 = rate[before], rate[before + 1], step * slope[before], step * slope[before + 1]
+        p0, p1 = phi_dot[before], phi_dot[before + 1]
+        m0, m1 = step * phi_ddot[before], step * phi_ddot[before + 1]
         cubic = np.polynomial.Polynomial([p0, m0, 3 * (p1 - p0) - 2 * m0 - m1, 2 * (p0 - p1) + m0 + m1])
         roots = cubic.roots()
         real = roots.real[np.abs(roots.imag) < 1e-9]

@@ -6,13 +6,20 @@ With the rolling constraint and the conserved momentum eliminated, each scene ob
     J = base + chord sin^2(phi/2) + swing sin^2(phi),
     V = -slope phi - depth cos(phi - bottom).
 
-A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no
-slope (eq. 16, and eqs. 46 and 47 with u eliminated). All coefficients of J are
-non-negative, so J never cancels.
+V is a cosine on a ramp: `slope` is the steepness of the ramp, a torque, `depth` the amplitude of the cosine, and
+`bottom` the angle of its minimum. If |slope| < depth, V has in every turn a minimum (the equilibrium) and a maximum
+(the barrier). A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope (eq. 16,
+and eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
+
+Heights of V are needed only as differences, each in a form in which nothing cancels:
+
+    drop(phi, start) = V(start) - V(phi),
+    surplus(phi, start, kinetic) = E - V(phi) = kinetic + drop(phi, start), the kinetic energy at phi,
+    _below_barrier(past) = V(barrier) - V(barrier + past).
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,30 +28,37 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
 
 _NO_SLOPE = 1e-30
+"""Slope over depth below which a slope counts as none: the rounding of the weight hides it over 1e14 rad of rolling."""
 
 
 @dataclass(frozen=True)
 class Oscillator:
-    """Coefficients of J [kg m^2] and V [J]."""
+    """The coefficients of J and V in the formulas above."""
 
     base: float
+    """Constant part of J [kg m^2]."""
     chord: float
+    """Coefficient of sin^2(phi/2) in J [kg m^2]."""
     swing: float
+    """Coefficient of sin^2(phi) in J [kg m^2]."""
     slope: float
+    """Mean torque downhill [N m]."""
     depth: float
+    """Amplitude of the cosine in V [J]."""
     bottom: float
+    """Angle at which the cosine in V has its minimum [rad]."""
 
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
-        """Load that slides without friction about the axis (section 3 of the paper)."""
-        rolling = can.mass + can.inertia / can.radius**2
-        total = load.mass + rolling
+        """Return the oscillator of a load that slides without friction about the axis (section 3 of the paper)."""
+        effective_can_mass = can.mass + can.inertia / can.radius**2
+        total = load.mass + effective_can_mass
         moment = load.mass * load.offset
         # g sin(alpha) - A, with A the steady acceleration of footnote 4
         lag = gravity * math.sin(incline) * (can.inertia / can.radius**2) / total
         normal = gravity * math.cos(incline)
         return cls(
-            base=load.inertia + moment * load.offset * rolling / total,
+            base=load.inertia + moment * load.offset * effective_can_mass / total,
             chord=0.0,
             swing=moment * load.offset * load.mass / total,
             slope=0.0,
@@ -54,7 +68,7 @@ class Oscillator:
 
     @classmethod
     def frozen(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
-        """Load that is rigidly attached to the can (appendix A of the paper)."""
+        """Return the oscillator of a load that is rigidly attached to the can (appendix A of the paper)."""
         radius, offset = can.radius, load.offset
         slope = (load.mass + can.mass) * gravity * radius * math.sin(incline)
         depth = load.mass * gravity * offset
@@ -63,67 +77,70 @@ class Oscillator:
             base=inertia + can.inertia + can.mass * radius**2,
             chord=4 * load.mass * radius * offset,
             swing=0.0,
-            # A slope that is lost in the rounding of the weight over 1e14 rad of rolling is none.
             slope=slope if abs(slope) > _NO_SLOPE * depth else 0.0,
             depth=depth,
             bottom=-incline,
         )
 
-    def mirrored(self) -> "Oscillator":
-        """The same motion seen from behind: phi and the incline change sign."""
-        return Oscillator(self.base, self.chord, self.swing, -self.slope, self.depth, -self.bottom)
+    def mirror(self) -> "Oscillator":
+        """Return the oscillator of the same motion seen from behind, with the signs of phi and the incline changed."""
+        return replace(self, slope=-self.slope, bottom=-self.bottom)
 
     def inertia(self, phi: np.ndarray | float) -> np.ndarray:
-        """J at `phi` [rad], in [kg m^2]."""
+        """Return J [kg m^2] at `phi` [rad]."""
         return self.base + self.chord * np.sin(phi / 2) ** 2 + self.swing * np.sin(phi) ** 2
 
     def potential(self, phi: np.ndarray | float) -> np.ndarray:
-        """V at `phi` [rad], in [J]."""
+        """Return V [J] at `phi` [rad]."""
         return -self.slope * phi - self.depth * np.cos(phi - self.bottom)
 
     def drop(self, phi: np.ndarray | float, start: float) -> np.ndarray:
-        """V(start) - V(phi) [J] without the cancellation of the plain difference."""
+        """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
         turned = phi - start
         middle = (phi + start) / 2 - self.bottom
         return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
 
     def surplus(self, phi: np.ndarray | float, start: float, kinetic: float) -> np.ndarray:
-        """E - V(phi) [J] of the motion that passes `start` with `kinetic` energy (slope >= 0).
+        """Return E - V(phi) [J] of the motion that passes `start` [rad] with `kinetic` energy [J], for slope >= 0.
 
-        Beside a barrier it is counted from there, so that it keeps its digits where it is small.
+        Near a barrier both terms are measured from the barrier's top, so that a small surplus keeps its digits.
         """
-        plain = kinetic + self.drop(phi, start)
+        from_start = kinetic + self.drop(phi, start)
         if self.slope >= self.depth:
-            return plain
+            return from_start
         top = self.barrier()
-        return np.where(np.cos(phi - top) < 0.5, plain, kinetic - self._below(start - top) + self._below(phi - top))
+        from_barrier = kinetic - self._below_barrier(start - top) + self._below_barrier(phi - top)
+        return np.where(np.cos(phi - top) < 0.5, from_start, from_barrier)
 
-    def _below(self, past: np.ndarray | float) -> np.ndarray:
-        """V(barrier) - V(barrier + past) [J]."""
+    def _below_barrier(self, past: np.ndarray | float) -> np.ndarray:
+        """Return V(barrier) - V(barrier + past) [J], with `past` [rad] of either sign."""
         return self.slope * past * sinc_gap(past) + 2 * self.stiffness() * np.sin(past / 2) ** 2
 
     def stiffness(self) -> float:
-        """V'' at the equilibrium, -V'' at the barrier [J]."""
+        """Return V'' at the equilibrium, which is also -V'' at the barrier [N m/rad]."""
         return math.sqrt((self.depth - self.slope) * (self.depth + self.slope))
 
     def force(self, phi: float) -> float:
-        """-V' at `phi` [N m], a product of the distances to the equilibrium and the barrier (slope >= 0)."""
+        """Return the torque -V' [N m] at `phi` [rad], for slope >= 0.
+
+        It is a product of sines of the distances to equilibrium and barrier, which keeps its digits near both.
+        """
         if self.slope >= self.depth:
             return self.slope - self.depth * math.sin(phi - self.bottom)
         return 2 * self.depth * math.sin((phi - self.barrier()) / 2) * math.sin((phi - self.equilibrium()) / 2)
 
     def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
-        """phi_ddot [rad/s^2] from the equation of motion, (16) and (52) for massless cans."""
+        """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""
         inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)
         torque = self.slope - self.depth * np.sin(phi - self.bottom)
         return (torque - inertia_slope * phi_dot**2 / 2) / self.inertia(phi)
 
     def equilibrium(self) -> float:
-        """Angle of stable equilibrium [rad]: eq. (53) for a frozen load.
+        """Return the angle of stable equilibrium [rad]: eq. (53) for a frozen load.
 
         Raises:
-          NoEquilibriumError: if nothing holds the load (it is balanced, or there is no
-            gravity), or if the slope is more than it can hold.
+          NoEquilibriumError: if the load is balanced about the axis, there is no gravity, or the incline is steeper
+            than the load can hold.
         """
         if self.depth == 0:
             raise NoEquilibriumError(
@@ -135,41 +152,41 @@ class Oscillator:
         return self.bottom + math.asin(self.slope / self.depth)
 
     def frequency(self) -> float:
-        """Angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
-        rest = self.equilibrium()
-        return math.sqrt(self.stiffness() / float(self.inertia(rest)))
+        """Return the angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
+        return math.sqrt(self.stiffness() / float(self.inertia(self.equilibrium())))
 
     def barrier(self) -> float:
-        """The unstable equilibrium that bounds libration on the downhill side [rad] (slope >= 0)."""
+        """Return the unstable equilibrium that bounds libration on the downhill side [rad], for slope >= 0."""
         return self.bottom + math.pi - (self.equilibrium() - self.bottom)
 
     def separatrix(self) -> tuple[float, float]:
-        """The angles between which the largest libration about the equilibrium swings [rad]."""
+        """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
         if self.slope < 0:
-            low, high = self.mirrored().separatrix()
+            low, high = self.mirror().separatrix()
             return -high, -low
         top = self.barrier()
         if self.slope == 0:
             return top - 2 * math.pi, top
-        return self.turning_point(top, 0.0, top - 2 * math.pi, self.equilibrium()), top
+        uphill = self.turning_point(top, 0.0, forbidden=top - 2 * math.pi, allowed=self.equilibrium())
+        return uphill, top
 
-    def turning_point(self, start: float, kinetic: float, outer: float, inner: float) -> float:
-        """Where the motion that passes `start` [rad] with `kinetic` energy [J] turns, between two angles.
+    def turning_point(self, start: float, kinetic: float, forbidden: float, allowed: float) -> float:
+        """Return where the motion that passes `start` [rad] with `kinetic` energy [J] turns [rad].
 
-        At `outer` the motion is energetically forbidden, at `inner` allowed.
+        The point is sought between an angle that the energy forbids and one that it allows [rad].
         """
         from scipy.optimize import brentq
 
-        def left(phi: float) -> float:
+        def kinetic_left(phi: float) -> float:
             return float(self.surplus(phi, start, kinetic))
 
-        return float(brentq(left, outer, inner, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))
+        return float(brentq(kinetic_left, forbidden, allowed, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))
 
     def require_libration(self, phi: float) -> None:
         """Check that a release from rest at `phi` [rad] swings about the equilibrium.
 
         Raises:
-          NoLibrationError: if it does not; the message names the separatrix.
+          NoLibrationError: if it does not; the message names the amplitudes of the separatrix.
         """
         low, high = self.separatrix()
         if not low < phi < high:
@@ -181,13 +198,13 @@ class Oscillator:
 
 
 def sinc(x: np.ndarray | float) -> np.ndarray:
-    """sin(x)/x, to full relative precision at its zeros as well, unlike np.sinc."""
+    """Return sin(x)/x to full relative precision, at its zeros too, unlike np.sinc."""
     x = np.where(x == 0, 1e-300, x)
     return np.sin(x) / x
 
 
 def sinc_gap(x: np.ndarray | float) -> np.ndarray:
-    """1 - sin(x)/x, by its series where the difference would cancel."""
+    """Return 1 - sin(x)/x, by its series where the difference would cancel."""
     square, series = np.square(np.minimum(np.abs(x), 1)), np.ones_like(x)
     for k in range(17, 1, -2):
         series = 1 - square / ((k + 1) * (k + 2)) * series

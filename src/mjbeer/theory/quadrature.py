@@ -1,9 +1,9 @@
-"""Time along a motion by quadrature, and its inverse.
+"""Time along a motion by quadrature, and the inverse: where the motion is at a time.
 
 A motion is given by the positive, smooth function dt/dpsi of a phase psi that grows
 along it. The function is cut into panels on which a Chebyshev series of fixed degree
 reproduces it to rounding error; the series are integrated exactly and inverted by
-Newton's method. There are no steps, so nothing accumulates but rounding.
+Newton's method. There are no timesteps, so no error accumulates but rounding.
 (L. N. Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 19.)
 """
 
@@ -13,27 +13,30 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 _DEGREE = 24
-# cos(k (2j + 1) pi / 2n) with the angle reduced in integers, or its rounding shows in every series
+# The angle of cos(k (2j + 1) pi / 2n) is reduced in integers: rounding it would show in every series.
 _ODD, _TURN = 2 * np.arange(_DEGREE + 1) + 1, 4 * (_DEGREE + 1)
 _COSINES = np.cos(2 * np.pi * (np.outer(_ODD, np.arange(_DEGREE + 1)) % _TURN) / _TURN)
 _NODES = _COSINES[:, 1]
 _TO_SERIES = 2 / (_DEGREE + 1) * _COSINES
 _TO_SERIES[:, 0] /= 2
 _TO_INTEGRAL = np.stack([np.append(chebyshev.chebint(row, lbnd=-1), 0)[: _DEGREE + 2] for row in np.eye(_DEGREE + 1)])
-_RESOLVED = 3e-15  # relative size of the last coefficients: a few roundings of the values themselves
-# The rounding of an angle of up to some 1000 rad makes the rate noisier than that, most of all near a barrier: a
-# panel sees it divided by its half-width. Noise shows as small coefficients that have stopped falling.
+_RESOLVED = 3e-15  # largest last coefficient of a resolved series, relative to its largest: a few roundings
+# The rounding of an angle of up to some 1000 rad makes dt/dpsi noisier than that, most of all near a barrier, and
+# the noise in a panel grows as its half-width shrinks. It shows as small coefficients that have stopped falling.
 _ANGLE, _FALLING = 1e-12, 0.1
-_DEEPEST = 60  # halvings of one interval; each gains a bit, and no double has more to give
+_DEEPEST = 60  # most halvings of one interval: each uses up a bit of its edges
 Rate = Callable[[np.ndarray], np.ndarray]
 
 
 class Clock:
-    """t(psi) with t(start) = 0, and psi(t)."""
+    """The time t(psi) along a motion, with t(start) = 0, and its inverse psi(t)."""
 
     def __init__(self, rate: Rate, start: float, period: float | None = None, stretch: float = 1.0) -> None:
-        """`rate` is dt/dpsi; `period` is its period in psi, or `stretch` how much of a motion without one
-        is resolved first (then twice as much, and so on)."""
+        """Set up the clock of a motion whose dt/dpsi is `rate`.
+
+        `period` is the period of `rate` in psi. A motion without a period is resolved as far as it is asked for: first
+        over a length `stretch` in psi, then over twice as much, and so on.
+        """
         self._rate = rate
         self._start = start
         self._phase_period = period
@@ -46,13 +49,17 @@ class Clock:
 
     @property
     def period(self) -> float:
-        """Time of one period of the phase [s]."""
+        """Return the time [s] that one period of the phase takes.
+
+        Raises:
+          ValueError: if the motion has no period.
+        """
         if self._phase_period is None:
             raise ValueError("this motion is not periodic")
         return float(self._times[-1])
 
     def phase(self, time: np.ndarray) -> np.ndarray:
-        """psi at the non-negative times `time` [s]."""
+        """Return psi at the times `time` [s], none of them negative."""
         if self._phase_period is not None:
             turns, time = np.divmod(time, self.period)
             return self._invert(time) + turns * self._phase_period
@@ -73,28 +80,28 @@ class Clock:
             return np.full_like(time, self._start)
         panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._series) - 1)
         half = np.diff(self._edges)[panel] / 2
-        wanted = (time - self._times[panel]) / half
+        target = (time - self._times[panel]) / half
         series = self._series[panel].T
         integral = (self._series @ _TO_INTEGRAL)[panel].T
         low, high = -np.ones_like(time), np.ones_like(time)
-        x = np.clip(2 * wanted / np.diff(self._times)[panel] * half - 1, -1, 1)
+        x = np.clip(2 * target / np.diff(self._times)[panel] * half - 1, -1, 1)
         for _ in range(60):
-            excess = chebyshev.chebval(x, integral, tensor=False) - wanted
+            excess = chebyshev.chebval(x, integral, tensor=False) - target
             low, high = np.where(excess <= 0, x, low), np.where(excess >= 0, x, high)
             newton = x - excess / chebyshev.chebval(x, series, tensor=False)
             # Newton's method leaves the bracket only where dt/dpsi is steep: bisect there.
-            moved = np.where((newton >= low) & (newton <= high), newton, (low + high) / 2)
-            done = np.abs(moved - x) <= 2e-16
-            x = moved
-            if done.all():
+            better = np.where((newton >= low) & (newton <= high), newton, (low + high) / 2)
+            converged = np.abs(better - x) <= 2e-16
+            x = better
+            if converged.all():
                 break
         return self._edges[panel] + half * (1 + x)
 
 
 def _panels(rate: Rate, start: float, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """Edges of the panels between two phases and the Chebyshev series of `rate` on each, in order."""
+    """Return the edges of the panels between two phases, and the Chebyshev series of `rate` on each panel."""
     lows, highs = np.array([start]), np.array([end])
-    done: list[tuple[np.ndarray, np.ndarray]] = []
+    panels: list[tuple[np.ndarray, np.ndarray]] = []
     for depth in range(_DEEPEST):
         middle, half = (lows + highs) / 2, (highs - lows) / 2
         series = rate(middle[:, None] + half[:, None] * _NODES) @ _TO_SERIES
@@ -105,11 +112,11 @@ def _panels(rate: Rate, start: float, end: float) -> tuple[np.ndarray, np.ndarra
             resolved[:] = True
         # An interval no wider than the spacing of doubles cannot be halved.
         resolved |= (middle <= lows) | (middle >= highs)
-        done.append((lows[resolved], series[resolved]))
+        panels.append((lows[resolved], series[resolved]))
         lows, middle, highs = lows[~resolved], middle[~resolved], highs[~resolved]
         if not len(lows):
             break
         lows, highs = np.concatenate([lows, middle]), np.concatenate([middle, highs])
-    starts = np.concatenate([each for each, _ in done])
+    starts = np.concatenate([panel_starts for panel_starts, _ in panels])
     order = np.argsort(starts)
-    return np.append(starts[order], end), np.concatenate([each for _, each in done])[order]
+    return np.append(starts[order], end), np.concatenate([panel_series for _, panel_series in panels])[order]

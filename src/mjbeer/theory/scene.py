@@ -1,4 +1,4 @@
-"""A scene: can, load, incline and how the load is attached. One family covers the whole paper."""
+"""The scene: can, load, incline, gravity and how the load is attached; and the four scenes of the paper."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,10 +11,11 @@ from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.oscillator import Oscillator
 
 ATTACHMENTS = ("sliding", "frozen")
+"""The ways in which a load can be attached; see `Scene.attachment`."""
 INCLINE = math.radians(10)
-"""Default incline [rad]: the paper's, footnote 8."""
+"""Default incline [rad]: 10 degrees, as in the paper's footnote 8."""
 GRAVITY = 9.81
-"""Acceleration of gravity [m/s^2]; the paper's footnote 8 has 9.8."""
+"""Default acceleration of gravity [m/s^2]; the paper's footnote 8 has 9.8."""
 
 
 @dataclass(frozen=True)
@@ -29,13 +30,13 @@ class Scene:
     can: Can
     load: Load
     incline: float = INCLINE
-    """Angle alpha of the incline to the horizontal [rad]; positive is downhill along u."""
+    """Angle alpha of the incline to the horizontal [rad]; if positive, u grows downhill."""
     attachment: str = "sliding"
     """"sliding": the load slides without friction about the axis; "frozen": it is rigidly attached."""
     gravity: float = GRAVITY
     """Acceleration of gravity g [m/s^2]."""
     oscillator: Oscillator = field(init=False, repr=False, compare=False)
-    """The scene's one degree of freedom."""
+    """The scene as one degree of freedom, phi; it follows from the other fields."""
 
     def __post_init__(self) -> None:
         require.number("incline", self.incline, "rad")
@@ -49,8 +50,9 @@ class Scene:
                 f"the load must be inside the can: its offset must be at most the radius {self.can.radius!r} m, "
                 f"got {self.load.offset!r} m"
             )
-        reduce = Oscillator.sliding if self.attachment == "sliding" else Oscillator.frozen
-        object.__setattr__(self, "oscillator", reduce(self.can, self.load, self.incline, self.gravity))
+        oscillator = Oscillator.sliding if self.attachment == "sliding" else Oscillator.frozen
+        reduced = oscillator(can=self.can, load=self.load, incline=self.incline, gravity=self.gravity)
+        object.__setattr__(self, "oscillator", reduced)
         if self.oscillator.base <= 0:
             raise ParameterError(
                 "nothing resists rotation at phi = 0: a point load needs an offset and a can with mass "
@@ -60,22 +62,22 @@ class Scene:
 
     @property
     def mass(self) -> float:
-        """Mass of can and load together [kg]."""
+        """Return the mass of can and load together [kg]."""
         return self.can.mass + self.load.mass
 
     @property
     def centre_of_mass(self) -> float:
-        """Distance of the centre of mass of both from the axis, d = m b/(m + m_can) [m]: eq. (38)."""
+        """Return the distance of their common centre of mass from the axis, d = m b/(m + m_can) [m]: eq. (38)."""
         return self.load.mass * self.load.offset / self.mass
 
     def equilibrium(self) -> float:
-        """Angle phi of stable equilibrium [rad]: eq. (53) for a frozen load, with the can's mass included.
+        """Return the angle phi of stable equilibrium [rad]: eq. (53) for a frozen load, with the can's mass included.
 
-        For a sliding load it is the tilt at which the can accelerates steadily, tan phi =
-        (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4; zero for a massless can.
+        For a sliding load it is the angle at which the can accelerates steadily, tan phi =
+        (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4; it is zero for a massless can.
 
         Raises:
-          NoEquilibriumError: if there is none; for a frozen load the message names the limit angle.
+          NoEquilibriumError: if there is none; for a frozen load the message names the largest incline that has one.
         """
         try:
             return self.oscillator.equilibrium()
@@ -89,73 +91,91 @@ class Scene:
             ) from error
 
     def largest_incline(self) -> float:
-        """Largest incline with an equilibrium [rad]: below eq. (53). A sliding load has one on every incline."""
+        """Return the largest incline with an equilibrium [rad]: the text below eq. (53).
+
+        A sliding load has an equilibrium on every incline, so that the limit is pi/2.
+        """
         if self.attachment == "sliding":
             return math.pi / 2
         return math.asin(self.load.mass * self.load.offset / (self.mass * self.can.radius))
 
     def frequency(self) -> float:
-        """Angular frequency of small oscillations about the equilibrium [rad/s]: eq. (10), corrected eq. (55)."""
+        """Return the angular frequency of small swings about the equilibrium [rad/s]: eq. (10), eq. (55) corrected.
+
+        Raises:
+          NoEquilibriumError: if there is no equilibrium.
+        """
         self.equilibrium()
         return self.oscillator.frequency()
 
     def period(self, amplitude: float) -> float:
-        """Period [s] of the swing released from rest `amplitude` [rad] away from the equilibrium.
+        """Return the period [s] of the swing released from rest `amplitude` [rad] away from the equilibrium.
 
         Raises:
-          NoLibrationError: at or beyond the separatrix.
+          ParameterError: if `amplitude` is not finite.
+          NoEquilibriumError: if there is no equilibrium.
+          NoLibrationError: if `amplitude` is at or beyond the separatrix.
         """
         require.number("amplitude", amplitude, "rad")
         self.equilibrium()
         return motion.period(self.oscillator, amplitude)
 
     def separatrix(self) -> tuple[float, float]:
-        """The angles phi between which the largest swing about the equilibrium stays [rad]."""
+        """Return the two angles phi between which the largest swing about the equilibrium stays [rad].
+
+        Raises:
+          NoEquilibriumError: if there is no equilibrium.
+        """
         self.equilibrium()
         return self.oscillator.separatrix()
 
     def start(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
-        """u [m] and u_dot [m/s] of the axis when a motion starts: s = 0 and s_dot = 0 if the load slides
-        (eq. 12), no slip if it is frozen (eq. 50)."""
+        """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
+
+        A sliding load starts with s = 0 and s_dot = 0 (eq. 12), a frozen one without slip from u = a phi (eq. 50).
+        """
         if self.attachment == "frozen":
             return self.can.radius * phi0, self.can.radius * phi_dot0
         return self.load.offset * math.sin(phi0), self.load.offset * math.cos(phi0) * phi_dot0
 
     def acceleration(self) -> float:
-        """Steady acceleration of the axis down the incline [m/s^2].
+        """Return the acceleration of the axis down the incline [m/s^2] when it is steady.
 
-        Sliding: footnote 4 (eq. 1 for a massless can), at the equilibrium. Frozen: that of the balanced
-        can, (2/3) g sin(alpha) for a massless one (A.3). A load off the axis rolls down faster in the long run,
-        by the mean inertia over the square of the mean of its root.
+        With a sliding load it is steady at the equilibrium: footnote 4, or eq. (1) for a massless can. A frozen load
+        has none; what is returned is the acceleration as if the load were balanced about the axis with the same
+        inertia, (2/3) g sin(alpha) for half a massless can of beer (A.3). In the long run the unbalanced load rolls
+        down faster, by the factor mean(J) / mean(sqrt(J))^2.
         """
-        drive = self.mass * self.gravity * math.sin(self.incline)
-        can = self.can.mass + self.can.inertia / self.can.radius**2
+        force = self.mass * self.gravity * math.sin(self.incline)
+        effective_can_mass = self.can.mass + self.can.inertia / self.can.radius**2
         if self.attachment == "sliding":
-            return drive / (self.load.mass + can)
-        axial = self.load.inertia + self.load.mass * self.load.offset**2
-        return drive / (self.load.mass + can + axial / self.can.radius**2)
+            return force / (self.load.mass + effective_can_mass)
+        load_inertia = self.load.inertia + self.load.mass * self.load.offset**2
+        return force / (self.load.mass + effective_can_mass + load_inertia / self.can.radius**2)
 
 
 def sliding(
     incline: float = INCLINE, fill: float = 0.5, can: Can | None = None, density: float = BEER, gravity: float = GRAVITY
 ) -> Scene:
-    """Beer that slides without friction in a can: sections 2 (massless can, the default) and 3.
+    """Return the scene of beer that slides without friction in a can: sections 2 (massless can, the default) and 3.
 
-    `incline` [rad], `fill` h/2a of eq. (32), `density` of the beer [kg/m^3].
+    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3].
     """
     can = Can.massless() if can is None else can
-    return Scene(can, Load.segment(can.radius, can.length, fill, density), incline, "sliding", gravity)
+    load = Load.segment(can.radius, can.length, fill=fill, density=density)
+    return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity)
 
 
 def frozen(
     incline: float = INCLINE, fill: float = 0.5, can: Can | None = None, density: float = BEER, gravity: float = GRAVITY
 ) -> Scene:
-    """Beer frozen to the can: appendix A (massless can, the default).
+    """Return the scene of beer frozen to the can: appendix A (massless can, the default).
 
-    `incline` [rad], `fill` h/2a of eq. (32), `density` of the beer [kg/m^3].
+    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3].
     """
     can = Can.massless() if can is None else can
-    return Scene(can, Load.segment(can.radius, can.length, fill, density), incline, "frozen", gravity)
+    load = Load.segment(can.radius, can.length, fill=fill, density=density)
+    return Scene(can, load, incline=incline, attachment="frozen", gravity=gravity)
 
 
 def pendulum(
@@ -167,12 +187,13 @@ def pendulum(
     length: float = LENGTH,
     gravity: float = GRAVITY,
 ) -> Scene:
-    """A hoop wheel with a simple pendulum on its axle: appendix B.
+    """Return the scene of a hoop wheel with a simple pendulum on its axle: appendix B.
 
-    `incline` [rad], masses M and m [kg], length b of the pendulum `offset` [m]. The paper gives no
-    numbers: the defaults are ours, a wheel of the can's size and a bob that weighs half as much.
+    `incline` is in [rad]; `wheel_mass` and `load_mass` are M and m [kg], and `offset` is the pendulum's length b [m].
+    The paper gives no numbers: the defaults are a wheel of the can's size and a bob of half its mass.
     """
-    return Scene(Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset), incline, "sliding", gravity)
+    can, load = Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset)
+    return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity)
 
 
 def hoop(
@@ -183,8 +204,10 @@ def hoop(
     length: float = LENGTH,
     gravity: float = GRAVITY,
 ) -> Scene:
-    """A hoop with a point load on its rim, the hopping hoop: appendix A.4.
+    """Return the scene of a hoop with a point load on its rim, the hopping hoop: appendix A.4.
 
-    `incline` [rad], masses M and m [kg]. The default M/m = 1/20 is light enough to hop (below 1/13).
+    `incline` is in [rad]; `hoop_mass` and `load_mass` are M and m [kg]. The default M/m = 1/20 is light enough to hop,
+    for which M/m must be below 1/13.
     """
-    return Scene(Can.hoop(radius, length, hoop_mass), Load.point(load_mass, radius), incline, "frozen", gravity)
+    can, load = Can.hoop(radius, length, hoop_mass), Load.point(load_mass, radius)
+    return Scene(can, load, incline=incline, attachment="frozen", gravity=gravity)

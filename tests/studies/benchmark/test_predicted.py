@@ -64,7 +64,7 @@ def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
     """A can of radius 1 m."""
     scene = sliding(can=Can.hoop(1.0, 1.0, 2.0))
     assert soft_constraint.diagonal_excess(scene) == pytest.approx(1, rel=1e-12)
-    assert soft_constraint.softened(0.9, 1.0) == pytest.approx(0.9, rel=1e-15)
+    assert soft_constraint.reached_share(0.9, 1.0) == pytest.approx(0.9, rel=1e-15)
 
 
 def test_the_table_has_a_row_each() -> None:

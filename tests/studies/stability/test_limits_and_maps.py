@@ -58,7 +58,7 @@ def test_maps_have_something_to_tell(measured_maps: list[dict]) -> None:
     ("plan", "module", "name", "wrong"),
     [
         (Plan("equality", "Euler", written="slide"), short_runs, "diagonal_excess", lambda _: 1.0),
-        (Plan("equality", "Euler", refsafe=True), soft_constraint, "safe", lambda timeconst, _: timeconst),
+        (Plan("equality", "Euler", refsafe=True), soft_constraint, "refsafe_timeconst", lambda timeconst, _: timeconst),
         (Plan("equality", "discrete"), SoftRow, "at_end_of_step", lambda self, _: self),
         (
             Plan("equality", "Euler"),
@@ -126,7 +126,7 @@ def test_refsafe_resolves_contacts_under_discrete(impedance: float, dampratio: f
     data.joint("lift").qpos = -1e-6
     mujoco.mj_forward(model, data)
     row = soft_constraint.spring(
-        soft_constraint.resolved(timeconst, dampratio, impedance, timestep), dampratio, impedance
+        soft_constraint.discrete_refsafe_timeconst(timeconst, dampratio, impedance, timestep), dampratio, impedance
     )
     stiffness, damping, share_let_through, _ = data.efc_KBIP[0]
     assert (stiffness * share_let_through, damping) == pytest.approx((row.stiffness, row.damping), rel=ROUNDING)

@@ -70,7 +70,7 @@ def predictions() -> list[Prediction]:
         found.append(
             Prediction(
                 "share of the force of an equality of d = 0.9", f"{name}, slide first",
-                lambda scene=scene: soft_constraint.softened(0.9, soft_constraint.diagonal_excess(scene)),
+                lambda scene=scene: soft_constraint.reached_share(0.9, soft_constraint.diagonal_excess(scene)),
                 lambda scene=scene: _share(scene),
             )
         )  # fmt: skip

@@ -191,7 +191,7 @@ def _row(plan: Plan, value: float, timestep: float) -> SoftRow:
         return soft_constraint.direct(value, 2 * plan.dampratio * math.sqrt(value), IMPEDANCE)
     timeconst = value
     if plan.refsafe and plan.integrator != "discrete":
-        timeconst = soft_constraint.safe(value, timestep)
+        timeconst = soft_constraint.refsafe_timeconst(value, timestep)
     elif plan.refsafe and plan.family == "contact":
-        timeconst = soft_constraint.resolved(value, plan.dampratio, IMPEDANCE, timestep)
+        timeconst = soft_constraint.discrete_refsafe_timeconst(value, plan.dampratio, IMPEDANCE, timestep)
     return soft_constraint.spring(timeconst, plan.dampratio, IMPEDANCE)
