@@ -45,6 +45,7 @@ def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make the benchmark one of short ladders and two peers, timed twice, with a made-up cost of stages."""
     monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(LADDERS))
     monkeypatch.setattr(benchmark_run, "installed", lambda: [with_scipy.DOP853, with_scipy.ODEINT])
+    monkeypatch.setattr(benchmark_run, "absent", dict)
     stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
     monkeypatch.setattr(benchmark_run, "ablate", lambda: stages)
     monkeypatch.setattr(benchmark_run, "REPEATS", 2)
