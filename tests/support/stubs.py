@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mjbeer import exact, sliding
-from mjbeer.drawing import video
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Film
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
@@ -78,7 +78,7 @@ def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:
     """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far.
 
-    The paper has a single story then, whose plot is a text file too.
+    There is OpenGL then, or so it seems, and the paper has a single story, whose plot is a text file too.
     """
     calls: list[dict[str, Any]] = []
 
@@ -99,6 +99,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
         files.write(path.with_name(f"{path.name}.svg"), "plot")
 
     film = Film(0.5, lambda: exact(sliding(), [0.0, 0.1], 0.1))
+    monkeypatch.setattr(opengl, "lack", lambda: None)
     monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     for name in ("render", "save_frame"):
         monkeypatch.setattr(video, name, stub(name, getattr(video, name)))
