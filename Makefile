@@ -1,20 +1,20 @@
 # make report: validate, and draw the four scenes into report/.   make test: all checks.
-# Both set themselves up in .venv; the second time that takes a second.
+# Both set themselves up in .venv; the second time that takes a second. Without OpenGL, neither draws films.
 .DEFAULT_GOAL := help
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: help report test quick search lint gl clean
+.PHONY: help report test quick search lint clean
 
 help:
 	@sed -n '1,2p' $(MAKEFILE_LIST)
 
-report: $(STAMP) gl
+report: $(STAMP)
 	$(BIN)/mjbeer report --output report
 
-test: $(STAMP) gl lint
+test: $(STAMP) lint
 	$(BIN)/python -m pytest -n auto
 
 # What takes no time, for the loop of an edit: half a minute.
@@ -30,10 +30,6 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/ty check src tests
 	$(BIN)/lint-imports
-
-# Drawing needs EGL or OSMesa from the system: says which line to run if neither is there.
-gl: $(STAMP)
-	@$(BIN)/python -m mjbeer.drawing.opengl
 
 $(STAMP): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mjbeer needs Python 3.11 or later, this is " + sys.version)'

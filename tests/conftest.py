@@ -1,15 +1,43 @@
-"""The environment of whoever runs the tests must not change what programs write, and when; and a fixture of several."""
+"""The environment of whoever runs the tests must not change what programs write, and when; and a fixture of several.
 
+What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends the tests instead.
+"""
+
+import functools
 import os
 import pathlib
 import shutil
 
 import pytest
 
+from mjbeer.drawing import opengl
 from mjbeer.model import templates
+from mjbeer.studies.benchmark.peers.installed import absent
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED"):
     os.environ.pop(each, None)
+
+_no_opengl = functools.cache(opengl.lack)
+"""Asked once a process, before any test makes OpenGL fail."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """End the tests at once if everything is to be there and something is not; the message has all that is missing.
+
+    Raises:
+      UsageError: in that case.
+    """
+    if os.environ.get("MJBEER_EVERYTHING") and not hasattr(config, "workerinput"):  # and not once more in each worker
+        lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]
+        lacking += [reason] if (reason := _no_opengl()) else []
+        if lacking:
+            raise pytest.UsageError("MJBEER_EVERYTHING is set, and not all is here:\n" + "\n".join(lacking))
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test that draws where nothing can be drawn."""
+    if item.get_closest_marker("draws") and _no_opengl():
+        pytest.skip(f"no OpenGL; this brings it to Debian and Ubuntu: {opengl.INSTALL}")
 
 
 @pytest.fixture

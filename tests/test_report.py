@@ -8,6 +8,7 @@ import pathlib
 import pytest
 
 from mjbeer.cli.app import main
+from mjbeer.drawing import opengl
 from mjbeer.exceptions import MjbeerError
 from tests.support import stubs
 
@@ -103,6 +104,29 @@ def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
     assert all(run.trusted for name, run in runs.items() if name != "hoop")
     # The hoop is there to leave the incline, which costs it some slip and energy when it lands.
     assert runs["hoop"].takeoff() is not None
+
+
+@pytest.mark.parametrize(("error", "status"), [(1e-5, 0), (2e-3, 1)])
+def test_without_opengl_a_report_has_all_but_films_and_says_so(
+    error: float,
+    status: int,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    stubs.validate(monkeypatch, first=error)
+    calls = stubs.draw(monkeypatch)
+    monkeypatch.setattr(opengl, "lack", lambda: "no OpenGL")
+    assert main(["report", "--output", str(tmp_path)]) == status
+    assert not calls
+    assert set(os.listdir(tmp_path)) == {"validation.json", "summary.md", "paper"}
+    assert set(os.listdir(tmp_path / "paper")) == {"told.svg", "stories.md"}
+    line = opengl.missing([*(f"{film}.mp4" for film in FILMS), "paper/told.mp4"])
+    assert capsys.readouterr().err.endswith(f"{line}\n")
+    summary = (tmp_path / "summary.md").read_text()
+    assert f"Films: {line}\n" in summary
+    assert "| first | a stub |" in summary
+    assert ".png" not in summary
 
 
 def test_a_failed_check_is_in_the_report_and_in_its_exit_status(

@@ -46,17 +46,20 @@ _FILMS = {
 }
 
 
-def write(folder: pathlib.Path, quick: bool, console: Console) -> Validation:
+def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, list[str]]:
     """Write validation.json, a video and a picture of each scene, the paper's stories and summary.md into a folder.
 
-    Quickly, the videos are smaller and the stories have plots and no films.
+    Quickly, the videos are smaller and the stories have plots and no films. Where there is no OpenGL, all is written
+    but videos, pictures and films. What comes back is the validation, and the names of the videos and films that are
+    missing for that reason.
 
     Every file appears whole or not at all; the summary comes last, and that of an earlier report goes first.
 
     Raises:
       OutputError: if the folder cannot be written to.
-      RenderingError: if nothing can be drawn on this machine.
+      RenderingError: if a video cannot be drawn for another reason, as without ffmpeg.
     """
+    from mjbeer.drawing import opengl
     from mjbeer.drawing.video import render, save_frame
 
     size = (640, 360, 15) if quick else (1280, 720, 30)
@@ -64,23 +67,30 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> Validation:
         validation = validate(console)
         (folder / "summary.md").unlink(missing_ok=True)
         files.write(folder / "validation.json", tables.to_json(validation))
-        for name, film in _FILMS.items():
+        drawn = {} if opengl.lack() else _FILMS
+        for name, film in drawn.items():
             trajectory = film.trajectory()
             render(trajectory, folder / f"{name}.mp4", *size, film.speed)
             save_frame(trajectory, film.still, folder / f"{name}.png")
             console.print(f"wrote {folder / name}.mp4", highlight=False, markup=False, soft_wrap=True)
-        report.write(folder / "paper", not quick, console)
+        missing = [f"{name}.mp4" for name in _FILMS if name not in drawn]
+        missing += [f"paper/{name}" for name in report.write(folder / "paper", not quick, console)]
         console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-        summary.write_text(_summary(validation), encoding="utf-8")
-    return validation
+        summary.write_text(_summary(validation, missing), encoding="utf-8")
+    return validation, missing
 
 
-def _summary(validation: Validation) -> str:
+def _summary(validation: Validation, missing: list[str]) -> str:
+    from mjbeer.drawing import opengl
+
     results, findings = validation.results, validation.findings
     lines = ["# mjbeer: report", ""]
     lines += [f"{sum(result.passed for result in results)} of {len(results)} checks passed.", ""]
     lines += [f"{sum(finding.passed for finding in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
+    lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
     for name, film in _FILMS.items():
+        if f"{name}.mp4" in missing:
+            continue
         lines += [f"## {name}", "", f"[![{name}]({name}.png)]({name}.mp4)", "", film.caption, ""]
     lines += ["## The paper's stories", "", "A plot each: [paper/stories.md](paper/stories.md).", ""]
     lines += ["## Validation against exact theory", "", tables.validation(results, document=True).markdown(title=False)]

@@ -24,7 +24,7 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's
     ("words", "name"),
     [
         (("simulate", *FROZEN), "motion.csv"),
-        (("render", *VIDEO), "film.mp4"),
+        pytest.param(("render", *VIDEO), "film.mp4", marks=pytest.mark.draws),
     ],
 )
 def test_a_full_disk_leaves_the_old_file(words: tuple[str, ...], name: str, tmp_path: pathlib.Path) -> None:

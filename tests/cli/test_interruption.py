@@ -7,7 +7,7 @@ import signal
 import pytest
 
 from mjbeer.studies.benchmark.points import Benchmark
-from tests.support.processes import SHORT, interrupt, start
+from tests.support.processes import SHORT, interrupt, run, start
 
 pytestmark = pytest.mark.slow
 
@@ -16,6 +16,7 @@ def halves(folder: pathlib.Path) -> list[str]:
     return [each for each in os.listdir(folder) if each.startswith(".")] if folder.exists() else []
 
 
+@pytest.mark.draws
 def test_a_video_in_the_middle(tmp_path: pathlib.Path) -> None:
     """All of its processes hear of it, ffmpeg included, as in a terminal."""
     words = ["render", "frozen", "--duration", "60", "--tolerance", "1e-6", "--output", str(tmp_path / "film.mp4")]
@@ -24,6 +25,7 @@ def test_a_video_in_the_middle(tmp_path: pathlib.Path) -> None:
     assert not os.listdir(tmp_path)
 
 
+@pytest.mark.draws
 def test_an_ffmpeg_that_hangs_is_ended_too(tmp_path: pathlib.Path) -> None:
     program = tmp_path / "ffmpeg"
     program.write_text(f"#!/bin/sh\necho $$ > {tmp_path / 'pid'}\nexec sleep 100\n")
@@ -80,6 +82,7 @@ def test_a_report_that_validates_has_written_nothing(
     assert not os.listdir(tmp_path / "new")
 
 
+@pytest.mark.draws
 def test_a_killed_command_leaves_nothing_under_the_final_name(tmp_path: pathlib.Path) -> None:
     (tmp_path / "film.mp4").write_text("old")
     words = ["render", "frozen", "--duration", "60", "--output", str(tmp_path / "film.mp4")]
@@ -87,3 +90,18 @@ def test_a_killed_command_leaves_nothing_under_the_final_name(tmp_path: pathlib.
     assert ended == -signal.SIGKILL
     assert (tmp_path / "film.mp4").read_text() == "old"
     assert len(halves(tmp_path)) == 1
+
+
+def test_what_tests_start_ignores_no_signal() -> None:
+    """Whoever runs the tests may ignore some, as under nohup or after a script's `&`; no test may wait for those."""
+    before = {
+        number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    }
+    code = (
+        f"import signal; print(signal.SIG_IGN in [signal.getsignal(n) for n in {[int(number) for number in before]}])"
+    )
+    try:
+        assert run([], code) == (0, "False\n", "")
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -61,6 +61,7 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
     return [Seen(*each) for each in zip(drawn, [scene] * len(phis), zip(u, phis, rolls, strict=True), strict=True)]
 
 
+@pytest.mark.draws
 @pytest.mark.parametrize("fill", [0.25, 0.5, 0.8])
 def test_the_end_shows_a_circular_segment_of_beer(fill: float) -> None:
     """Points on the can's open end: the beer's colour under the chord of eq. (32), another one over it.
@@ -87,6 +88,7 @@ def test_the_end_shows_a_circular_segment_of_beer(fill: float) -> None:
         assert min(there.values()) > 20
 
 
+@pytest.mark.draws
 @pytest.mark.parametrize("make", [sliding, frozen, hoop])
 def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
     scene = make(0.3)
@@ -97,6 +99,7 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
         assert reds == [True, False], roll
 
 
+@pytest.mark.draws
 @pytest.mark.parametrize("camera", frames.CAMERAS)
 @pytest.mark.parametrize("incline", [-60.0, 0.0, 80.0])
 def test_the_wall_fills_the_picture(camera: str, incline: float) -> None:
@@ -105,6 +108,7 @@ def test_the_wall_fills_the_picture(camera: str, incline: float) -> None:
     assert not (picture.max(axis=2) < 8).any()
 
 
+@pytest.mark.draws
 @pytest.mark.parametrize("radius", [1e-6, 100.0])
 def test_size_does_not_show(radius: float) -> None:
     """A can of 1 um looks as one of 100 m does, but for the time: the roots of its lengths."""
@@ -132,6 +136,7 @@ def test_one_sample_is_a_still() -> None:
     assert frames.coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
 
 
+@pytest.mark.draws
 def test_drawn_frames_are_never_all_held() -> None:
     made: list[weakref.ref] = []
     for picture in frames.draw(motion(), np.linspace(0, 0.4, 5), 64, 36):
@@ -139,6 +144,7 @@ def test_drawn_frames_are_never_all_held() -> None:
         assert sum(each() is not None for each in made) <= 2
 
 
+@pytest.mark.draws
 def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytest.MonkeyPatch) -> None:
     closed = []
     real = Canvas.close

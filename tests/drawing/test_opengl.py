@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -13,6 +14,7 @@ from tests.support.processes import run
 
 pytestmark = pytest.mark.slow
 
+CHECKOUT = pathlib.Path(__file__).parents[2]
 linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux has a choice of backends")
 
 
@@ -22,6 +24,16 @@ def _forget(monkeypatch: pytest.MonkeyPatch):
     opengl.backend.cache_clear()
     yield
     opengl.backend.cache_clear()
+
+
+@pytest.fixture
+def crashing(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """An environment in which OpenGL crashes when it is loaded; the module that loads it stands for it."""
+    folder = tmp_path_factory.mktemp("crashing")
+    (folder / "OpenGL").mkdir()
+    (folder / "OpenGL" / "__init__.py").write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
+    path = os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")])
+    return os.environ | {"PYTHONPATH": path, "MUJOCO_GL": "egl"}
 
 
 def _failing(monkeypatch: pytest.MonkeyPatch, *broken: str) -> list[str]:
@@ -97,23 +109,46 @@ def test_a_hang_is_survived(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @linux
-def test_check_fails_with_the_remedy(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_lacking_is_what_would_be_raised(monkeypatch: pytest.MonkeyPatch) -> None:
     _failing(monkeypatch, "egl", "osmesa")
-    assert opengl.main() == 1
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert opengl.REMEDY in said.err
+    lacking = opengl.lack()
+    with pytest.raises(RenderingError) as caught:
+        opengl.context(16, 16)
+    assert lacking == str(caught.value)
 
 
 @linux
-def test_check_passes_quietly_and_needs_little() -> None:
-    code = (
-        "import sys; from mjbeer.drawing import opengl; "
-        "print(opengl.main(), *{'numba', 'mediapy', 'OpenGL'} & set(sys.modules))"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["0"]
-    assert done.stderr == ""
+def test_nothing_is_lacking_where_a_backend_works(monkeypatch: pytest.MonkeyPatch) -> None:
+    _failing(monkeypatch, "egl")
+    assert opengl.lack() is None
+
+
+def test_the_line_on_missing_films_names_them_and_what_to_install() -> None:
+    line = opengl.missing(["sliding.mp4", "paper/hop.mp4"])
+    assert "sliding.mp4, paper/hop.mp4" in line
+    assert opengl.INSTALL in line
+    assert opengl.INSTALL in opengl.REMEDY
+    assert "\n" not in line
+
+
+@linux
+@pytest.mark.parametrize(
+    ("everything", "status", "said"),
+    [
+        ("", 0, r"SKIPPED \[1\] .*no OpenGL; this brings it to Debian and Ubuntu: apt-get update"),
+        ("1", 4, r"ERROR: MJBEER_EVERYTHING is set, and not all is here:\n(.*\n)*no off-screen OpenGL"),
+    ],
+)
+def test_tests_that_draw_are_skipped_or_end_the_tests(
+    everything: str, status: int, said: str, crashing: dict[str, str]
+) -> None:
+    name = f"{__file__}::{test_context_is_drawn_with.__name__}"
+    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", name]
+    # pytest imports MuJoCo itself, which loads what MUJOCO_GL names.
+    environment = crashing | {"MUJOCO_GL": "disable", "MJBEER_EVERYTHING": everything}
+    done = subprocess.run(command, cwd=CHECKOUT, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == status, done.stdout
+    assert re.search(said, done.stdout + done.stderr)
 
 
 def test_import_loads_no_opengl_and_sets_no_environment() -> None:
@@ -135,15 +170,10 @@ def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
 
 
 @linux
-def test_a_library_that_crashes_when_it_is_loaded(tmp_path: pathlib.Path) -> None:
-    """The module that loads it stands for it; the video is not begun, and the message has the remedy."""
-    (tmp_path / "OpenGL").mkdir()
-    (tmp_path / "OpenGL" / "__init__.py").write_text("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
-    environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")]), "MUJOCO_GL": "egl"
-    }  # fmt: skip
+def test_a_library_that_crashes_when_it_is_loaded(crashing: dict[str, str], tmp_path: pathlib.Path) -> None:
+    """The video is not begun, and the message has the remedy."""
     film = tmp_path / "new" / "film.mp4"
-    status, _, err = run(["render", "frozen", "--duration", "0.1", "--output", str(film)], env=environment)
+    status, _, err = run(["render", "frozen", "--duration", "0.1", "--output", str(film)], env=crashing)
     assert status == 2
     assert err.startswith(
         "mjbeer: no off-screen OpenGL (MUJOCO_GL=egl rules out others):\n  egl: crashed with signal 11"
@@ -152,6 +182,7 @@ def test_a_library_that_crashes_when_it_is_loaded(tmp_path: pathlib.Path) -> Non
     assert not list(film.parent.glob("*"))
 
 
+@pytest.mark.draws
 def test_context_is_drawn_with() -> None:
     context = opengl.context(16, 16)
     context.make_current()

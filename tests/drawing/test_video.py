@@ -72,6 +72,7 @@ def ffmpeg(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
     return put
 
 
+@pytest.mark.draws
 def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path) -> None:
     moved = motion()
     video.render(moved, tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
@@ -227,6 +228,7 @@ def test_an_interrupted_video_leaves_what_was_there(
     assert (tmp_path / "can.mp4").read_text() == "an older video"
 
 
+@pytest.mark.draws
 def test_a_saved_frame_is_the_frame(tmp_path: pathlib.Path) -> None:
     moved = motion()
     video.save_frame(moved, 0.2, tmp_path / "can.png", **SIZE)

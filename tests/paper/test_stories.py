@@ -10,6 +10,7 @@ import pytest
 
 from mjbeer import exact
 from mjbeer.cli.app import main
+from mjbeer.drawing import opengl
 from mjbeer.output import plots
 from mjbeer.paper.scenarios import footnote_scene
 from mjbeer.paper.stories import report
@@ -91,6 +92,21 @@ def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, ca
     text = (folder / "stories.md").read_text()
     assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story.", "[Film](told.mp4)"))
     assert capsys.readouterr().err.endswith(f"the stories are in {folder / 'stories.md'}\n")
+
+
+def test_without_opengl_the_films_are_missing_and_named(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    stubs.draw(monkeypatch)
+    monkeypatch.setattr(opengl, "lack", lambda: "no OpenGL")
+    assert main(["paper", "--films", "--output", str(tmp_path)]) == 0
+    assert set(os.listdir(tmp_path)) == {"told.svg", "stories.md"}
+    text, line = (tmp_path / "stories.md").read_text(), opengl.missing(["told.mp4"])
+    assert f"Films: {line}\n" in text
+    assert "[Film]" not in text
+    assert capsys.readouterr().err.endswith(f"{line}\n")
+    assert main(["paper", "--output", str(tmp_path)]) == 0
+    assert "told.mp4" not in capsys.readouterr().err + (tmp_path / "stories.md").read_text()
 
 
 def test_a_film_that_fails_leaves_no_summary(

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mjbeer import exact, sliding
-from mjbeer.drawing import video
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Film
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
@@ -45,6 +45,7 @@ def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make the benchmark one of short ladders and two peers, timed twice, with a made-up cost of stages."""
     monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(LADDERS))
     monkeypatch.setattr(benchmark_run, "installed", lambda: [with_scipy.DOP853, with_scipy.ODEINT])
+    monkeypatch.setattr(benchmark_run, "absent", dict)
     stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
     monkeypatch.setattr(benchmark_run, "ablate", lambda: stages)
     monkeypatch.setattr(benchmark_run, "REPEATS", 2)
@@ -77,7 +78,7 @@ def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:
     """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far.
 
-    The paper has a single story then, whose plot is a text file too.
+    There is OpenGL then, or so it seems, and the paper has a single story, whose plot is a text file too.
     """
     calls: list[dict[str, Any]] = []
 
@@ -98,6 +99,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
         files.write(path.with_name(f"{path.name}.svg"), "plot")
 
     film = Film(0.5, lambda: exact(sliding(), [0.0, 0.1], 0.1))
+    monkeypatch.setattr(opengl, "lack", lambda: None)
     monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     for name in ("render", "save_frame"):
         monkeypatch.setattr(video, name, stub(name, getattr(video, name)))

@@ -37,7 +37,10 @@ class Validate:
 
 @dataclass(frozen=True)
 class Report:
-    """Validate, then draw the four scenes, into a folder with a summary; exit status 1 if a row fails."""
+    """Validate, then draw the four scenes, into a folder with a summary; exit status 1 if a row fails.
+
+    Without OpenGL there are no films, and the summary says so.
+    """
 
     output: pathlib.Path = pathlib.Path("report")
     """Folder to write to."""
@@ -49,9 +52,10 @@ class Report:
         from mjbeer import report
         from mjbeer.studies.validation import tables
 
-        validation = report.write(self.output, self.quick, STDERR)
+        validation, missing = report.write(self.output, self.quick, STDERR)
         show(tables.validation(validation.results), tables.audit(validation.findings))
         say(f"the report is in {self.output / 'summary.md'}")
+        _tell(missing)
         return 0 if validation.passed else _FAILED
 
 
@@ -142,6 +146,15 @@ class Paper:
         """Run the command and return its exit status, 0."""
         from mjbeer.paper.stories import report
 
-        report.write(self.output, self.films, STDERR)
+        missing = report.write(self.output, self.films, STDERR)
         say(f"the stories are in {self.output / 'stories.md'}")
+        _tell(missing)
         return 0
+
+
+def _tell(missing: list[str]) -> None:
+    """Say which films were not drawn for lack of OpenGL, if any, and what brings them, on a line."""
+    from mjbeer.drawing import opengl
+
+    if missing:
+        say(opengl.missing(missing), "yellow")

@@ -1,21 +1,21 @@
-"""Off-screen OpenGL: which backend works here, found out before anything of it is loaded.
-
-`python -m mjbeer.drawing.opengl` says whether one does: exit status 0, or 1 and what to install.
-"""
+"""Off-screen OpenGL: which backend works here, found out before anything of it is loaded."""
 
 import functools
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from typing import Protocol
 
 from mjbeer.exceptions import RenderingError
 
 BACKENDS = ("egl", "osmesa")
 """In the order they are tried; the environment variable MUJOCO_GL may name one."""
-REMEDY = """\
+INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"
+"""The line that brings EGL to Debian and Ubuntu."""
+REMEDY = f"""\
 With EGL, which runs on a graphics card or without one (Debian and Ubuntu):
-    apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri
+    {INSTALL}
 or with OSMesa, where a release still has it:
     apt-get update && apt-get install -y libosmesa6"""
 # A backend that fails leaves PyOpenGL bound to it, and a bad driver may crash: hence another process.
@@ -79,6 +79,23 @@ def backend() -> str:
     raise RenderingError(f"no off-screen OpenGL{only}:\n  {because}\n{REMEDY}")
 
 
+def lack() -> str | None:
+    """Return None if pictures can be drawn here, or what the RenderingError would say."""
+    try:
+        if sys.platform == "linux":
+            backend()
+        else:
+            context(16, 16).free()
+    except RenderingError as error:
+        return str(error)
+    return None
+
+
+def missing(films: Sequence[str]) -> str:
+    """Return the line that says which films there are not for lack of OpenGL, and what brings them."""
+    return f"not drawn, for there is no OpenGL: {', '.join(films)}; this brings it to Debian and Ubuntu: {INSTALL}"
+
+
 def keep_out() -> None:
     """Import MuJoCo without the OpenGL that MUJOCO_GL names, which it would load at once, and fail where it cannot.
 
@@ -106,20 +123,3 @@ def _why_not(name: str) -> str | None:
     if done.returncode < 0:
         return f"crashed with signal {-done.returncode}"
     return (done.stderr.strip().splitlines() or ["failed without a message"])[-1]
-
-
-def main() -> int:
-    """Exit status for a check before a build: 0 and silence, or 1 and the remedy on standard error."""
-    try:
-        if sys.platform == "linux":
-            backend()
-        else:
-            context(16, 16).free()
-    except RenderingError as error:
-        print(error, file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -185,6 +185,19 @@ def test_a_setting_that_fails_is_a_point_with_a_reason(short: None, tmp_path: pa
     json.loads((tmp_path / "study.json").read_text())
 
 
+def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(
+    short: None, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When it is there again, the study begins anew, and the summary does not name it any more."""
+    reason = "libGL.so.1: cannot open shared object file: No such file or directory"
+    monkeypatch.setattr(run, "absent", lambda: {"EXUDYN": reason})
+    assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
+    assert f"\nEXUDYN is absent: {reason}\n" in (tmp_path / "summary.md").read_text()
+    monkeypatch.setattr(run, "absent", dict)
+    assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
+    assert "absent" not in (tmp_path / "summary.md").read_text()
+
+
 def test_unknown_scenes_are_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ParameterError, match=r"scene must be one of 'sliding', .*; got 'bottle'"):
         run.conduct(["bottle"], tmp_path, True, quiet())

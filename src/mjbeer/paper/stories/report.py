@@ -19,35 +19,44 @@ def stories() -> list[Story]:
     return [story for chapter in _CHAPTERS for story in chapter.stories()]
 
 
-def write(folder: pathlib.Path, films: bool, console: Console) -> None:
+def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
     """Write a sketch of the letters, a plot of each story (SVG and PNG), its film if asked for (MP4), and stories.md.
+
+    Return the names of the films that were asked for and are missing because there is no OpenGL.
 
     Every file appears whole or not at all; stories.md comes last, and that of an earlier run goes first.
 
     Raises:
       OutputError: if the folder cannot be written to.
-      RenderingError: if films are asked for and nothing can be drawn on this machine.
+      RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
+    from mjbeer.drawing import opengl
     from mjbeer.drawing.video import render
 
     told = stories()
+    names = [f"{story.name}.mp4" for story in told if films and story.film is not None]
+    missing = names if names and opengl.lack() else []
     with files.whole(folder / "stories.md") as summary, progress_bar(console, len(told)) as begin:
         (folder / "stories.md").unlink(missing_ok=True)
         letters.draw(folder / "letters")
         for story in told:
             begin(story.name)
             story.draw(folder / story.name)
-            if films and story.film is not None:
+            if films and story.film is not None and not missing:
                 file = folder / f"{story.name}.mp4"
                 render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
-        summary.write_text(_summary(told, films), encoding="utf-8")
+        summary.write_text(_summary(told, films, missing), encoding="utf-8")
+    return missing
 
 
-def _summary(told: list[Story], films: bool) -> str:
+def _summary(told: list[Story], films: bool, missing: list[str]) -> str:
+    from mjbeer.drawing import opengl
+
     lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
+    lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
     for story in told:
         picture = f"![{story.name}]({story.name}.svg)"
-        filmed = films and story.film is not None
+        filmed = films and story.film is not None and not missing
         lines += [f"## {story.name}", "", picture, "", story.caption, ""]
         lines += [f"[Film]({story.name}.mp4)", ""] if filmed else []
     return "\n".join(lines)

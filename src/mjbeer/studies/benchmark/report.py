@@ -28,7 +28,13 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
     lines = [
         "# mjbeer: error against run time", "",
         f"{study.machine['processor']}, {study.machine['system']}, Python {study.machine['python']}; {versions}.",
-        _READ, "![Work-precision diagram](work_precision.svg)", "",
+        *_absent(study), _READ, "![Work-precision diagram](work_precision.svg)", "",
         *(table.markdown() for table in results),
     ]  # fmt: skip
     files.write(folder / "summary.md", "\n".join(lines))
+
+
+def _absent(study: Benchmark) -> list[str]:
+    """Return a paragraph on the tools that could not be imported, a line each, or nothing if all could."""
+    reasons = study.settings.get("absent", {})  # studies of earlier versions had all tools
+    return ["", *(f"{name} is absent: {reason}" for name, reason in reasons.items())] if reasons else []

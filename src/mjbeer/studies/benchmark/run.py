@@ -13,7 +13,7 @@ from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
 from mjbeer.studies.benchmark.curves import TIMESTEP, Curve, aligned
 from mjbeer.studies.benchmark.measure import Rung
-from mjbeer.studies.benchmark.peers.installed import installed
+from mjbeer.studies.benchmark.peers.installed import absent, installed
 from mjbeer.studies.benchmark.peers.peer import Peer
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.cases import CASES, Case
@@ -28,6 +28,8 @@ _ENOUGH = 5
 def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Console) -> Benchmark:
     """Measure cases, and return the study kept in `folder` as study.json; what is there of one like it is used.
 
+    A peer that cannot be imported takes no part; the study's settings have its name and the reason.
+
     First each ladder is climbed down once for its errors, to its floor; then every setting is timed, in rounds.
     The file is written after each ladder and each case of a round, so that an interrupted run goes on from there.
 
@@ -37,7 +39,8 @@ def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Co
     """
     cases = [CASES[require.choice("scene", name, CASES)] for name in names]
     path = folder / "study.json"
-    found = Benchmark.begin(path, {"cases": list(names), "quick": quick, "repeats": REPEATS}, console)
+    asked = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": absent()}
+    found = Benchmark.begin(path, asked, console)
     (folder / "summary.md").unlink(missing_ok=True)  # it would be that of another study
     peers = {peer.name: peer for peer in installed()}
     rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in found.points]

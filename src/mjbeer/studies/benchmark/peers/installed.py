@@ -1,24 +1,28 @@
-"""Which of the other tools are installed here."""
+"""Which of the other tools can be imported here, and why the others cannot."""
 
 import importlib
 
+from mjbeer.studies.benchmark.peers import with_exudyn, with_heyoka, with_scipy
 from mjbeer.studies.benchmark.peers.peer import Peer
-from mjbeer.studies.benchmark.peers.with_scipy import DOP853, LSODA, ODEINT
+
+PEERS = (with_scipy.DOP853, with_scipy.LSODA, with_scipy.ODEINT, with_heyoka.PEER, with_exudyn.PEER)
+"""All peers, whether they can be imported here or not."""
+_OPTIONAL = {with_heyoka.PEER.name: "heyoka", with_exudyn.PEER.name: "exudyn"}
+"""The packages of the peers that are optional; `pip install mjbeer[peers]` has both."""
 
 
 def installed() -> list[Peer]:
-    """The peers of this environment; heyoka and EXUDYN are optional, `pip install mjbeer[peers]` has both.
+    """Return the peers that can be imported here."""
+    missing = absent()
+    return [peer for peer in PEERS if peer.name not in missing]
 
-    Raises:
-      ImportError: if one of them is installed and broken.
-    """
-    peers = [DOP853, LSODA, ODEINT]
-    for package in ("heyoka", "exudyn"):
+
+def absent() -> dict[str, str]:
+    """Return the names of the peers that cannot be imported here, each with the reason, on one line."""
+    reasons = {}
+    for name, package in _OPTIONAL.items():
         try:
             importlib.import_module(package)
-        except ModuleNotFoundError as error:
-            if error.name != package:
-                raise
-        else:
-            peers.append(importlib.import_module(f"mjbeer.studies.benchmark.peers.with_{package}").PEER)
-    return peers
+        except Exception as error:  # a package that lacks a library of the system may raise anything
+            reasons[name] = " ".join(str(error).split()) or type(error).__name__
+    return reasons
