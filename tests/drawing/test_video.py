@@ -55,7 +55,7 @@ def blank(alive: list[int], frames: int = 40, error: BaseException | None = None
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Let videos have blank frames, which take no time."""
     alive: list[int] = []
-    monkeypatch.setattr(drawing, "draw", lambda trajectory, times, *_: blank(alive, len(times)))
+    monkeypatch.setattr(drawing, "draw", lambda trajectory, times, **_: blank(alive, len(times)))
     return alive
 
 
@@ -220,7 +220,7 @@ def test_no_ffmpeg_says_so(undrawn: list[int], tmp_path: pathlib.Path, monkeypat
 def test_an_interrupted_video_leaves_what_was_there(
     error: BaseException, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(drawing, "draw", lambda *_: blank([], 5, error))
+    monkeypatch.setattr(drawing, "draw", lambda *_, **__: blank([], 5, error))
     (tmp_path / "can.mp4").write_text("an older video")
     with pytest.raises(type(error)):
         video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)

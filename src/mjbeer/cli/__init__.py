@@ -1,1 +1,1 @@
-"""The command line; it imports everything else, and nothing imports it."""
+"""The command line `mjbeer`. It may import every other folder, and no other folder imports it."""

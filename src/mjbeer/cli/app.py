@@ -1,4 +1,4 @@
-"""The command line: what `mjbeer` does, a class a command."""
+"""The entry point of `mjbeer`: parse the command line, run the command, and turn errors into exit statuses."""
 
 import signal
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from mjbeer.exceptions import MjbeerError
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
-_WRONG = 2
+_ERROR = 2
 Command = Simulate | Render | Export | Validate | Benchmark | Advise | Stability | Report | Paper
 _COMMAND = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
@@ -31,18 +31,24 @@ _STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line: exit status 0, 1 (a check failed), 2 (an error), or 128 and the signal that ended it."""
+    """Run the command that `arguments` ask for, by default those of the process, and return its exit status.
+
+    The status is 0, 1 if a check failed, 2 on an error, or 128 plus the number of the signal that interrupted it.
+
+    Raises:
+      SystemExit: after --help, and with status 2 if the arguments are not understood.
+    """
     for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) == signal.SIG_DFL:  # one that is ignored, as under nohup, stays so
+        if signal.getsignal(number) == signal.SIG_DFL:  # a signal that is ignored, as under nohup, stays ignored
             signal.signal(number, _interrupt)
     try:
         with terminal.printing():
             command = parse(arguments)
         opengl.keep_out()
         return command.run()
-    except (MjbeerError, OSError) as error:  # OSError: of the machine, as too many processes
+    except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")
-        return _WRONG
+        return _ERROR
     except KeyboardInterrupt as error:
         say("mjbeer: interrupted; what was written is whole", "red")
         (number,) = error.args or (signal.SIGINT,)
@@ -50,16 +56,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _interrupt(number: int, _: FrameType | None) -> NoReturn:
-    """Raise for a signal what Ctrl-C raises, with the number of the signal.
+    """Treat a signal as Ctrl-C, so that files are cleaned up as after Ctrl-C.
 
     Raises:
-      KeyboardInterrupt: always.
+      KeyboardInterrupt: always, with the number of the signal.
     """
     raise KeyboardInterrupt(number)
 
 
 def parse(arguments: Sequence[str] | None = None) -> Command:
-    """What a command line asks for; one that is not understood ends the program, with exit status 2."""
+    """Return the command that `arguments` ask for, by default those of the process.
+
+    Raises:
+      SystemExit: after --help, and with status 2 if the arguments are not understood.
+    """
     return tyro.cli(
         _COMMAND,
         prog="mjbeer",

@@ -1,4 +1,4 @@
-"""What the command line lets one say about a scene and a run: angles in degrees, otherwise SI units."""
+"""The options for scenes and simulations: angles in degrees, everything else in SI units."""
 
 import math
 from dataclasses import dataclass
@@ -20,20 +20,20 @@ CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop"]
 
 
 def radians(name: str, value: float, unit: str = "degrees") -> float:
-    """An angle or a rate in radians.
+    """Convert an angle from degrees to radians, or a rate from degrees/s to radians/s, and return it.
 
     Raises:
-      ParameterError: if it is not finite; the message is in the unit that it came in.
+      ParameterError: if it is not finite; the message has the `name` of the option and the `unit` of its value.
     """
     return math.radians(require.number(name, value, unit))
 
 
 @dataclass(frozen=True)
 class Common:
-    """What every scene has."""
+    """The options of every scene."""
 
     incline: float = 10.0
-    """Angle of the incline to the horizontal [degrees], positive downhill."""
+    """Angle of the incline to the horizontal [degrees]; positive if it descends in the direction of positive u."""
     radius: float = RADIUS
     """Radius of the can [m]."""
     length: float = LENGTH
@@ -43,7 +43,11 @@ class Common:
 
     @property
     def alpha(self) -> float:
-        """The incline [rad]."""
+        """The angle of the incline [rad].
+
+        Raises:
+          ParameterError: if it is not between -90 and 90 degrees.
+        """
         if not abs(self.incline) < 90:
             raise ParameterError(f"incline must be between -90 and 90 [degrees], got {self.incline!r}")
         return math.radians(self.incline)
@@ -51,70 +55,88 @@ class Common:
 
 @dataclass(frozen=True)
 class Filled(Common):
-    """What a can of beer has besides."""
+    """The further options of a scene with beer in a can."""
 
     fill: float = 0.5
-    """Height of the beer over the can's diameter, in (0, 1]."""
+    """Height of the beer as a fraction of the can's diameter, in (0, 1]."""
     density: float = BEER
     """Density of the beer [kg/m^3]."""
     can: Literal["massless", "metal"] = "massless"
-    """A can without mass (section 2 of the paper), or of 0.1 mm aluminium (section 3)."""
+    """The can: without mass (section 2 of the paper), or of aluminium sheet 0.1 mm thick (section 3)."""
 
-    def made(self) -> Can:
-        """The can."""
+    def build_can(self) -> Can:
+        """Return the can of these options."""
         make = Can.massless if self.can == "massless" else Can.sheet_metal
         return make(self.radius, self.length)
 
 
 @dataclass(frozen=True)
 class Sliding(Filled):
-    """Beer that slides without friction in its can (sections 2 and 3 of the paper)."""
+    """Beer that slides without friction inside its can (sections 2 and 3 of the paper)."""
 
     def scene(self) -> Scene:
-        """The scene."""
-        return sliding(self.alpha, self.fill, self.made(), self.density, self.gravity)
+        """Return the scene of these options."""
+        return sliding(
+            incline=self.alpha, fill=self.fill, can=self.build_can(), density=self.density, gravity=self.gravity
+        )
 
 
 @dataclass(frozen=True)
 class Frozen(Filled):
-    """Beer frozen to its can (appendix A)."""
+    """Beer frozen to its can (appendix A of the paper)."""
 
     def scene(self) -> Scene:
-        """The scene."""
-        return frozen(self.alpha, self.fill, self.made(), self.density, self.gravity)
+        """Return the scene of these options."""
+        return frozen(
+            incline=self.alpha, fill=self.fill, can=self.build_can(), density=self.density, gravity=self.gravity
+        )
 
 
 @dataclass(frozen=True)
 class Pendulum(Common):
-    """A hoop wheel with a pendulum on its axle (appendix B)."""
+    """A wheel with a pendulum on its axle (appendix B of the paper)."""
 
     wheel_mass: float = 0.2
     """Mass of the wheel [kg]."""
     load_mass: float = 0.1
-    """Mass of the bob [kg]."""
+    """Mass of the pendulum's bob [kg]."""
     offset: float = 0.025
-    """Length of the pendulum [m]."""
+    """Length of the pendulum, from the axle to the bob [m]."""
 
     def scene(self) -> Scene:
-        """The scene."""
-        sizes = self.offset, self.radius, self.length, self.gravity
-        return pendulum(self.alpha, self.wheel_mass, self.load_mass, *sizes)
+        """Return the scene of these options."""
+        return pendulum(
+            incline=self.alpha,
+            wheel_mass=self.wheel_mass,
+            load_mass=self.load_mass,
+            offset=self.offset,
+            radius=self.radius,
+            length=self.length,
+            gravity=self.gravity,
+        )
 
 
 @dataclass(frozen=True)
 class Hoop(Common):
-    """A hoop with a point load on its rim, which can hop (appendix A.4)."""
+    """A hoop with a point load on its rim, which can hop (appendix A.4 of the paper)."""
 
     incline: float = 0.0
-    """Angle of the incline to the horizontal [degrees], positive downhill."""
+    """Angle of the incline to the horizontal [degrees]; positive if it descends in the direction of positive u."""
     hoop_mass: float = 0.01
     """Mass of the hoop [kg]."""
     load_mass: float = 0.2
     """Mass of the load [kg]."""
 
     def scene(self) -> Scene:
-        """The scene."""
-        return hoop(self.alpha, self.hoop_mass, self.load_mass, self.radius, self.length, self.gravity)
+        """Return the scene of these options."""
+        return hoop(
+            incline=self.alpha,
+            hoop_mass=self.hoop_mass,
+            load_mass=self.load_mass,
+            radius=self.radius,
+            length=self.length,
+            gravity=self.gravity,
+        )
 
 
 AnyScene = (
@@ -127,38 +149,42 @@ AnyScene = (
 
 @dataclass(frozen=True)
 class Motion:
-    """How a scene is started and simulated."""
+    """The options of a simulation: the scene, the start of its motion, and how it is integrated."""
 
     scene: AnyScene
     phi0: float = 60.0
-    """Start angle of the load to the incline, the paper's phi [degrees]."""
+    """Initial angle of the load from the incline's normal, phi in the paper [degrees]."""
     phi_dot0: float = 0.0
-    """Start rate of phi [degrees/s]."""
+    """Initial rate of change of phi [degrees/s]."""
     duration: float = 2.0
-    """Length of the run [s]."""
+    """Duration of the motion [s]."""
     rolling: Rolling = "reduced"
-    """What makes the can roll: coordinates, a joint equality, or contact with friction."""
+    """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
     integrator: Integrator = "RK4"
-    """Integrator."""
+    """Integrator: one of MuJoCo's, by its name in MJCF, or DOP853, a Runge-Kutta method of order 8."""
     timestep: float = 1e-3
-    """Timestep, or with a tolerance the sampling interval [s]."""
+    """Timestep; if a tolerance is given, the interval between samples [s]."""
     tolerance: float | None = None
-    """Largest error of phi and u/a [rad]; takes DOP853 with steps of its own."""
+    """Largest error allowed in phi and u/radius [rad]. If given, DOP853 is used and chooses its own timesteps."""
     friction: float = 1.0
-    """Friction coefficient of a contact."""
+    """Coefficient of friction, used only with rolling by contact."""
 
     def simulate(self) -> "Trajectory":
-        """Run it."""
+        """Simulate the scene and return its trajectory.
+
+        Raises:
+          MjbeerError: if an option is not allowed, or the simulation fails.
+        """
         from mjbeer.simulation.simulate import simulate
 
         return simulate(
             self.scene.scene(),
             self.duration,
-            radians("phi0", self.phi0),
-            radians("phi_dot0", self.phi_dot0, "degrees/s"),
-            self.rolling,
-            self.integrator,
-            self.timestep,
-            self.tolerance,
+            phi0=radians("phi0", self.phi0),
+            phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),
+            rolling=self.rolling,
+            integrator=self.integrator,
+            timestep=self.timestep,
+            tolerance=self.tolerance,
             friction=self.friction,
         )

@@ -1,4 +1,4 @@
-"""Commands about one motion: simulate, render, export."""
+"""The commands about one motion: simulate, render and export."""
 
 import pathlib
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from mjbeer.output.terminal import STDERR, say, show
 
 @dataclass(frozen=True)
 class Simulate(Motion):
-    """Simulate a scene; show what the run says about itself, and write the motion as CSV."""
+    """Simulate a scene, print its key figures with an estimate of the error, and write the motion as CSV."""
 
     output: pathlib.Path | None = None
-    """CSV file to write; "-" for standard output."""
+    """CSV file to write; "-" is standard output. If not given, no CSV is written."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
@@ -42,15 +42,15 @@ class Render(Motion):
     """Simulate a scene and draw it as a video (MP4)."""
 
     output: pathlib.Path = pathlib.Path("mjbeer.mp4")
-    """Video to write."""
+    """MP4 file to write."""
     speed: float = 1.0
-    """Playback speed: 1 is real time, 0.25 four times slower."""
+    """Playback speed: 1 is real time, 0.25 is four times slower."""
     camera: str = "side"
-    """Camera: side, quarter or overview."""
+    """Camera: side (the can's open end), quarter (from above and downhill) or overview (the whole motion)."""
     width: int = 1280
-    """Width [pixels]."""
+    """Width of the video [pixels]."""
     height: int = 720
-    """Height [pixels]."""
+    """Height of the video [pixels]."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
@@ -58,42 +58,57 @@ class Render(Motion):
 
         trajectory = self.simulate()
         _warn(trajectory.warnings)
-        render(trajectory, self.output, self.width, self.height, speed=self.speed, camera=self.camera)
+        render(
+            trajectory,
+            self.output,
+            width=self.width,
+            height=self.height,
+            speed=self.speed,
+            camera=self.camera,
+        )
         say(f"wrote {self.output}")
         return 0
 
 
 @dataclass(frozen=True)
 class Export:
-    """Write a scene as one MJCF file that any MuJoCo loads, with its start as a keyframe."""
+    """Write a scene as one MJCF file that MuJoCo loads without mjbeer, with the initial state as a keyframe."""
 
     scene: AnyScene
     output: pathlib.Path
     """MJCF file to write."""
     phi0: float = 60.0
-    """Start angle of the load to the incline, the paper's phi [degrees]."""
+    """Initial angle of the load from the incline's normal, phi in the paper [degrees]."""
     phi_dot0: float = 0.0
-    """Start rate of phi [degrees/s]."""
+    """Initial rate of change of phi [degrees/s]."""
     rolling: Rolling = "reduced"
-    """What makes the can roll; the reduced model of a frozen load turns on the spot."""
+    """What makes the can roll: reduced coordinates, a joint equality, or contact with friction. The reduced model of a
+    frozen load has phi as its only coordinate, so MuJoCo shows it turning in place."""
     integrator: MujocoIntegrator = "RK4"
-    """Integrator."""
+    """Integrator: one of MuJoCo's, by its name in MJCF."""
     timestep: float = 1e-3
     """Timestep [s]."""
     friction: float = 1.0
-    """Friction coefficient of a contact."""
+    """Coefficient of friction, used only with rolling by contact."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
         from mjbeer.model.export import export
 
-        start = radians("phi0", self.phi0), radians("phi_dot0", self.phi_dot0, "degrees/s")
-        settings = self.rolling, self.integrator, self.timestep, self.friction
-        export(self.scene.scene(), self.output, *start, *settings)
+        export(
+            self.scene.scene(),
+            self.output,
+            phi0=radians("phi0", self.phi0),
+            phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),
+            rolling=self.rolling,
+            integrator=self.integrator,
+            timestep=self.timestep,
+            friction=self.friction,
+        )
         say(f"wrote {self.output}")
         return 0
 
 
 def _warn(warnings: tuple[str, ...]) -> None:
-    for each in warnings:
-        say(f"not to be trusted: {each}", "yellow")
+    for warning in warnings:
+        say(f"not to be trusted: {warning}", "yellow")

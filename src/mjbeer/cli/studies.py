@@ -1,4 +1,4 @@
-"""Commands that check and measure: validate, report, benchmark, advise, stability, paper."""
+"""The commands that check and measure: validate, report, benchmark, advise, stability and paper."""
 
 import pathlib
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ _FAILED = 1
 
 @dataclass(frozen=True)
 class Validate:
-    """Check the models against exact theory and the paper against both, row by row; exit status 1 if a row fails."""
+    """Check the models against exact theory, and the paper's equations against both; exit status 1 if a check fails."""
 
     json: bool = False
-    """Print the table as JSON."""
+    """Print the results as JSON."""
 
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
@@ -37,7 +37,7 @@ class Validate:
 
 @dataclass(frozen=True)
 class Report:
-    """Validate, then draw the four scenes, into a folder with a summary; exit status 1 if a row fails.
+    """Validate, draw the four scenes, and write a folder with a summary; exit status 1 if a check fails.
 
     Without OpenGL there are no films, and the summary says so.
     """
@@ -45,7 +45,7 @@ class Report:
     output: pathlib.Path = pathlib.Path("report")
     """Folder to write to."""
     quick: bool = False
-    """Smaller videos with fewer frames."""
+    """Draw smaller videos with fewer frames, and no films for the paper's scenarios."""
 
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
@@ -61,14 +61,14 @@ class Report:
 
 @dataclass(frozen=True)
 class Benchmark:
-    """Measure error against run time, in six minutes: integrators, ways of rolling, and other tools."""
+    """Measure error against run time for integrators, ways of rolling and other tools; takes six minutes."""
 
     scenes: Annotated[tuple[CaseName, ...], tyro.conf.Positional] = DEFAULT
     """Scenes to measure."""
     output: pathlib.Path = pathlib.Path("benchmark")
-    """Folder to write to; a study that was interrupted there goes on."""
+    """Folder to write to; an interrupted study in it is continued."""
     quick: bool = False
-    """Shorter ladders: about a minute."""
+    """Try fewer timesteps and tolerances; takes a minute and a half."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
@@ -76,7 +76,7 @@ class Benchmark:
         from mjbeer.studies.benchmark import run as benchmark
 
         with files.locked(self.output):
-            study = benchmark.conduct(self.scenes, self.output, self.quick, STDERR)
+            study = benchmark.conduct(names=self.scenes, folder=self.output, quick=self.quick, console=STDERR)
             report.write(study, self.output)
         show(*tables.tables(study))
         say(f"the study is in {self.output / 'summary.md'}")
@@ -85,16 +85,16 @@ class Benchmark:
 
 @dataclass(frozen=True)
 class Advise:
-    """Print the cheapest setting that met a tolerance in a stored study."""
+    """Print the fastest setting that met a tolerance in a stored benchmark."""
 
     scene: Annotated[CaseName, tyro.conf.Positional]
-    """Scene of the study that is most like yours."""
+    """Scene of the benchmark that is most like yours."""
     tolerance: float = 1e-6
-    """Largest error of phi and u/a [rad]."""
+    """Largest error allowed in phi and u/radius [rad]."""
     rolling: Rolling | None = None
-    """Way of rolling; any if not given."""
+    """What makes the can roll; if not given, the fastest way is taken."""
     study: pathlib.Path | None = None
-    """A study.json that `mjbeer benchmark` wrote; the one that came with mjbeer if not given."""
+    """A study.json that `mjbeer benchmark` wrote; if not given, the one that comes with mjbeer."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
@@ -106,12 +106,12 @@ class Advise:
 
 @dataclass(frozen=True)
 class Stability:
-    """Try stiff and extreme cases, find where stability ends, against theory; exit status 1 if they disagree."""
+    """Test stiff and extreme cases and the limits of stability, in two minutes; exit status 1 if theory disagrees."""
 
     output: pathlib.Path = pathlib.Path("stability")
-    """Folder to write to; a study that was interrupted there goes on."""
+    """Folder to write to; an interrupted study in it is continued."""
     long: bool = False
-    """Everything: all integrators, finer maps, 3000 random runs, a million swings."""
+    """Run the whole study: all integrators, finer maps, 3000 random runs, a million swings; takes twenty minutes."""
     json: bool = False
     """Print the results as JSON."""
 
@@ -121,26 +121,26 @@ class Stability:
         from mjbeer.studies.stability import run as stability
 
         with files.locked(self.output):
-            found = stability.conduct(self.output, not self.long, STDERR)
-            report.write(found, self.output)
+            study = stability.conduct(self.output, not self.long, STDERR)
+            report.write(study, self.output)
         if self.json:
-            terminal.write(found.json())
+            terminal.write(study.json())
         else:
-            show(*tables.tables(found))
-        for each in found.unexpected:
-            say(f"not as theory expects: {each}", "red")
+            show(*tables.tables(study))
+        for name in study.unexpected:
+            say(f"not as theory expects: {name}", "red")
         say(f"the study is in {self.output / 'summary.md'}")
-        return _FAILED if found.unexpected else 0
+        return _FAILED if study.unexpected else 0
 
 
 @dataclass(frozen=True)
 class Paper:
-    """Draw the paper's stories, a plot each, into a folder with a summary."""
+    """Plot each of the paper's scenarios, and write a folder with a summary."""
 
     output: pathlib.Path = pathlib.Path("paper")
     """Folder to write to."""
     films: bool = False
-    """Films of what moves, too."""
+    """Also draw films of the motions."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""

@@ -1,4 +1,4 @@
-"""A trajectory as CSV, and what it says about itself."""
+"""A trajectory as CSV, and a table of its key figures for the terminal."""
 
 import io
 import math
@@ -10,7 +10,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 
 def csv(trajectory: Trajectory) -> str:
-    """Return a line a sample, units in the header, every number with all its digits."""
+    """Return a trajectory as CSV: one line per sample, units in the header, numbers with all their digits."""
     columns = {
         "time [s]": trajectory.time,
         "u [m]": trajectory.u,
@@ -32,7 +32,7 @@ def csv(trajectory: Trajectory) -> str:
 
 
 def summary(trajectory: Trajectory) -> Table:
-    """Return what is known of a run, for the terminal."""
+    """Return a table of the key figures of a trajectory, for the terminal."""
     table = Table(show_header=False, box=None)
     radius = trajectory.scene.can.radius
     parted, needed = trajectory.rolls_until(), trajectory.forces.needed
@@ -42,7 +42,7 @@ def summary(trajectory: Trajectory) -> Table:
         "samples": f"{len(trajectory.time)} to t = {trajectory.time[-1]:.6g} s",
         "phi at the end": f"{math.degrees(trajectory.phi[-1]):.9g} degrees",
         "u at the end": f"{trajectory.u[-1]:.9g} m",
-        "energy drift": f"{trajectory.energy_drift:.2e} of the swing's own",
+        "energy drift": f"{trajectory.energy_drift:.2e} of the largest kinetic energy of the swing",
         "slip, largest and final": f"{np.abs(slip).max():.2e}, {slip[-1]:.2e} radii",
         "lift, lowest and highest": f"{trajectory.lift.min() / radius:.2e}, {trajectory.lift.max() / radius:.2e} radii",
         "normal force needed": f"{trajectory.forces.normal.min():.4g} to {trajectory.forces.normal.max():.4g} N",

@@ -1,4 +1,4 @@
-"""Pictures of a model, drawn off the screen."""
+"""Pictures of a posed MuJoCo model as arrays, drawn without a window."""
 
 from collections.abc import Callable
 from types import TracebackType
@@ -11,22 +11,22 @@ from mjbeer.drawing import opengl
 from mjbeer.exceptions import RenderingError
 
 _ROOM = 64
-"""Geoms that can be added to those of the model."""
+"""Most geoms that can be added to those of the model."""
 
 
 class Canvas:
-    """Draws a model's poses into arrays; a context manager, which frees all that it holds on the graphics card.
+    """A context manager that draws a posed model into arrays, and frees the graphics memory at its end.
 
-    It stands in for mujoco.Renderer, which is bound to what MUJOCO_GL said when MuJoCo was imported.
+    It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
 
     Raises:
-      RenderingError: if there is no off-screen OpenGL; the message says what to install.
+      RenderingError: if OpenGL cannot draw without a window; the message names what to install.
     """
 
     def __init__(self, model: mujoco.MjModel, width: int, height: int) -> None:
         self._model = model
         self._scene = mujoco.MjvScene(model, model.ngeom + _ROOM)
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the time, and all of it behind the wall
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the drawing time, and hidden by the wall
         self._option = mujoco.MjvOption()
         self._view = mujoco.MjrRect(0, 0, width, height)
         model.vis.global_.offwidth, model.vis.global_.offheight = width, height
@@ -42,9 +42,9 @@ class Canvas:
     def draw(
         self, data: mujoco.MjData, camera: str, decorate: Callable[[mujoco.MjvScene], None] | None = None
     ) -> np.ndarray:
-        """The picture from a camera of the model, shape (height, width, 3), uint8.
+        """Return the picture from a camera, by its name, as an array of shape (height, width, 3), uint8.
 
-        `decorate` may add geoms to the scene.
+        `decorate` is called with MuJoCo's scene before it is drawn, and may add geoms to it.
         """
         view = mujoco.MjvCamera()
         view.type, view.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, self._model.camera(camera).id
@@ -56,7 +56,7 @@ class Canvas:
         self._gl.make_current()
         mujoco.mjr_render(self._view, self._scene, self._context)
         mujoco.mjr_readPixels(pixels, None, self._view, self._context)
-        return pixels[::-1]  # OpenGL's rows begin at the bottom
+        return pixels[::-1]  # OpenGL's first row is the lowest
 
     def close(self) -> None:
         """Free the graphics memory."""

@@ -1,7 +1,7 @@
-"""The model that is drawn: one for every kind of trajectory of a scene, posed and never stepped.
+"""The model that is drawn for a scene: it is posed at the coordinates of a trajectory, and never stepped.
 
-It has the size of the templates' can whatever the scene's is: so all scenes look alike, and none is too
-small or too large for the graphics, which compute in single precision.
+Its can has the radius of the templates' can, whatever the scene's radius is. All scenes then look alike, and none is
+too small or too large for the graphics, which compute in single precision.
 """
 
 import dataclasses
@@ -17,23 +17,23 @@ from mjbeer.theory.scene import Scene
 
 
 def display_model(scene: Scene, reach: tuple[float, float] = (0.0, 0.0), aspect: float = 16 / 9) -> mujoco.MjModel:
-    """The model that shows a scene: its joints are "slide", "lift", "roll" and, for a sliding load, "swing".
+    """Return the model that shows a scene. Its joints are "slide", "lift", "roll" and, for a sliding load, "swing".
 
-    `reach` is the lowest and the highest u [m] that will be shown, which the board and the camera "overview"
-    span; `aspect` is the width of the picture over its height.
+    `reach` is the lowest and the highest u [m] that will be shown: the board and the camera "overview" cover this
+    range. `aspect` is the width of the picture over its height.
 
     Raises:
-      TemplateError: if a template is missing, lacks a part, or has one that is not allowed.
-      UnsupportedError: if MuJoCo refuses what a template shows.
+      TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
+      UnsupportedError: if MuJoCo cannot compile the geoms of a template.
     """
-    drawn = _drawn(scene)
-    spec = specify(drawn, Setting("contact"), visuals=True)
-    appearance.extend(spec, drawn, reach[0] * scale(scene), reach[1] * scale(scene), aspect)
+    resized = _resize(scene)
+    spec = specify(resized, Setting("contact"), visuals=True)
+    appearance.extend(spec, resized, reach[0] * scale(scene), reach[1] * scale(scene), aspect)
     return compile_spec(spec)
 
 
 def scale(scene: Scene) -> float:
-    """Drawn length of a metre of the scene."""
+    """Return the length [m] at which one metre of the scene is drawn."""
     return RADIUS / scene.can.radius
 
 
@@ -42,8 +42,8 @@ def pose(
 ) -> None:
     """Pose the display model: the axis at `u` [m] and `lift` [m], the load at `phi` and the can at `roll` [rad].
 
-    A frozen load turns with the can. Cameras go with the can along the incline, but do not rise with it: a hop
-    is to be seen.
+    A frozen load turns with the can. Cameras follow the can along the incline but do not rise with it, so that a hop
+    can be seen.
     """
     values = {"slide": u * scale(scene), "lift": 0.0, "roll": roll, "swing": phi - roll}
     for name in places(model):
@@ -54,8 +54,8 @@ def pose(
     mujoco.mj_kinematics(model, data)
 
 
-def _drawn(scene: Scene) -> Scene:
-    """The scene at the size it is drawn, with any masses that MuJoCo takes: a pose does not depend on them."""
+def _resize(scene: Scene) -> Scene:
+    """Return the scene at the size at which it is drawn, with masses of 1 kg: a pose does not depend on masses."""
     size = scale(scene)
     can = dataclasses.replace(scene.can, radius=RADIUS, length=scene.can.length * size, mass=1.0, inertia=RADIUS**2)
     load = dataclasses.replace(scene.load, mass=1.0, offset=min(scene.load.offset * size, RADIUS), inertia=RADIUS**2)

@@ -1,4 +1,4 @@
-"""Frames to a video file, through mediapy and the ffmpeg that comes with imageio-ffmpeg."""
+"""Write frames to a video file, with mediapy and the ffmpeg that comes with imageio-ffmpeg."""
 
 import errno
 import os
@@ -15,23 +15,23 @@ if TYPE_CHECKING:
     import mediapy
 
 _QUALITY = 20
-"""Constant rate factor of H.264: 18 shows no loss, 23 is ffmpeg's default."""
+"""Constant rate factor of H.264: at 18 no loss is visible, 23 is ffmpeg's default."""
 _FASTER = "-preset veryfast -movflags +faststart"
-"""Encoding then takes less time than drawing, and the video plays before all of it has been loaded."""
+"""With these, encoding takes less time than drawing, and a player can start before it has loaded the whole file."""
 _COLOURS = "-vf scale=out_color_matrix=bt709:out_range=tv"
-"""Otherwise they are those of SD television, which players do not expect of a larger picture."""
+"""HD colours (BT.709), which players expect of a picture this size; the default is those of SD television."""
 _DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-"""Faults of the disk, which ffmpeg reports in the system's words."""
+"""Errors of the disk. ffmpeg prints the system's message for them."""
 
 
 def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
-    """Write frames of shape (height, width, 3), uint8, as they come: none is kept.
+    """Write frames of shape (height, width, 3), uint8, one at a time, so that memory holds only one.
 
     Raises:
-      RenderingError: if ffmpeg does not work; the message has the last line of what it wrote.
-      OSError: if the disk is full, or broken.
+      RenderingError: if ffmpeg fails; the message has the last line that ffmpeg wrote.
+      OSError: if the disk is full or broken.
     """
-    # mediapy brings matplotlib and IPython, which takes a second or two that only videos should cost.
+    # mediapy imports matplotlib and IPython: a second or two that only videos should take.
     import mediapy
 
     arguments = f"{_FASTER} {_COLOURS}"
@@ -41,17 +41,18 @@ def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height:
         complete = _feed(writer, frames)
         _, messages = writer._popen.communicate()
     finally:
-        if writer._popen is not None:  # mediapy's own end would wait for a process that may never end
+        if writer._popen is not None:  # mediapy would wait for ffmpeg, which may never end by itself
             writer._popen.kill()
             writer._popen.communicate()
     if writer._popen.returncode != 0 or not complete or path.stat().st_size == 0:
-        raise _reason(writer._popen.returncode, messages.decode(errors="replace"))
+        raise _error(writer._popen.returncode, messages.decode(errors="replace"))
 
 
 def _start(writer: "mediapy.VideoWriter") -> None:
-    """Start ffmpeg so that it never receives a signal that ends a command: it is ended by its writer.
+    """Start ffmpeg with signals blocked, so that only this process ends it.
 
-    A terminal sends Ctrl-C to all processes of a command, and an ffmpeg that ended first would look like the fault.
+    A terminal sends Ctrl-C to all processes of a command. If ffmpeg ended first, the interruption would be reported as
+    a fault of ffmpeg.
     """
     import imageio_ffmpeg
     import mediapy
@@ -67,7 +68,7 @@ def _start(writer: "mediapy.VideoWriter") -> None:
 
 
 def _feed(writer: "mediapy.VideoWriter", frames: Iterable[np.ndarray]) -> bool:
-    """Return whether ffmpeg took all frames."""
+    """Pass all frames to ffmpeg, and return False if ffmpeg ended before the last."""
     for frame in frames:
         try:
             writer.add_image(frame)
@@ -76,8 +77,8 @@ def _feed(writer: "mediapy.VideoWriter", frames: Iterable[np.ndarray]) -> bool:
     return True
 
 
-def _reason(status: int, messages: str) -> Exception:
-    """Return the error of an ffmpeg that ended with `status`, or before the video did."""
+def _error(status: int, messages: str) -> Exception:
+    """Return the error to raise for an ffmpeg that failed, from its exit status and the text it wrote."""
     ended = f"it was ended by {signal.Signals(-status).name}" if status < 0 else "it ended before the video did"
     for number in _DISK:
         if os.strerror(number) in messages or (number == errno.EFBIG and "SIGXFSZ" in ended):

@@ -1,4 +1,4 @@
-"""The pictures of a trajectory, one after the other."""
+"""The pictures of a trajectory at given times, drawn one after the other."""
 
 import math
 from collections.abc import Generator
@@ -16,7 +16,7 @@ from mjbeer.model import templates
 from mjbeer.theory.trajectory import Trajectory
 
 CAMERAS = ("side", "quarter", "overview")
-"""From the can's open end; from above and downhill; and from afar, where the whole motion is in the picture."""
+"""A camera at the can's open end; one above and downhill; and one so far away that it shows the whole motion."""
 _TITLES = {
     "sliding": "beer sliding in a can",
     "frozen": "beer frozen to a can",
@@ -24,25 +24,25 @@ _TITLES = {
     "hoop": "weight on a hoop's rim",
 }
 _LARGEST = 4096
-"""Largest width and height [pixels]: what H.264 takes."""
+"""Largest width and height [pixels] that H.264 encoders support."""
 
 
 def draw(
     trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str = "side", speed: float = 1.0
 ) -> Generator[np.ndarray]:
-    """The pictures at some times [s], drawn when asked for, each of shape (height, width, 3), uint8.
+    """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
 
-    `camera` is one of CAMERAS; a playback `speed` other than 1 is written into the picture.
+    `camera` is one of CAMERAS. A playback `speed` other than 1 is written into the picture.
 
     Raises:
-      ParameterError: on a parameter that is not allowed.
-      RenderingError: if there is no OpenGL that works, when the first is drawn.
+      ParameterError: if a parameter is not allowed.
+      RenderingError: while the first picture is drawn, if OpenGL does not work.
     """
     for name, pixels in (("width", width), ("height", height)):
         if require.positive(name, pixels) % 1 != 0 or pixels > _LARGEST:
             raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {pixels!r}")
     require.choice("camera", camera, CAMERAS)
-    return _draw(trajectory, times, int(width), int(height), camera, speed)
+    return _draw(trajectory, times, width=int(width), height=int(height), camera=camera, speed=speed)
 
 
 def _draw(
@@ -56,18 +56,18 @@ def _draw(
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
     with Canvas(model, width, height) as canvas:
         for time, (u, phi, roll, lift) in zip(times, coordinates(trajectory, times), strict=True):
-            display.pose(model, data, scene, u, phi, roll, lift)
-            view, axis = View.of(model, data, camera, width, height), data.body("can").xpos
+            display.pose(model, data, scene, u=u, phi=phi, roll=roll, lift=lift)
+            view, axis = View.of(model, data, camera, width=width, height=height), data.body("can").xpos
             pixels = canvas.draw(data, camera, lambda picture: guides.draw(picture, scene, view, axis))  # noqa: B023
             texts = title, f"t = {time:.{digits}f} s", f"phi = {guides.degrees(phi, '.1f')}"
             yield guides.write(pixels, scene, view, axis, texts)
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
-    """u, phi, roll and lift at some times, shape (times, 4).
+    """Return u [m], phi [rad], roll [rad] and lift [m] at some times [s], shape (times, 4).
 
-    The samples' rates make the cubic between two of them: its error falls as the fourth power of their
-    distance, so that even 20 samples a second move smoothly.
+    Between two samples each is the cubic that has the samples' values and rates. Its error falls as the fourth power
+    of the interval, so that the motion looks smooth even with 20 samples per second.
     """
     samples = np.stack([trajectory.u, trajectory.phi, trajectory.roll, trajectory.lift], axis=1)
     if len(samples) == 1:

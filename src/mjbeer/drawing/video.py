@@ -1,4 +1,4 @@
-"""Videos and single pictures of a trajectory, as files."""
+"""Write a trajectory as a video, or one picture of it as a PNG or an array."""
 
 import contextlib
 import os
@@ -25,15 +25,15 @@ def render(
     camera: str = "side",
     progress: bool = True,
 ) -> None:
-    """Write a trajectory as a video, MP4 with H.264, which appears whole or not at all.
+    """Write a trajectory as a video, MP4 with H.264; if that fails, no file is left and an existing one is kept.
 
-    `fps` are frames per second of the video; `speed` is 1 for real time, 0.25 for four times slower; `camera`
-    is "side" (the can's open end), "quarter" (from above) or "overview" (the whole way). A bar on standard
-    error, where that is a terminal, shows the `progress`.
+    `width` and `height` are in pixels, `fps` in frames per second of the video; `speed` is 1 for real time, 0.25 for
+    four times slower. `camera` is "side" (the can's open end), "quarter" (from above and downhill) or "overview" (the
+    whole motion). If `progress` is true and standard error is a terminal, it shows a progress bar.
 
     Raises:
-      ParameterError: on a parameter that is not allowed.
-      RenderingError: if there is no OpenGL or no ffmpeg that works; the message says what to do.
+      ParameterError: if a parameter is not allowed.
+      RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
     target = _file(path, ".mp4")
@@ -41,18 +41,20 @@ def render(
         if require.number(name, pixels) % 2 != 0:
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
     times = frame_times(trajectory, fps, speed)
-    drawn = frames.draw(trajectory, times, width, height, camera, speed)
+    pictures = frames.draw(trajectory, times, width=width, height=height, camera=camera, speed=speed)
     console = terminal.STDERR if progress else None
     with (
         files.whole(target) as temporary,
-        contextlib.closing(drawn),
+        contextlib.closing(pictures),
         terminal.progress_bar(console, len(times)) as begin,
     ):
-        encoder.encode(_announced(drawn, begin, target.name), temporary, int(width), int(height), fps)
+        counted = _count(pictures, begin, target.name)
+        encoder.encode(counted, temporary, width=int(width), height=int(height), fps=fps)
 
 
-def _announced(drawn: Iterable[np.ndarray], begin: Callable[[str], None], name: str) -> Iterator[np.ndarray]:
-    for picture in drawn:
+def _count(pictures: Iterable[np.ndarray], begin: Callable[[str], None], name: str) -> Iterator[np.ndarray]:
+    """Yield the pictures, and advance the progress bar at each."""
+    for picture in pictures:
         begin(f"drawing {name}")
         yield picture
 
@@ -65,15 +67,15 @@ def save_frame(
     height: int = 720,
     camera: str = "side",
 ) -> None:
-    """Write the picture of a trajectory at a `time` [s] as a PNG, which appears whole or not at all.
+    """Write the picture of a trajectory at a `time` [s] as a PNG, of `width` by `height` pixels.
 
     Raises:
-      ParameterError: on a parameter that is not allowed.
-      RenderingError: if there is no OpenGL that works; the message says what to install.
+      ParameterError: if a parameter is not allowed.
+      RenderingError: if OpenGL does not work; the message names what to install.
       OutputError: if the file cannot be written.
     """
     target = _file(path, ".png")
-    picture = frame(trajectory, time, width, height, camera)
+    picture = frame(trajectory, time, width=width, height=height, camera=camera)
     with files.whole(target) as temporary:
         Image.fromarray(picture).save(temporary)
 
@@ -81,21 +83,22 @@ def save_frame(
 def frame(
     trajectory: Trajectory, time: float, width: int = 1280, height: int = 720, camera: str = "side"
 ) -> np.ndarray:
-    """The picture of a trajectory at a `time` [s], shape (height, width, 3), uint8.
+    """Return the picture of a trajectory at a `time` [s] as an array of shape (height, width, 3), uint8.
 
     Raises:
-      ParameterError: on a parameter that is not allowed.
-      RenderingError: if there is no OpenGL that works; the message says what to install.
+      ParameterError: if a parameter is not allowed.
+      RenderingError: if OpenGL does not work; the message names what to install.
     """
     start, end = float(trajectory.time[0]), float(trajectory.time[-1])
     if not start <= require.number("time", time, "s") <= end:
         raise ParameterError(f"time must be within the trajectory, {start:g} to {end:g} s, got {time!r}")
-    with contextlib.closing(frames.draw(trajectory, np.array([time]), width, height, camera)) as drawn:
-        return next(drawn)
+    pictures = frames.draw(trajectory, np.array([time]), width=width, height=height, camera=camera)
+    with contextlib.closing(pictures):
+        return next(pictures)
 
 
 def frame_times(trajectory: Trajectory, fps: float, speed: float) -> np.ndarray:
-    """The times [s] of the frames of a video, which lasts as long as the trajectory does at its speed.
+    """Return the times [s] of a video's frames; the video lasts as long as the trajectory, divided by `speed`.
 
     Raises:
       ParameterError: if `fps` or `speed` is not greater than 0.

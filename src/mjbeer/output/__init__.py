@@ -1,1 +1,1 @@
-"""Files, tables, plots and the terminal; it knows no physics and imports no other folder."""
+"""Files, tables, plots and the terminal. Nothing here depends on the physics, and no other folder is imported."""

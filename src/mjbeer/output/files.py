@@ -1,4 +1,4 @@
-"""Output files that appear whole or not at all, and folders that one command at a time works in."""
+"""Writing files whole or not at all, and locking a folder so that one command at a time works in it."""
 
 import os
 import pathlib
@@ -13,28 +13,28 @@ from mjbeer.exceptions import OutputError
 
 @contextmanager
 def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
-    """Yield a new hidden file beside `path` to write to; it becomes `path` when all went well, and goes otherwise.
+    """Yield a new hidden file beside `path` to write to; at the end it replaces `path`, or is deleted after an error.
 
-    Open it before a long run: what cannot be written fails at once. What was written is on the disk before it gets
-    its name: a machine that stops leaves all of it, or the old file.
+    Enter this block before a long run, so that a path that cannot be written fails at once. The data are on the disk
+    before the file is renamed: if the machine stops, `path` is either the complete new file or the old one.
 
     Raises:
-      OutputError: if `path` is a folder, a device or read-only, its folder cannot be made or written to, or the disk
-        is full.
+      OutputError: if `path` is a folder, a device or read-only, if its folder cannot be created or written to, or if
+        the disk is full.
     """
-    target = pathlib.Path(os.path.realpath(path))  # a link stays, and what it points to is replaced
+    target = pathlib.Path(os.path.realpath(path))  # a link is kept, and the file that it points to is replaced
     temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
     try:
         if target.exists() and not target.is_file():
             raise OutputError(f"cannot write {path}: it is {'a folder' if target.is_dir() else 'not a regular file'}")
-        if target.exists() and not os.access(target, os.W_OK):  # a rename would replace it even so
+        if target.exists() and not os.access(target, os.W_OK):  # renaming would replace it although it is read-only
             raise OutputError(f"cannot write {path}: it is read-only")
-        _make(target.parent)
+        _create(target.parent)
         try:
             temporary.touch(exist_ok=False)
             yield temporary
-            with temporary.open("rb+") as written:
-                os.fsync(written.fileno())
+            with temporary.open("rb+") as file:
+                os.fsync(file.fileno())
             temporary.replace(target)
         finally:
             temporary.unlink(missing_ok=True)
@@ -44,16 +44,17 @@ def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
 
 @contextmanager
 def locked(folder: pathlib.Path) -> Generator[None]:
-    """Keep other commands from a study that is read from a folder, added to and written back, while the block runs.
+    """Lock a folder while the block runs, so that no other command changes the study in it meanwhile.
 
-    The folder is made if it is not there. The lock ends with its process, however that ends; its hidden file stays.
+    The folder is created if it does not exist. The system releases the lock when the process ends, even if it is
+    killed; the hidden file of the lock stays.
 
     Raises:
-      OutputError: if another command holds the lock, or the folder cannot be made or written to.
+      OutputError: if another command holds the lock, or the folder cannot be created or written to.
     """
     lock = FileLock(folder / ".lock", blocking=False)
     try:
-        _make(folder)
+        _create(folder)
         lock.acquire()
     except Timeout:
         raise OutputError(f"cannot write to {folder}: another command is at work there") from None
@@ -69,14 +70,14 @@ def write(path: str | os.PathLike[str], text: str) -> None:
     """Write a text file, whole or not at all.
 
     Raises:
-      OutputError: if it cannot be written.
+      OutputError: if the file cannot be written.
     """
     with whole(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
-def _make(folder: pathlib.Path) -> None:
-    with suppress(FileExistsError):  # a file in its place makes what comes next fail, with a better reason
+def _create(folder: pathlib.Path) -> None:
+    with suppress(FileExistsError):  # if it is a file, the next step fails with a clearer message
         folder.mkdir(parents=True)
 
 

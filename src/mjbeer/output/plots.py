@@ -1,4 +1,4 @@
-"""Plots in one style, each written as SVG and PNG."""
+"""The style that all plots share, and writing each plot as SVG and PNG."""
 
 import pathlib
 from collections.abc import Generator
@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from mjbeer.output import files
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-"""M. Okabe and K. Ito's palette without its yellow: told apart by colour-blind readers, and on white."""
+"""M. Okabe and K. Ito's palette for colour-blind readers, without its yellow, which is hard to see on white."""
 _STYLE: Any = {
     "axes.grid": True,
     "axes.prop_cycle": cycler(color=COLOURS),
@@ -24,7 +24,7 @@ _STYLE: Any = {
     "grid.alpha": 0.3,
     "legend.frameon": False,
     "svg.fonttype": "none",
-    "svg.hashsalt": "mjbeer",  # with no date in it, the same plot is the same file
+    "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
 }
 
 
@@ -32,9 +32,9 @@ _STYLE: Any = {
 def chart(
     path: pathlib.Path, rows: int = 1, columns: int = 1, width: float = 8, height: float = 5
 ) -> Generator[list[Axes]]:
-    """Axes to draw into, row by row; then `path` with .svg and with .png appear, each whole or not at all.
+    """Yield the axes to draw into, row by row; at the end write `path` with .svg and .png, whole or not at all.
 
-    `width` and `height` are those of the whole plot [inches].
+    `width` and `height` are the size of the whole plot [inches].
 
     Raises:
       OutputError: if a file cannot be written.

@@ -1,4 +1,4 @@
-"""A table that goes to the terminal or into Markdown."""
+"""A table of text that can be printed to the terminal or written as Markdown."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,16 +8,16 @@ import rich.table
 
 @dataclass(frozen=True)
 class Table:
-    """A title, the heads of the columns, and rows of text. `print` of a rich console takes it as it is."""
+    """A title, the headings of the columns, and rows of text. A rich console can print it directly."""
 
     title: str
     columns: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
     left: tuple[int, ...] = (0,)
-    """The columns of words, which are aligned to the left; the others have numbers."""
+    """Indices of the columns that are aligned to the left; the others, of numbers, are aligned to the right."""
 
     def __rich__(self) -> rich.table.Table:
-        """Return the table as rich prints it; cells may have its markup."""
+        """Return the table for rich to print; rich's markup in cells takes effect."""
         table = rich.table.Table(title=self.title)
         for index, name in enumerate(self.columns):
             table.add_column(name, justify="left" if index in self.left else "right")
@@ -26,7 +26,7 @@ class Table:
         return table
 
     def markdown(self, title: bool = True) -> str:
-        """Return the table as Markdown, with its title as a line in bold above it if asked for."""
+        """Return the table as Markdown; `title` says whether the title is in bold above it."""
         heading = [f"**{self.title}**", ""] if title else []
         rule = "|".join("---" if index in self.left else "---:" for index in range(len(self.columns)))
         rows = [f"| {' | '.join(row)} |" for row in (self.columns, *self.rows)]

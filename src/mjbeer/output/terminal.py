@@ -1,4 +1,4 @@
-"""What goes to which stream, where writing may fail; and a progress bar."""
+"""Printing to standard output and standard error, with errors raised if that fails; and a progress bar."""
 
 import errno
 import os
@@ -14,7 +14,7 @@ from mjbeer.exceptions import OutputError
 
 
 class Console(rich.console.Console):
-    """A rich console that raises BrokenPipeError when its reader has gone, instead of exiting."""
+    """A rich console that raises BrokenPipeError when its output is no longer read, instead of ending the program."""
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
@@ -28,22 +28,23 @@ def show(*tables: RenderableType) -> None:
     """Print tables to standard output.
 
     Raises:
-      OutputError: if it cannot be written.
+      OutputError: if standard output cannot be written to.
     """
     with printing():
         STDOUT.print(*tables)
 
 
 def say(text: str, style: str = "") -> None:
-    """Print a line to standard error; names of files may have brackets in them, which are no markup."""
+    """Print a line to standard error. Brackets are printed as they are: names of files may contain them."""
     STDERR.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
 
 
 @contextmanager
 def progress_bar(console: rich.console.Console | None, total: int) -> Generator[Callable[[str], None]]:
-    """Yield a function to call with the name of each of `total` pieces of work when it is begun.
+    """Yield a function to be called at the start of each of `total` pieces of work, with the name of the piece.
 
-    A bar shows the name, how many have been begun and for how long; nothing where the console is no terminal or None.
+    The bar shows the name, how many pieces have been started, and the time since the block began. No bar is shown if
+    `console` is None or not a terminal.
     """
     columns = TextColumn("{task.description}", markup=False), BarColumn(), TextColumn("{task.completed}/{task.total}")
     hidden = console is None or not console.is_terminal
@@ -54,27 +55,27 @@ def progress_bar(console: rich.console.Console | None, total: int) -> Generator[
 
 @contextmanager
 def printing() -> Generator[None]:
-    """What is printed in the block is written to standard output, all of it before the block ends.
+    """Flush standard output at the end of the block, so that an error in writing is raised here.
 
     Raises:
-      OutputError: if it cannot be written, as into a pipe that nobody reads any more.
+      OutputError: if standard output cannot be written to, such as a closed pipe or a full disk.
     """
     try:
         try:
             yield
-        finally:  # --help prints, and ends the program
+        finally:  # also at SystemExit: --help prints and then ends the program
             sys.stdout.flush()
     except OSError as error:
-        # What is left in the buffer would fail once more, with a traceback, when Python ends.
+        # Python flushes the buffer once more when it ends; without this, that would fail with a traceback.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise OutputError(f"cannot write to standard output: {error.strerror or error}") from error
 
 
 def write(text: str) -> None:
-    """Write to standard output, all of it before this returns.
+    """Write a text to standard output, and flush it.
 
     Raises:
-      OutputError: if it cannot be written.
+      OutputError: if standard output cannot be written to.
     """
     with printing():
         sys.stdout.write(text)

@@ -1,1 +1,1 @@
-"""What is measured about the models; all studies share the files here, and do not know each other."""
+"""Studies of the models: validation, benchmark, stability. They share the files here, and none imports another."""

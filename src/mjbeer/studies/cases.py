@@ -1,4 +1,4 @@
-"""The motions that the benchmark measures."""
+"""The standard cases of the studies: five scenes, the start of each motion, and the times of its samples."""
 
 from dataclasses import dataclass
 
@@ -10,24 +10,26 @@ from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 SAMPLES = 65
+"""Samples of each motion, with both ends."""
 INTERVAL = 32e-3
-"""Time between two samples [s]. Every timestep of MuJoCo's integrators is a binary fraction of it, so that all runs
-have the same samples without interpolation."""
+"""Time between two samples [s]. It is a power of two times every timestep tried with MuJoCo's integrators, so that all
+runs have the same samples without interpolation."""
 DURATION = (SAMPLES - 1) * INTERVAL
-"""Length of the motions [s]."""
+"""Duration of the motions [s]."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A scene and how it starts."""
+    """A scene and the start of its motion."""
 
     name: str
     scene: Scene
     phi0: float
-    """Start angle [rad]; all start at rest."""
+    """Initial phi [rad]; phi_dot is 0 at the start."""
     command: str
-    """The scene and its start as the command line has them."""
+    """The scene and its start as arguments of `mjbeer simulate`."""
     story: str
+    """The case in a few words, for titles."""
 
     @property
     def times(self) -> np.ndarray:
@@ -35,24 +37,49 @@ class Case:
         return np.linspace(0, DURATION, SAMPLES)
 
     def truth(self) -> Trajectory:
-        """Return the exact motion at the samples."""
+        """Return the exact motion at the times of the samples."""
         return exact(self.scene, self.times, self.phi0)
 
 
 CASES = {
     case.name: case
     for case in (
-        Case("sliding", sliding(), 1.0, "sliding --phi0 57.3", "beer that slides in a massless can, from 1 rad"),
         Case(
-            "sliding-metal",
-            sliding(can=Can.sheet_metal()),
-            1.0,
-            "sliding --can metal --phi0 57.3",
-            "beer that slides in a metal can, from 1 rad",
+            name="sliding",
+            scene=sliding(),
+            phi0=1.0,
+            command="sliding --phi0 57.3",
+            story="beer that slides in a massless can, from 1 rad",
         ),
-        Case("frozen", frozen(), 0.0, "frozen --phi0 0", "frozen beer, rocking from its surface along the incline"),
-        Case("pendulum", pendulum(), 1.0, "pendulum --phi0 57.3", "a pendulum on the axle of a wheel, from 1 rad"),
-        Case("hoop", hoop(), 0.5, "hoop --phi0 28.65", "a light hoop with a heavy bar on its rim, from 0.5 rad"),
+        Case(
+            name="sliding-metal",
+            scene=sliding(can=Can.sheet_metal()),
+            phi0=1.0,
+            command="sliding --can metal --phi0 57.3",
+            story="beer that slides in a metal can, from 1 rad",
+        ),
+        Case(
+            name="frozen",
+            scene=frozen(),
+            phi0=0.0,
+            command="frozen --phi0 0",
+            story="frozen beer, rocking from its surface along the incline",
+        ),
+        Case(
+            name="pendulum",
+            scene=pendulum(),
+            phi0=1.0,
+            command="pendulum --phi0 57.3",
+            story="a pendulum on the axle of a wheel, from 1 rad",
+        ),
+        Case(
+            name="hoop",
+            scene=hoop(),
+            phi0=0.5,
+            command="hoop --phi0 28.65",
+            story="a light hoop with a heavy bar on its rim, from 0.5 rad",
+        ),
     )
 }
 DEFAULT = ("sliding", "sliding-metal", "frozen", "pendulum")
+"""The cases that the benchmark measures if none is named."""

@@ -1,4 +1,4 @@
-"""What studies check against a bound: by which means, and how far off it may be."""
+"""Check: a quantity to be measured, with the bound of its error. Result: its error, once it is measured."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,25 +6,29 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Result:
-    """A check that was measured."""
+    """The outcome of a check: the error that was measured, beside the bound."""
 
     quantity: str
+    """What was compared with theory."""
     by: str
+    """The scene and the setting that it was measured with."""
     error: float
+    """Size of the deviation, in `unit`."""
     bound: float
+    """Largest error that passes, in `unit`."""
     unit: str
     reason: str
-    """Which error dominates, and so where the bound comes from."""
+    """Which error dominates; the bound follows from it."""
 
     @property
     def passed(self) -> bool:
-        """Whether the error is within its bound; an error that is not a number is not."""
+        """Whether the error is within its bound; NaN never is."""
         return self.error <= self.bound
 
 
 @dataclass(frozen=True)
 class Check:
-    """A quantity to be measured, and its bound."""
+    """A quantity to be measured; the fields are those of Result, but for the function that measures the error."""
 
     quantity: str
     by: str
@@ -32,9 +36,11 @@ class Check:
     unit: str
     reason: str
     deviation: Callable[[], float]
-    """Measures by how much the quantity is off, with its sign."""
+    """Returns by how much the quantity deviates from theory, with its sign."""
 
     def measure(self) -> Result:
         """Measure the quantity and return its error beside its bound."""
         error = abs(float(self.deviation()))
-        return Result(self.quantity, self.by, error=error, bound=self.bound, unit=self.unit, reason=self.reason)
+        return Result(
+            quantity=self.quantity, by=self.by, error=error, bound=self.bound, unit=self.unit, reason=self.reason
+        )

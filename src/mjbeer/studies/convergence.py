@@ -1,4 +1,4 @@
-"""What a ladder of errors shows: an order, a floor, or nothing yet."""
+"""Orders of convergence and floors, read off the errors of runs at ever finer timesteps (a ladder of rungs)."""
 
 from dataclasses import dataclass
 
@@ -12,12 +12,12 @@ from mjbeer.theory.scene import Scene
 
 
 def observed_order(steps: np.ndarray, errors: np.ndarray) -> float:
-    """Return the slope of log(error) over log(step)."""
+    """Return the observed order of convergence: the slope of log(error) over log(step)."""
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
 def ladder(scene: Scene, integrator: str, steps: np.ndarray, duration: float, phi0: float) -> np.ndarray:
-    """Simulate a scene, reduced, at each of a ladder of timesteps [s], and return the errors of phi [rad]."""
+    """Simulate a scene with reduced rolling at each of some timesteps [s], and return the errors of phi [rad]."""
     runs = (simulate(scene, duration, phi0, integrator=integrator, timestep=float(h)) for h in steps)
     return np.array([phi_error(run) for run in runs])
 
@@ -25,42 +25,42 @@ def ladder(scene: Scene, integrator: str, steps: np.ndarray, duration: float, ph
 def order(scene: Scene, integrator: str) -> float:
     """Return the observed order of an integrator on a swing of 0.3 rad, over six halvings of the timestep.
 
-    At order eight six halvings span 14 digits, more than a double has: there the slope is over those
-    rungs of the six halvings, at ratio sqrt(2), whose error is between 1e-3 rad and 1e-13 rad.
+    At order 8 the error falls by 14 digits over six halvings, more than a double has. For DOP853 each halving is
+    therefore two rungs, and only rungs with an error between 1e-3 rad and 1e-13 rad are fitted.
     """
     if integrator != DOP853:
         steps = (4e-2 if integrator == "RK4" else 4e-3) / 2.0 ** np.arange(7)
-        return observed_order(steps, ladder(scene, integrator, steps, 2.0, 0.3))
+        return observed_order(steps, ladder(scene, integrator, steps, duration=2.0, phi0=0.3))
     steps = 0.2 / np.sqrt(2) ** np.arange(13)
-    errors = ladder(scene, integrator, steps, 20.0, 0.3)
-    clear = (errors < 1e-3) & (errors > 1e-13)
-    return observed_order(steps[clear], errors[clear])
+    errors = ladder(scene, integrator, steps, duration=20.0, phi0=0.3)
+    fitted = (errors < 1e-3) & (errors > 1e-13)
+    return observed_order(steps[fitted], errors[fitted])
 
 
 _AGREE = 0.1
-"""How far local orders of one fit may be from their mean."""
+"""Largest difference between a local order and the mean of the rungs that are fitted."""
 _RUNGS = 4
-"""Fewest rungs of a fit."""
+"""Fewest rungs that are fitted."""
 _FLAT = 0.5
-"""A floor is where no later rung has less than this share of the error."""
+"""A rung is at the floor if no later rung has less than this share of its error."""
 _NO_FLOOR = 1e-2
-"""Errors above this [rad] are no floor, whatever a few rungs say: a motion that is off may be so by chance."""
+"""Errors above this [rad] are not taken for a floor: on a motion that far off, rungs may agree by chance."""
 _TOO_LARGE = 0.3
-"""Errors above this [rad] are no longer proportional to anything."""
+"""Errors above this [rad] are too large to be proportional to a power of the timestep."""
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """What the errors of a ladder do as it gets finer."""
+    """How the errors of a ladder change as its rungs get finer."""
 
     kind: str
     """"converging", "floored" or "undecided"."""
     order: float | None = None
-    """The order of the longest stretch of rungs whose local orders agree, before a floor if there is one."""
+    """Order fitted to the longest run of rungs whose local orders agree, before the floor if there is one."""
     floor: float | None = None
-    """The error that it does not get below [rad]."""
+    """The least error at the floor [rad]."""
     since: float | None = None
-    """The setting from which on it does not."""
+    """The coarsest timestep [s] or tolerance at the floor."""
 
     def __str__(self) -> str:
         order = "" if self.order is None else f", order {self.order:.2f}"
@@ -70,10 +70,11 @@ class Convergence:
 
 
 def convergence(steps: ArrayLike, errors: ArrayLike) -> Convergence:
-    """Return what the errors [rad] of a ladder of decreasing timesteps or tolerances show.
+    """Return order and floor of the errors [rad] of a ladder of decreasing timesteps [s] or tolerances.
 
-    An order is fitted to the longest stretch of at least four rungs whose local orders, log(e1/e2)/log(h1/h2), are
-    within 0.1 of their mean; of two as long, to the finer one. A floor needs two rungs that bring nothing.
+    The order is fitted to the longest run of at least four rungs whose local orders, log(e1/e2)/log(h1/h2), are
+    within 0.1 of their mean; of two runs of equal length, to the finer. A floor needs two further rungs whose error is
+    at least half as large.
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
     finite = np.isfinite(errors) & (errors > 0)
@@ -86,7 +87,7 @@ def convergence(steps: ArrayLike, errors: ArrayLike) -> Convergence:
 
 
 def _floor(errors: np.ndarray) -> int | None:
-    """The first of three or more rungs of which no later one has less than half of the error before it."""
+    """Return the index of the first rung at the floor, or None. At least two rungs must follow it."""
     for rung in range(len(errors) - 2):
         if errors[rung:].min() >= _FLAT * errors[rung] and errors[rung] < _NO_FLOOR:
             return rung
@@ -94,15 +95,16 @@ def _floor(errors: np.ndarray) -> int | None:
 
 
 def _order(steps: np.ndarray, errors: np.ndarray) -> float | None:
+    """Return the fitted order, or None if no four rungs in a row agree."""
     best: tuple[int, int, float] | None = None
     for first in range(len(steps)):
         for last in range(first + _RUNGS, len(steps) + 1):
-            part, error = steps[first:last], errors[first:last]
-            if error[0] > _TOO_LARGE:
+            log_steps, log_errors = np.log(steps[first:last]), np.log(errors[first:last])
+            if errors[first] > _TOO_LARGE:
                 continue
-            local = np.diff(np.log(error)) / np.diff(np.log(part))
+            local = np.diff(log_errors) / np.diff(log_steps)
             if np.abs(local - local.mean()).max() <= _AGREE:
-                slope = float(np.polyfit(np.log(part), np.log(error), 1)[0])
+                slope = float(np.polyfit(log_steps, log_errors, 1)[0])
                 if best is None or (last - first, first) >= best[:2]:
                     best = (last - first, first, slope)
     return None if best is None else best[2]

@@ -1,4 +1,4 @@
-"""What all studies share: a file that keeps what was measured, pieces of work, and the machine they ran on."""
+"""Study: results on disk, so that an interrupted study is continued. Task: a piece of it. machine(): where it ran."""
 
 import json
 import os
@@ -18,7 +18,7 @@ _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka", "exudyn")
 
 
 def machine() -> dict[str, Any]:
-    """Return what measured numbers depend on: processor, system, versions."""
+    """Return what run times and rounding depend on: processor, system, and versions of packages."""
     return {
         "processor": _processor(),
         "cores": os.cpu_count(),
@@ -29,15 +29,17 @@ def machine() -> dict[str, Any]:
 
 
 def _processor() -> str:
+    """Return the name of the processor, or at least its architecture."""
     try:
         lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
         return platform.processor() or platform.machine()
-    named = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return named[0] if named else platform.machine()
+    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.machine()
 
 
 def _version(name: str) -> str | None:
+    """Return the version of a package, or None if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:
@@ -46,39 +48,40 @@ def _version(name: str) -> str | None:
 
 @dataclass(frozen=True)
 class Task:
-    """A piece of a long study, of seconds; a study that was interrupted goes on with the next one."""
+    """A piece of a long study that takes seconds; an interrupted study is continued with the first that is missing."""
 
     group: str
-    """The part of the study that it belongs to."""
+    """The part of the study that the task belongs to."""
     name: str
-    """Unique in its group, and shown while it runs."""
+    """A name that is unique in the group; the progress bar shows it."""
     measure: Callable[[], dict[str, Any]]
-    """Does it, and returns what can be kept as JSON."""
+    """Runs the task and returns its results, which must be representable in JSON."""
 
 
 @dataclass
 class Study:
-    """What was measured, with what was asked for and where; a subclass adds what it measures as fields."""
+    """Results with the settings and the machine that they belong to; subclasses add the results as fields."""
 
     command: ClassVar[str]
     """The command that writes such a study."""
     settings: dict[str, Any]
-    """What was asked for."""
+    """What was to be measured, such as the cases and whether the study is quick."""
     machine: dict[str, Any]
+    """What `machine()` returned when the study began."""
 
     @classmethod
     def begin(cls, path: pathlib.Path, settings: dict[str, Any], console: Console) -> Self:
-        """Return the study in a file if it was made with these settings on this machine, or else an empty one.
+        """Return the study in a file if it has these settings and is of this machine, or else an empty one.
 
         Raises:
-          ParameterError: if the file is no such study.
+          ParameterError: if the file exists and is not such a study.
         """
         empty = cls(settings, machine())
         if path.exists():
-            kept = cls.load(path)
-            if (kept.settings, kept.machine) == (empty.settings, empty.machine):
+            stored = cls.load(path)
+            if (stored.settings, stored.machine) == (empty.settings, empty.machine):
                 console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
-                return kept
+                return stored
         return empty
 
     @classmethod
@@ -86,7 +89,7 @@ class Study:
         """Return the study in a file.
 
         Raises:
-          ParameterError: if the file is missing, or no such study of this version.
+          ParameterError: if the file is missing, or is not such a study of this version.
         """
         try:
             return cls.read(json.loads(path.read_text(encoding="utf-8")))
@@ -95,14 +98,14 @@ class Study:
 
     @classmethod
     def read(cls, document: dict[str, Any]) -> Self:
-        """Return the study that a JSON document has."""
+        """Return the study in a JSON document."""
         return cls(**document)
 
     def save(self, path: pathlib.Path) -> None:
         """Write the study to a file, whole or not at all.
 
         Raises:
-          OutputError: if it cannot be written.
+          OutputError: if the file cannot be written.
         """
         files.write(path, self.json())
 

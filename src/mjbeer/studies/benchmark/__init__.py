@@ -1,1 +1,1 @@
-"""`mjbeer benchmark` and `mjbeer advise`: error against run time."""
+"""`mjbeer benchmark` measures error against run time; `mjbeer advise` picks a setting from what it measured."""

@@ -1,4 +1,4 @@
-"""What the stages of a step cost a scene that does not need them."""
+"""How much longer a step takes with stages of MuJoCo that the scene does not need."""
 
 import time
 from collections.abc import Callable
@@ -25,10 +25,11 @@ _STAGES = {
 
 
 def ablate() -> list[dict[str, Any]]:
-    """For each case and two integrators, the time of a step with one more stage over that of a step without.
+    """Return a row for each of three cases and two integrators: run times of a step with a stage that it does not need.
 
-    "clock" is MuJoCo's statistics of its own run time, "visuals" a model that can be drawn; "everything" is the
-    model that can be drawn, with the clock and all of MuJoCo's stages. Interleaved, least of seven.
+    "step" is the time [s] of a step without such stages; the others are ratios to it, by the name of the stage. "clock"
+    is MuJoCo's statistics of its own run time, "visuals" a model with geoms to be drawn, and "everything" that model
+    with the clock and all stages. The stages take turns, and of seven run times each the least is taken.
     """
     rows = []
     for name in ("sliding", "frozen", "pendulum"):
@@ -40,20 +41,21 @@ def ablate() -> list[dict[str, Any]]:
                     begin = time.perf_counter()
                     loop()
                     times[stage].append(time.perf_counter() - begin)
-            least = {stage: min(each) for stage, each in times.items()}
-            ratios = {stage: each / least["nothing"] for stage, each in least.items() if stage != "nothing"}
+            least = {stage: min(seconds) for stage, seconds in times.items()}
+            ratios = {stage: seconds / least["nothing"] for stage, seconds in least.items() if stage != "nothing"}
             rows.append({"case": name, "integrator": integrator, "step": least["nothing"] / _STEPS, **ratios})
     return rows
 
 
 def _loops(name: str, integrator: str) -> dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]]:
+    """Return a function for each stage that runs `_STEPS` steps of a case with it; "nothing" is without any."""
     case = CASES[name]
     lean = build(case.scene, integrator=integrator)
     loops = {"nothing": _loop(name, lean)}
     for stage, flags in _STAGES.items():
         model = build(case.scene, integrator=integrator)
         if not model.opt.disableflags & int(flags):
-            continue  # it needs that one
+            continue  # the model needs this stage
         model.opt.disableflags &= ~int(flags)
         loops[stage] = _loop(name, model)
     loops["clock"] = _loop(name, lean, nullcontext)
@@ -63,6 +65,7 @@ def _loops(name: str, integrator: str) -> dict[str, Callable[[], tuple[np.ndarra
 
 
 def _drawable(name: str, integrator: str, disabled: int) -> mujoco.MjModel:
+    """Return the model of a case with geoms to be drawn, with the stages in the flags `disabled`."""
     model = build(CASES[name].scene, visuals=True, integrator=integrator)
     model.opt.disableflags = disabled
     return model

@@ -1,4 +1,4 @@
-"""The settings that the benchmark tries: ways of rolling, integrators, ladders of timesteps and tolerances."""
+"""The settings that the benchmark tries: ways of rolling and integrators, each with its timesteps or tolerances."""
 
 import math
 from dataclasses import dataclass, replace
@@ -10,57 +10,62 @@ from mjbeer.theory.scene import Scene
 TIMESTEP, TOLERANCE = "timestep", "tolerance"
 _COARSEST, _RUNGS = 16e-3, 10
 _COARSEST_DOP853, _RUNGS_DOP853 = 128e-3, 15
+"""Coarsest timestep [s] of a ladder, and its number of timesteps; of DOP853 here, of MuJoCo's integrators above."""
 _QUICK_RUNGS = 6
 
 
 @dataclass(frozen=True, order=True)
 class Curve:
-    """A way of rolling with a method: one line of a work-precision diagram."""
+    """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
 
     way: str
-    """A way of rolling, one of the usual ways of writing it, or the name of a peer."""
+    """A way of rolling, the name of a setting as people usually write it (USUAL), or the name of another tool."""
     method: str
-    """An integrator; a peer has its own."""
+    """The integrator; empty for another tool, which has its own."""
     knob: str
     """What is varied along the curve: "timestep" [s] or "tolerance"."""
 
     @property
     def label(self) -> str:
-        """Its name in tables and plots."""
+        """The name of the curve in tables and plots."""
         method = f"{self.method} to a tolerance" if self.method and self.knob == TOLERANCE else self.method
-        return ", ".join(each for each in (self.way, method) if each)
+        return ", ".join(part for part in (self.way, method) if part)
 
     def setting(self, value: float) -> Setting:
-        """The setting of mjbeer's own that a value of the knob stands for."""
+        """Return the setting of mjbeer for a `value` of the knob: a timestep [s] or a tolerance [rad]."""
         if self.knob == TOLERANCE:
             return Setting(self.way, tolerance=value)
         if self.way in USUAL:
             return replace(USUAL[self.way], integrator=self.method, timestep=value)
-        return Setting(self.way, self.method, value)
+        return Setting(self.way, self.method, timestep=value)
 
 
 def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
-    """The curves of mjbeer's own models, each with its ladder, coarsest first.
+    """Return the curves of mjbeer's own models, each with its timesteps [s] or tolerances [rad], coarsest first.
 
-    MuJoCo's integrators halve their timestep; DOP853 starts with larger ones and has two rungs for each halving.
-    `quick` ladders end at 0.5 ms and are wider.
+    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger one and halves it
+    in two rungs. With `quick`, the timesteps of MuJoCo's integrators end at 0.5 ms, and those of DOP853 halve in one
+    rung; tolerances are a factor of 1000 apart.
     """
     steps = tuple(_COARSEST / 2**k for k in range(_QUICK_RUNGS if quick else _RUNGS))
     large = tuple(_COARSEST_DOP853 / 2 ** (k / 2) for k in range(0, _RUNGS_DOP853, 2 if quick else 1))
-    asked = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
-    found: dict[Curve, tuple[float, ...]] = {}
+    allowed = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
+    ladders: dict[Curve, tuple[float, ...]] = {}
     for way in ROLLINGS:
         if not supported(scene, way):
             continue
-        found |= {Curve(way, each, TIMESTEP): steps for each in INTEGRATORS}
-        found[Curve(way, DOP853, TIMESTEP)] = large
-        found[Curve(way, DOP853, TOLERANCE)] = asked
-    for written, setting in USUAL.items():
+        ladders |= {Curve(way, integrator, TIMESTEP): steps for integrator in INTEGRATORS}
+        ladders[Curve(way, DOP853, TIMESTEP)] = large
+        ladders[Curve(way, DOP853, TOLERANCE)] = allowed
+    for name, setting in USUAL.items():
         if supported(scene, setting.rolling):
-            found[Curve(written, setting.integrator, TIMESTEP)] = (setting.timestep,)
-    return found
+            ladders[Curve(name, setting.integrator, TIMESTEP)] = (setting.timestep,)
+    return ladders
 
 
 def aligned(timestep: float) -> bool:
-    """Whether samples fall on steps, or as many steps on samples: without interpolation, errors fall evenly."""
+    """Return whether the interval between samples is a power of two times the timestep [s], or the reverse.
+
+    Samples then need no interpolation, whose error would hide the order of the integrator.
+    """
     return math.frexp(timestep / INTERVAL)[0] == 0.5  # a power of two

@@ -1,4 +1,4 @@
-"""One setting measured: its errors against exact theory, of the model and of the integrator, and its run time."""
+"""Measure one setting: its error against exact theory, the shares of model and integrator in it, and its run time."""
 
 import time
 from collections.abc import Callable
@@ -18,40 +18,40 @@ from mjbeer.theory.measure import distance
 from mjbeer.theory.trajectory import Trajectory
 
 _FINE = 1e-13
-"""Local tolerance of the run that tells a model's error from its integrator's."""
-_PATIENCE = 50_000
-"""Most evaluations of that run."""
+"""Local tolerance of the run that separates a model's error from its integrator's."""
+_MOST_EVALUATIONS = 50_000
+"""Most evaluations of the accelerations in that run."""
 _SHORT = 0.05
-"""Runs under this [s] are repeated once, untimed, before they are timed: caches and branch predictors warm."""
+"""A run shorter than this [s] is timed twice and the first time dropped, so that caches and predictors are warm."""
 
 
 @dataclass(eq=False)
 class Rung:
-    """A point of the study, and what runs it: set up once, run often."""
+    """A point of the benchmark with the function that runs it, which is set up once and run often."""
 
     case: Case
     point: Point
     peer: Peer | None
-    """The other tool whose point it is; None for mjbeer's own models."""
+    """The other tool that the point is of; None for mjbeer's own models."""
 
     @cached_property
     def prepared(self) -> Prepared:
-        """The scene in the setting of the point, for mjbeer's own models."""
+        """The scene in the setting of the point; only for mjbeer's own models."""
         return Prepared(self.case.scene, self.point.curve.setting(self.point.value))
 
     @cached_property
     def run(self) -> Callable[[], Solution] | Callable[[], Motion]:
-        """A function that integrates the motion from its start at every call: all that is timed."""
+        """A function that integrates the motion from its start at every call; only these calls are timed."""
         case = self.case
         if self.peer is not None:
-            return self.peer.prepare(case.scene, case.phi0, 0.0, case.times, self.point.value)
+            return self.peer.prepare(case.scene, phi0=case.phi0, phi_dot0=0.0, times=case.times, knob=self.point.value)
         return partial(self.prepared.solve, self.prepared.start(case.phi0, 0.0), case.times)
 
     def measure(self, truth: Trajectory) -> None:
-        """Run once, and fill in everything of the point but its run times.
+        """Run once, and store everything in the point but its run times.
 
         Raises:
-          UnsupportedError: if there is no such model.
+          UnsupportedError: if MuJoCo or the other tool has no model of the scene.
           DivergenceError, ToleranceError: if the run fails.
         """
         begin = time.perf_counter()
@@ -71,25 +71,28 @@ class Rung:
             self.point.impedance, self.point.effective_impedance = soft.impedance, soft.effective_impedance
 
     def seconds(self) -> float:
-        """Run time [s] of one warm run."""
-        taken = 0.0
+        """Return the run time [s] of one run with warm caches."""
+        duration = 0.0
         for _ in range(2):
             begin = time.perf_counter()
             self.run()
-            taken = time.perf_counter() - begin
-            if taken > _SHORT:
+            duration = time.perf_counter() - begin
+            if duration > _SHORT:
                 break
-        return taken
+        return duration
 
     def _split_error(self, motion: Coordinates, truth: Trajectory) -> None:
-        """Find the model's own error and the integrator's, by a run of the same model with hardly any of the latter.
+        """Store the errors of the model and of the integrator in the point.
 
-        A model that is too stiff for that run, or not smooth, is left without.
+        The same model is run once more with hardly any error of the integrator. A model that is too stiff or not
+        smooth enough for that run gets neither of the two.
         """
         prepared, case = self.prepared, self.case
         start, scale = prepared.start(case.phi0, 0.0), scales(prepared.model, case.scene)
         try:
-            states = Integrator(prepared.model).run(start, case.times, tolerance=_FINE, scale=scale, limit=_PATIENCE)
+            states = Integrator(prepared.model).run(
+                start, case.times, tolerance=_FINE, scale=scale, limit=_MOST_EVALUATIONS
+            )
         except DivergenceError:
             return
         fine, radius = prepared.coordinates(states, case.times), case.scene.can.radius

@@ -1,4 +1,4 @@
-"""The work-precision diagram: one panel a scene, error over run time."""
+"""The work-precision diagram: error over run time, with one panel for each scene."""
 
 import pathlib
 from typing import Any
@@ -17,13 +17,17 @@ from mjbeer.studies.cases import CASES
 _METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2}
 """Colours of the integrators."""
 _LINES = {"reduced": ("-", "o"), "equality": ("--", "s"), "contact": (":", "^")}
+"""Lines and markers of the ways of rolling."""
 _USUAL = {"equality, slide first": "X", "equality, hinge first": "P", "contact, defaults": "*"}
+"""Markers of models as people usually write them."""
 _PEERS = "#777777"
+"""Colour of other tools."""
 _FLOOR = 1e-15
+"""Smaller errors [rad] are drawn here, since a logarithmic axis has no zero."""
 
 
 def draw(study: Benchmark, path: pathlib.Path) -> None:
-    """Write `path` with .svg and with .png.
+    """Draw the diagram of a study, and write it to `path` with .svg and with .png.
 
     Raises:
       OutputError: if a file cannot be written.
@@ -31,7 +35,7 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
     cases = study.cases
     columns = min(2, len(cases))
     rows = -(-len(cases) // columns)
-    with chart(path, rows, columns, 7.5 * columns, 6.2 * rows + 1.4) as panels:
+    with chart(path, rows=rows, columns=columns, width=7.5 * columns, height=6.2 * rows + 1.4) as panels:
         for axes, case in zip(panels, cases, strict=False):
             _panel(axes, study, case)
         for axes in panels[len(cases) :]:
@@ -44,10 +48,10 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
 
 
 def _panel(axes: Axes, study: Benchmark, case: str) -> None:
+    """Draw the points of a case, the front, and the prediction for semi-implicit Euler."""
     points = study.of(case)
-    for curve in dict.fromkeys(each.curve for each in points):
-        found = [each for each in points if each.curve == curve]
-        times, errors = [1e3 * each.time for each in found], [max(each.error, _FLOOR) for each in found]
+    for curve in dict.fromkeys(point.curve for point in points):
+        times, errors = _coordinates([point for point in points if point.curve == curve])
         if curve.way in USUAL:
             style: dict[str, Any] = {
                 "linestyle": "none",
@@ -57,11 +61,16 @@ def _panel(axes: Axes, study: Benchmark, case: str) -> None:
             }
             axes.plot(times, errors, label=f"as usually written, 2 ms: {curve.way}", zorder=4, **style)
         elif curve.way in ROLLINGS:
-            _line(axes, curve, times, errors)
+            _line(axes, curve, times=times, errors=errors)
         else:
             axes.plot(times, errors, "-", color=_PEERS, linewidth=1, marker=".", markersize=4, label="other tools")
             axes.annotate(
-                curve.way, (times[-1], errors[-1]), (3, -9), textcoords="offset points", color="#555555", fontsize=8
+                curve.way,
+                xy=(times[-1], errors[-1]),
+                xytext=(3, -9),
+                textcoords="offset points",
+                color="#555555",
+                fontsize=8,
             )
     _front(axes, points)
     _prediction(axes, case, points)
@@ -70,12 +79,18 @@ def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     axes.title.set_fontsize(11)
 
 
+def _coordinates(points: list[Point]) -> tuple[list[float], list[float]]:
+    """Return run times [ms] and errors [rad] of points, as they are drawn."""
+    return [1e3 * point.time for point in points], [max(point.error, _FLOOR) for point in points]
+
+
 def _line(axes: Axes, curve: Curve, times: list[float], errors: list[float]) -> None:
+    """Draw a curve of mjbeer's own models: markers are hollow for runs to a tolerance."""
     line, marker = _LINES[curve.way]
     colour = COLOURS[_METHODS[curve.method]]
-    asked = curve.knob == TOLERANCE
-    face = "white" if asked else colour
-    label = f"{curve.method}{' to a tolerance' if asked else ''}, {curve.way}"
+    adaptive = curve.knob == TOLERANCE
+    face = "white" if adaptive else colour
+    label = f"{curve.method}{' to a tolerance' if adaptive else ''}, {curve.way}"
     style: dict[str, Any] = {
         "linestyle": line,
         "marker": marker,
@@ -87,30 +102,30 @@ def _line(axes: Axes, curve: Curve, times: list[float], errors: list[float]) -> 
 
 
 def _front(axes: Axes, points: list[Point]) -> None:
-    """The settings of mjbeer's that no other beats, the cheapest for each second decade by name."""
+    """Draw the front of mjbeer's own settings, and name the fastest for every second decade of error."""
     best = frontier.front(frontier.ours(points))
-    times, errors = [1e3 * each.time for each in best], [max(each.error, _FLOOR) for each in best]
+    times, errors = _coordinates(best)
     axes.plot(
         times, errors, color=COLOURS[2], linewidth=7, alpha=0.25, solid_capstyle="round", label="the best", zorder=1
     )
-    named = {}
+    labelled = {}
     for level in frontier.LEVELS:
         point = frontier.cheapest(best, level)
         if point is not None:
-            named[id(point)] = point
-    for point in named.values():
-        where = (1e3 * point.time, max(point.error, _FLOOR))
+            labelled[id(point)] = point  # one point may be the fastest for several levels
+    for point in labelled.values():
+        place = (1e3 * point.time, max(point.error, _FLOOR))
         name = setting(point) + ("" if point.way == "reduced" else f", {point.way}")
-        axes.annotate(name, where, (-7, -3), textcoords="offset points", ha="right", fontsize=8)
+        axes.annotate(name, xy=place, xytext=(-7, -3), textcoords="offset points", ha="right", fontsize=8)
 
 
 def _prediction(axes: Axes, case: str, points: list[Point]) -> None:
-    """What backward error analysis says of semi-implicit Euler, drawn over its points' run times."""
-    euler = [each for each in points if each.way == "reduced" and each.method == "Euler"]
+    """Draw the error of semi-implicit Euler that backward error analysis predicts, at the measured run times."""
+    euler = [point for point in points if point.way == "reduced" and point.method == "Euler"]
     if not euler:
         return
-    model = CASES[case]
-    slope = float(abs(euler_error(model.scene, model.times, model.phi0)).max())
-    times = [1e3 * each.time for each in euler]
+    start = CASES[case]
+    slope = float(abs(euler_error(start.scene, start.times, start.phi0)).max())
+    times = [1e3 * point.time for point in euler]
     style: dict[str, Any] = {"color": "#000000", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 5}
-    axes.plot(times, [slope * each.value for each in euler], label="Euler as theory predicts", **style)
+    axes.plot(times, [slope * point.value for point in euler], label="Euler as theory predicts", **style)

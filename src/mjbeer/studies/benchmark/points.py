@@ -1,4 +1,4 @@
-"""A study of error against run time: its points, as JSON and as CSV."""
+"""The results of a benchmark: a Point for each setting, and the Benchmark that has them all, as JSON and as CSV."""
 
 import csv
 import dataclasses
@@ -18,7 +18,10 @@ from mjbeer.theory.trajectory import Trajectory
 
 @dataclass
 class Point:
-    """A setting and what was measured with it. Errors are against exact theory."""
+    """A setting with what was measured with it; errors are against exact theory.
+
+    `case` is the name of the case; `way`, `method` and `knob` are those of the Curve.
+    """
 
     case: str
     way: str
@@ -29,46 +32,46 @@ class Point:
     phi_max: float = math.nan
     """Largest error of phi over the run [rad]."""
     phi_end: float = math.nan
-    """Error of phi at its end [rad]."""
+    """Error of phi at the end of the run [rad]."""
     u_max: float = math.nan
-    """Largest error of u/a over the run [rad]."""
+    """Largest error of u/a over the run, with a the can's radius [rad]."""
     u_end: float = math.nan
-    """Error of u/a at its end [rad]."""
+    """Error of u/a at the end of the run [rad]."""
     slip_max: float | None = None
     """Largest slip [radii]."""
     slip_integral: float | None = None
-    """Integral of the slip's size over the run [radii s]."""
+    """Integral of the absolute slip over time [radii s]."""
     energy_drift: float | None = None
     """The largest change of energy, with its sign, over the largest kinetic energy of the swing."""
     pressed: bool | None = None
-    """Whether the motion needed N > 0 throughout."""
+    """Whether the normal force of the motion was positive throughout."""
     model_error: float | None = None
-    """Error of phi and u/a of the same model under DOP853 at a tolerance of 1e-13 [rad]."""
+    """Largest error of phi and u/a of the same model, integrated with DOP853 to a local tolerance of 1e-13 [rad]."""
     integrator_error: float | None = None
-    """Distance of the run from that [rad]."""
+    """Largest distance of the run from that more exact run [rad]."""
     timeconst: float | None = None
-    """solref's time constant as asked for [s]."""
+    """Time constant of the soft constraint as set in solref [s]."""
     effective_timeconst: float | None = None
-    """The one that the solver got [s]."""
+    """Time constant that the solver used [s]."""
     impedance: float | None = None
-    """Share of the force of a hard constraint, as asked for."""
+    """Impedance as set in solimp: the share of the force of a hard constraint."""
     effective_impedance: float | None = None
-    """The share that it had."""
+    """Share of the force of a hard constraint that the solver applied."""
     setup: float = math.nan
-    """Time to build the model and whatever else is done once [s]."""
+    """Time to build the model and for all else that is done once [s]."""
     failure: str | None = None
-    """Why there is no error."""
+    """The message of the exception if the run failed."""
     times: list[float] = field(default_factory=list)
-    """Run times of the repeats [s]."""
+    """Run times in the rounds [s]."""
 
     @property
     def curve(self) -> Curve:
-        """The curve that it is on."""
+        """The curve that the point is on."""
         return Curve(self.way, self.method, self.knob)
 
     @property
     def error(self) -> float:
-        """Largest error of phi and u/a over the run [rad]; infinite if it failed."""
+        """Largest error of phi and u/a over the run [rad]; infinite if the run failed."""
         worst = max(self.phi_max, self.u_max)
         return worst if math.isfinite(worst) else math.inf
 
@@ -83,14 +86,14 @@ class Point:
         return statistics.median(self.times) if self.times else math.nan
 
     def judge(self, phi: np.ndarray, u: np.ndarray, truth: Trajectory) -> None:
-        """Fill in the errors of phi [rad] and u [m] at the samples of the exact motion."""
+        """Store the errors of phi [rad] and u [m], given at the samples of the exact motion."""
         radius = truth.scene.can.radius
         phi_error, u_error = np.abs(phi - truth.phi), np.abs(u - truth.u) / radius
         self.phi_max, self.phi_end = float(phi_error.max()), float(phi_error[-1])
         self.u_max, self.u_end = float(u_error.max()), float(u_error[-1])
 
     def describe(self, run: Trajectory) -> None:
-        """Fill in slip, energy drift and whether the can was pressed to the incline throughout."""
+        """Store the slip, the energy drift, and whether the normal force was positive throughout."""
         radius = run.scene.can.radius
         slip = np.abs(run.slip) / radius
         self.slip_max, self.slip_integral = float(slip.max()), float(np.trapezoid(slip, run.time))
@@ -101,22 +104,22 @@ class Point:
 
 @dataclass
 class Benchmark(Study):
-    """A study of error against run time: points in the order in which they were measured."""
+    """A study of error against run time; its points are in the order in which they were measured."""
 
     command = "mjbeer benchmark"
     points: list[Point] = field(default_factory=list)
     ablation: list[dict[str, Any]] = field(default_factory=list)
-    """What each stage of a step costs, as ratios."""
+    """Rows of `ablation.ablate`: the cost of each stage of a step."""
 
     @classmethod
     def read(cls, document: dict[str, Any]) -> Self:
-        """Return the study that a JSON document has."""
+        """Return the study in a JSON document."""
         study = super().read(document)
         study.points = [Point(**point) for point in document["points"]]
         return study
 
     def json(self) -> str:
-        """Return the study as a JSON document, a line a point."""
+        """Return the study as a JSON document with one line for each point."""
         head = json.dumps({"settings": self.settings, "machine": self.machine, "ablation": self.ablation}, indent=1)
         lines = [json.dumps(_known(point), allow_nan=False) for point in self.points]
         return head[: head.rindex("}")] + ',\n "points": [\n' + ",\n".join(lines) + "\n]}\n"
@@ -131,8 +134,8 @@ class Benchmark(Study):
         return list(dict.fromkeys(point.case for point in self.points))
 
     def csv(self) -> str:
-        """Return a line a point: its setting, its errors and its least and median run time; empty where unknown."""
-        names = [each.name for each in dataclasses.fields(Point) if each.name != "times"]
+        """Return CSV with a line for each point: setting, errors, least and median run time; empty where unknown."""
+        names = [column.name for column in dataclasses.fields(Point) if column.name != "times"]
         text = io.StringIO()
         writer = csv.DictWriter(text, [*names, "error", "time_min", "time_median", "repeats"], lineterminator="\n")
         writer.writeheader()
@@ -145,7 +148,7 @@ class Benchmark(Study):
 
 
 def _known(point: Point) -> dict[str, Any]:
-    """Return what is known of a point; JSON has no number for the rest. Times to a nanosecond."""
+    """Return the fields of a point that are known and finite, with run times to a nanosecond; JSON lacks NaN."""
     values = {name: value for name, value in dataclasses.asdict(point).items() if value is not None}
     values["times"] = [round(time, 9) for time in point.times]
     return {name: value for name, value in values.items() if not isinstance(value, float) or math.isfinite(value)}

@@ -1,4 +1,4 @@
-"""What the benchmark writes: the points as CSV, the diagram, and a summary with the tables."""
+"""Write the results of a benchmark: the points as CSV, the diagram, and a summary with the tables."""
 
 import pathlib
 
@@ -6,16 +6,16 @@ from mjbeer.output import files
 from mjbeer.studies.benchmark import overview, plots, predicted, tables
 from mjbeer.studies.benchmark.points import Benchmark
 
-_READ = """
-Run time is that of one warm call that returns 65 samples of 2.048 s of motion, in one thread: the least of the
-repeats. Building models and compiling is in a column of its own (points.csv). Errors are against exact theory; `of
-the model` is the error of the same model integrated to 1e-13 a step, which by itself leaves 1e-12 or so, and `of the
-integrator` the distance of the run from that.
+_NOTES = """
+The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
+least of the rounds. The time to build and compile a model is not part of it; points.csv has it in a column of its own.
+Errors are against exact theory. `of the model` is the error of the same model integrated to 1e-13 a step, which is
+itself accurate to about 1e-12, and `of the integrator` is the distance of the run from that more exact one.
 """
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
-    """Write points.csv, the diagrams work_precision and overview (.svg and .png), and last summary.md.
+    """Write points.csv, the diagrams work_precision and overview (.svg and .png) and, as the last, summary.md.
 
     Raises:
       OutputError: if a file cannot be written.
@@ -26,11 +26,15 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
     results = [*tables.tables(study), predicted.table()]
     versions = ", ".join(f"{name} {number}" for name, number in study.machine["versions"].items())
     lines = [
-        "# mjbeer: error against run time", "",
+        "# mjbeer: error against run time",
+        "",
         f"{study.machine['processor']}, {study.machine['system']}, Python {study.machine['python']}; {versions}.",
-        *_absent(study), _READ, "![Work-precision diagram](work_precision.svg)", "",
+        *_absent(study),
+        _NOTES,
+        "![Work-precision diagram](work_precision.svg)",
+        "",
         *(table.markdown() for table in results),
-    ]  # fmt: skip
+    ]
     files.write(folder / "summary.md", "\n".join(lines))
 
 

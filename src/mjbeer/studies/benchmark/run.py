@@ -1,4 +1,4 @@
-"""Error against run time: every integrator and every way of rolling, measured side by side."""
+"""Run the benchmark: measure the error of every setting, then time all settings in rounds."""
 
 import gc
 import pathlib
@@ -22,65 +22,67 @@ from mjbeer.studies.convergence import convergence
 REPEATS = 5
 """Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all settings alike."""
 _ENOUGH = 5
-"""Fewest rungs before a ladder may end at its floor."""
+"""Fewest rungs of a ladder that ends at its floor."""
 
 
 def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Console) -> Benchmark:
-    """Measure cases, and return the study kept in `folder` as study.json; what is there of one like it is used.
+    """Measure the cases of some names, write the study to study.json in `folder`, and return it.
 
-    A peer that cannot be imported takes no part; the study's settings have its name and the reason.
+    A peer that cannot be imported takes no part; the settings of the study have its name and the reason.
 
-    First each ladder is climbed down once for its errors, to its floor; then every setting is timed, in rounds.
-    The file is written after each ladder and each case of a round, so that an interrupted run goes on from there.
+    First each ladder is run once for its errors, from its coarsest rung down to its floor. Then every setting is timed,
+    in rounds. The file is written after each ladder and after each case of a round. If it is there already, from the
+    same settings and machine, the study is continued.
 
     Raises:
-      ParameterError: on a case that does not exist, or a study.json that is something else.
+      ParameterError: if a case does not exist, or study.json is not a benchmark.
       OutputError: if the file cannot be written.
     """
     cases = [CASES[require.choice("scene", name, CASES)] for name in names]
     path = folder / "study.json"
-    asked = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": absent()}
-    found = Benchmark.begin(path, asked, console)
-    (folder / "summary.md").unlink(missing_ok=True)  # it would be that of another study
+    settings = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": absent()}
+    study = Benchmark.begin(path, settings, console)
+    (folder / "summary.md").unlink(missing_ok=True)  # an earlier summary would not match the study
     peers = {peer.name: peer for peer in installed()}
-    rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in found.points]
+    rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in study.points]
     ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
-    known = {(point.case, point.curve) for point in found.points}
+    measured = {(point.case, point.curve) for point in study.points}
     with progress_bar(console, len(ladders) + REPEATS * len(cases) + 1) as begin:
         for case, curve, values in ladders:
             begin(f"errors: {case.name}, {curve.label}")
-            if (case.name, curve) not in known:
-                climbed = list(_climb(case, curve, values, peers.get(curve.way)))
-                rungs += climbed
-                found.points += [rung.point for rung in climbed]
-                found.save(path)
+            if (case.name, curve) not in measured:
+                ladder = list(_climb(case, curve, values, peers.get(curve.way)))
+                rungs += ladder
+                study.points += [rung.point for rung in ladder]
+                study.save(path)
         for repeat in range(REPEATS):
             for case in cases:
                 begin(f"run times: {case.name}, round {repeat + 1}")
                 if _time([rung for rung in rungs if rung.case == case], repeat + 1):
-                    found.save(path)
+                    study.save(path)
         begin("what each stage of a step costs")
-        if not found.ablation:
-            found.ablation = ablate()
-            found.save(path)
-    return found
+        if not study.ablation:
+            study.ablation = ablate()
+            study.save(path)
+    return study
 
 
 def _curves(case: Case, peers: dict[str, Peer], quick: bool) -> dict[Curve, tuple[float, ...]]:
-    found = curves.curves(case.scene, quick)
+    """Return the curves of a case with their ladders, of mjbeer's models and of other tools."""
+    ladders = curves.curves(case.scene, quick)
     for peer in peers.values():
         knobs = peer.knobs[:6] if peer.knob == TIMESTEP else peer.knobs[::2]
-        found[Curve(peer.name, "", peer.knob)] = knobs if quick else peer.knobs
-    return found
+        ladders[Curve(peer.name, "", peer.knob)] = knobs if quick else peer.knobs
+    return ladders
 
 
 def _climb(case: Case, curve: Curve, values: Sequence[float], peer: Peer | None) -> Iterator[Rung]:
-    """The rungs of a ladder, measured, down to its floor, or to its second failure."""
+    """Measure and yield the rungs of a ladder, down to its floor or to its second failure."""
     truth, failures = case.truth(), 0
     steps: list[float] = []
     errors: list[float] = []
     for value in values:
-        point = Point(case.name, curve.way, curve.method, curve.knob, value)
+        point = Point(case=case.name, way=curve.way, method=curve.method, knob=curve.knob, value=value)
         rung = Rung(case, point, peer)
         try:
             rung.measure(truth)
@@ -91,17 +93,17 @@ def _climb(case: Case, curve: Curve, values: Sequence[float], peer: Peer | None)
                 steps.append(value)
                 errors.append(point.error)
         yield rung
-        # What a tolerance leaves may stay the same over some decades: it is met by steps that are finer anyway.
+        # Not for tolerances: the error may stay the same over some decades where the timesteps are finer than needed.
         floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and convergence(steps, errors).kind == "floored"
         if floored or (failures > 1 and errors):
             return
 
 
 def _time(rungs: Sequence[Rung], repeat: int) -> bool:
-    """Time each rung once more that has been timed less often than that; whether there was any."""
+    """Time each rung that has fewer than `repeat` run times once more, and return whether there was any."""
     todo = [rung for rung in rungs if rung.point.failure is None and len(rung.point.times) < repeat]
     for rung in todo:
-        if "run" not in vars(rung):  # it was measured before an interruption
+        if "run" not in vars(rung):  # the study was continued: set the rung up and warm its caches
             rung.run()
     gc.collect()
     gc.disable()

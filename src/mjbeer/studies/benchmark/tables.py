@@ -1,4 +1,4 @@
-"""The tables of a study: cheapest settings, comparisons, convergence, stages of a step."""
+"""The tables of a benchmark: fastest settings, comparisons, orders of convergence, and the cost of a step's stages."""
 
 import math
 
@@ -10,19 +10,23 @@ from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.convergence import Convergence, convergence
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
-"""The errors [rad] at which others are compared with the best setting."""
+"""The errors [rad] at which run times are compared with that of the best setting."""
 
 
 def tables(study: Benchmark) -> list[Table]:
     """Return the tables of a study, in the order in which they are shown."""
-    found = [cheapest(study, case) for case in study.cases]
-    found += [others(study), tolerances(study), usual(study)]
-    found += [ladders(study, case) for case in study.cases]
-    return [*found, stages(study)]
+    return [
+        *(cheapest(study, case) for case in study.cases),
+        others(study),
+        tolerances(study),
+        usual(study),
+        *(ladders(study, case) for case in study.cases),
+        stages(study),
+    ]
 
 
 def setting(point: Point) -> str:
-    """Return a setting in a few words."""
+    """Return the setting of a point in a few words: its method, and its timestep [ms] or its tolerance."""
     knob = f"{point.value:g}" if point.knob == TOLERANCE else milliseconds(point.value)
     return f"{point.method} {'to ' if point.knob == TOLERANCE else ''}{knob}".strip()
 
@@ -33,7 +37,7 @@ def milliseconds(time: float) -> str:
 
 
 def cheapest(study: Benchmark, case: str) -> Table:
-    """Return the cheapest setting of a case for each error and way of rolling, with its run time."""
+    """Return the fastest setting of a case for each error and way of rolling, with its run time."""
     points = study.of(case)
     ways = [way for way in ROLLINGS if any(point.way == way for point in points)]
     rows = []
@@ -47,7 +51,7 @@ def cheapest(study: Benchmark, case: str) -> Table:
 
 
 def others(study: Benchmark) -> Table:
-    """Return run times of others over that of the best reduced setting, at equal error."""
+    """Return run times of RK4 and of other tools over that of the best reduced setting, at equal error."""
     names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
     rows = []
     for case in study.cases:
@@ -64,20 +68,20 @@ def others(study: Benchmark) -> Table:
 
 
 def tolerances(study: Benchmark) -> Table:
-    """Return what it costs not to know the timestep: runs to a tolerance beside the best fixed timesteps."""
+    """Return the run times of DOP853 to a tolerance beside those with the best fixed timestep, known in advance."""
     rows = []
     for case in study.cases:
         for digits in range(3, 13):
-            fixed, asked = frontier.fixed_and_global(study.of(case), 10.0**-digits)
-            if fixed and asked:
-                row = (f"{case}, 1e-{digits}", milliseconds(fixed.time), milliseconds(asked.time))
-                rows.append((*row, f"{asked.time / fixed.time:.2f}", f"{asked.error:.1e}"))
+            fixed, adaptive = frontier.fixed_and_global(study.of(case), 10.0**-digits)
+            if fixed and adaptive:
+                row = (f"{case}, 1e-{digits}", milliseconds(fixed.time), milliseconds(adaptive.time))
+                rows.append((*row, f"{adaptive.time / fixed.time:.2f}", f"{adaptive.error:.1e}"))
     columns = ("tolerance [rad]", "fixed timestep", "to the tolerance", "ratio", "its error [rad]")
     return Table("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
 
 
 def usual(study: Benchmark) -> Table:
-    """Return the errors of models as people usually write them, beside their tuned twins in the same time."""
+    """Return the errors of models as people usually write them, and by how much the tuned models are better."""
     rows = []
     for case in study.cases:
         points = study.of(case)
@@ -94,7 +98,7 @@ def usual(study: Benchmark) -> Table:
 
 
 def ladders(study: Benchmark, case: str) -> Table:
-    """Return what each ladder of timesteps shows, and where the error of its finest rung comes from, if known."""
+    """Return the order and the floor of each ladder of timesteps, and the parts of the error at its finest rung."""
     rows = []
     for curve in dict.fromkeys(point.curve for point in study.points if point.case == case):
         points = [point for point in study.of(case) if point.curve == curve]
@@ -109,13 +113,13 @@ def ladders(study: Benchmark, case: str) -> Table:
 
 
 def convergence_of(points: list[Point]) -> Convergence:
-    """Return what the points of a curve show, by the rungs that need no interpolation."""
-    even = [point for point in points if point.method != DOP853 or aligned(point.value)]
-    return convergence([point.value for point in even], [point.error for point in even])
+    """Return order and floor of the points of a curve, from the rungs whose samples need no interpolation."""
+    exact = [point for point in points if point.method != DOP853 or aligned(point.value)]
+    return convergence([point.value for point in exact], [point.error for point in exact])
 
 
 def stages(study: Benchmark) -> Table:
-    """Return what the stages of a step cost a scene that does not need them."""
+    """Return how much longer a step takes with stages that the scene does not need."""
     names = list(dict.fromkeys(name for row in study.ablation for name in row if name not in ("case", "integrator")))
     rows = []
     for row in study.ablation:

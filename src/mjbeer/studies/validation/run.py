@@ -1,4 +1,4 @@
-"""Every check of the validation, and every claim of the audit, measured."""
+"""validate(): measure every check against theory and every claim of the paper's audit."""
 
 from dataclasses import dataclass
 
@@ -13,12 +13,12 @@ from mjbeer.studies.validation import motions
 
 @dataclass(frozen=True)
 class Validation:
-    """What was measured."""
+    """The results of a validation."""
 
     results: list[Result]
-    """Of the checks against exact theory."""
+    """Results of the checks against exact theory."""
     findings: list[Finding]
-    """Of the audit of the paper."""
+    """Findings of the audit of the paper."""
 
     @property
     def passed(self) -> bool:
@@ -27,7 +27,7 @@ class Validation:
 
 
 def validate(console: Console) -> Validation:
-    """Measure every check and every claim, with a progress bar on `console`, and return the results."""
+    """Measure every check and every claim, and return the results; `console` shows a progress bar."""
     checks, claims = motions.checks(), chapters.claims()
     results, findings = [], []
     with progress_bar(console, len(checks) + len(claims)) as begin:

@@ -1,4 +1,4 @@
-"""The tables of the validation, for the terminal, Markdown and JSON."""
+"""The tables of the validation, for the terminal and for Markdown, and its results as JSON."""
 
 import dataclasses
 import json
@@ -17,7 +17,7 @@ _SHORT = ("printed", "right", "at most", "row")
 
 
 def validation(results: list[Result], document: bool = False) -> Table:
-    """Return the table of checks: with a verdict for the terminal, with what dominates the error for a `document`."""
+    """Return the table of checks; the last column is the verdict or, for a `document`, what dominates the error."""
     rows = [
         (
             result.quantity,
@@ -33,27 +33,27 @@ def validation(results: list[Result], document: bool = False) -> Table:
 
 
 def audit(findings: list[Finding], document: bool = False) -> Table:
-    """Return the audit of the paper: with a verdict on each row for the terminal, with its reason for a `document`."""
+    """Return the table of the audit; the last column has a verdict or, for a `document`, what dominates the error."""
     columns = ("equation", "quantity", "verdict", "witness")
     columns += ("error, printed", "error, right", "at most", "what dominates") if document else _SHORT
-    rows = []
-    for finding in findings:
-        failed = "" if finding.passed or not document else _FAILED
-        rows.append((
+    rows = [
+        (
             finding.equation,
             finding.quantity,
             finding.verdict,
             finding.witness,
             f"{finding.printed:.1e}" if finding.misses_by is None else f"{finding.printed:.2g}",
             "" if finding.right is None else f"{finding.right:.1e}",
-            f"{finding.bound:.1e}{failed}",
+            f"{finding.bound:.1e}" + ("" if finding.passed or not document else _FAILED),
             finding.reason if document else _VERDICTS[finding.passed],
-        ))  # fmt: skip
+        )
+        for finding in findings
+    ]
     return Table("The paper, equation by equation", columns, rows, left=(0, 1, 2, 3, 7))
 
 
 def to_json(validation: Validation) -> str:
-    """Return the results and the findings as JSON, with the versions that they were measured with."""
+    """Return the results and the findings as JSON, with the versions of the packages that were used."""
     versions = {name: version(name) for name in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
     content = {
         "versions": versions,
@@ -65,7 +65,7 @@ def to_json(validation: Validation) -> str:
 
 
 def _record(row: Result | Finding) -> dict[str, Any]:
-    """The fields of a row; JSON has no number for what is infinite or none."""
+    """Return the fields of a row for JSON: infinity and NaN, which JSON lacks, become null."""
     fields = dataclasses.asdict(row) | {"passed": row.passed}
     unknown = {name for name, value in fields.items() if isinstance(value, float) and not math.isfinite(value)}
     return fields | dict.fromkeys(unknown)

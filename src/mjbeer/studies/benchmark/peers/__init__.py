@@ -1,1 +1,1 @@
-"""Other tools on the same scenes, to be timed beside MuJoCo."""
+"""Other tools, to be timed on the same scenes as MuJoCo."""

@@ -8,7 +8,7 @@ p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and
     sliding:  phi_ddot = (p cos(phi) - (q + swing phi_dot^2 cos(phi)) sin(phi)) / (base + swing sin^2(phi)),
               u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),                  eqs. (46), (47)
 
-with A of footnote 4. Each needs one sine and one cosine.
+with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine.
 """
 
 import math
@@ -25,18 +25,18 @@ RightHandSide = Callable[[float, Sequence[float]], tuple[float, ...]]
 def right_hand_side(
     scene: Scene, sin: Callable[[Any], Any] = math.sin, cos: Callable[[Any], Any] = math.cos
 ) -> RightHandSide:
-    """The rates of change f(t, state) of a scene's state [rad, m, and per s].
+    """Return the function f(t, state) that gives the rates of change of a scene's state [rad, m, and per s].
 
-    It reads the state as plain floats: given NumPy's scalars, it takes four times as long. With the `sin` and `cos` of
-    another kind of number it computes with that kind: symbols give symbols.
+    Pass the state as plain floats: with NumPy's scalars the function takes four times as long. With the `sin` and `cos`
+    of a library of symbols, it returns symbols.
     """
     return _frozen(scene, sin, cos) if scene.attachment == "frozen" else _sliding(scene, sin, cos)
 
 
 def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
-    """The state when a motion starts at `phi0` [rad] and `phi_dot0` [rad/s], with the axis where `Scene.start` has it.
+    """Return the initial state for `phi0` [rad] and `phi_dot0` [rad/s], with u and u_dot from `Scene.start`.
 
-    One entry a variable, in the order of `right_hand_side`.
+    The variables are in the order of `right_hand_side`.
     """
     if scene.attachment == "frozen":
         return phi0, phi_dot0
@@ -45,7 +45,7 @@ def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
 
 
 def coordinates(scene: Scene, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """phi [rad] and u [m] of states, one row a sample."""
+    """Return phi [rad] and u [m] of states with one row for each sample."""
     if scene.attachment == "frozen":
         return states[:, 0], scene.can.radius * states[:, 0]
     return states[:, 1], states[:, 0]

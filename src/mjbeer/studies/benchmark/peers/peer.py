@@ -1,6 +1,6 @@
-"""Other tools on the same scenes, to be timed beside MuJoCo: SciPy here, heyoka and EXUDYN in modules of their own.
+"""Peer: another tool that computes the motion of a scene, to be timed beside MuJoCo.
 
-SciPy and heyoka integrate the equations of motion that one derives by hand; EXUDYN is given bodies and joints.
+SciPy and heyoka integrate equations of motion derived by hand; EXUDYN assembles its own from bodies and joints.
 """
 
 import math
@@ -15,33 +15,34 @@ from mjbeer.exceptions import DivergenceError, ParameterError
 from mjbeer.theory.scene import Scene
 
 Motion = tuple[np.ndarray, np.ndarray]
-"""phi [rad] and u [m], one row a sample."""
+"""phi [rad] and u [m], with one entry for each sample."""
 Integrate = Callable[[], Motion]
+"""A function that integrates a motion from its start and returns it."""
 
 
 @dataclass(frozen=True)
 class Peer:
-    """A tool that computes the motion of a scene, and how finely it can be asked to."""
+    """A tool that computes the motion of a scene, with the ladder of its accuracies."""
 
     name: str
     knob: str
-    """What its accuracy is set by: "tolerance" or "timestep"."""
+    """What sets the accuracy: "tolerance" or "timestep"."""
     unit: str
     """Unit of the knob; a tolerance has none."""
     knobs: tuple[float, ...]
-    """The ladder of settings, finest last."""
+    """The ladder of tolerances or timesteps, finest last."""
     set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate] = field(repr=False)
-    """What `prepare` calls when it has checked its arguments."""
+    """The function that `prepare` calls with the arguments that it has checked."""
 
     def prepare(self, scene: Scene, phi0: float, phi_dot0: float, times: ArrayLike, knob: float) -> Integrate:
-        """Do once all that a motion needs but its integration: equations, models, compilation.
+        """Set up a motion, and return a function that integrates it from its start at every call.
 
-        `phi0` [rad] and `phi_dot0` [rad/s] are the start, `times` [s] the samples, the first at 0, and `knob` the
-        setting, of `knobs` or any other. What comes back integrates the motion from its start at every call, and is
-        all that is to be timed. It raises DivergenceError, with the tool's own words, if the tool fails.
+        `phi0` [rad] and `phi_dot0` [rad/s] are the start, `times` [s] the samples, the first at 0, and `knob` is a
+        tolerance or a timestep, of `knobs` or any other. Equations, models and compilation are done here, so that only
+        calls of the function need be timed. It raises DivergenceError, with the tool's message, if the tool fails.
 
         Raises:
-          ParameterError: on a start, times or a setting that make no sense, or that the tool cannot keep to.
+          ParameterError: if the start, the times or `knob` are not allowed, or are not possible with the tool.
           UnsupportedError: if the tool has no model of the scene.
         """
         phi0, phi_dot0 = require.start(phi0, phi_dot0)
@@ -50,7 +51,7 @@ class Peer:
 
         def integrate() -> Motion:
             phi, u = solve()
-            # What is not finite once stays so, and to ask every sample would be a fifth of heyoka's time.
+            # The last is enough: a value that is not finite stays so. To test all would take a fifth of heyoka's time.
             if phi.shape != times.shape or not (math.isfinite(phi[-1]) and math.isfinite(u[-1])):
                 raise DivergenceError(f"{self.name}: the motion did not stay finite until {times[-1]:g} s")
             return phi, u
@@ -59,11 +60,16 @@ class Peer:
 
 
 def decades(first: int, last: int) -> tuple[float, ...]:
-    """The tolerances 10^-first to 10^-last."""
+    """Return the tolerances 10^-first to 10^-last, each a tenth of the one before."""
     return tuple(float(f"1e-{digits}") for digits in range(first, last + 1))
 
 
 def _samples(times: ArrayLike) -> np.ndarray:
+    """Return the times [s] of the samples as an array.
+
+    Raises:
+      ParameterError: unless they are finite and increasing, and the first is 0.
+    """
     values = np.array(times, dtype=float)
     if (
         values.ndim != 1

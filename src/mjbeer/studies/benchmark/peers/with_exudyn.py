@@ -1,13 +1,14 @@
 """EXUDYN: a multibody engine with a joint that rolls without slipping (https://github.com/jgerstmayr/EXUDYN).
 
-The can is a plane rigid body with ObjectJointRollingDisc to the ground, x down the incline and y away from it, and
-gravity tilted; a sliding load is a second body on a revolute joint, a frozen one part of the can.
+The can is a plane rigid body that an ObjectJointRollingDisc keeps rolling on the ground; x points down the incline, y
+away from it, and gravity is tilted. A sliding load is a second body on a revolute joint; a frozen load is part of the
+can.
 
 The integrator is EXUDYN's TrapezoidalIndex2: the implicit trapezoidal rule with constraints on velocities. Its error
-falls as the square of the timestep all the way down the ladder, and the joint does not limit it: over 2 s a can slips
-by 1e-12 of its radius and does not lift at all. Generalized-alpha is the same at a spectral radius of 1, and 1 % worse
-at its default of 0.9; modified Newton iterations cost as much or more; and with the reference point of the load at its
-centre of mass instead of on the axis, errors double.
+falls as the square of the timestep over the whole ladder, and the joint does not limit it: over 2 s a can slips by
+1e-12 of its radius and does not lift at all. Three alternatives were tried. Generalized-alpha has the same error at a
+spectral radius of 1, and 1 % more at its default of 0.9; modified Newton iterations take as long or longer; and with
+the reference point of the load at its centre of mass instead of on the axis, errors double.
 """
 
 from collections.abc import Generator
@@ -20,8 +21,9 @@ from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.studies.benchmark.peers.peer import Integrate, Motion, Peer
 from mjbeer.theory.scene import Scene
 
-# What Newton's iteration leaves is then 1 % of the rule's own error at the finest timestep. EXUDYN's defaults, 1e-8 and
-# 1e-10, spoil the order below 0.1 ms; 1e-12 and 1e-14 take an iteration more for that last 1 %.
+# With these tolerances of Newton's iteration, its error is 1 % of the trapezoidal rule's at the finest timestep.
+# EXUDYN's defaults, 1e-8 and 1e-10, reduce the order below 0.1 ms; 1e-12 and 1e-14 need an iteration more to remove
+# the 1 %.
 _RELATIVE, _ABSOLUTE = 1e-10, 1e-12
 _COARSEST, _RUNGS = 0.016, 10
 _ROUNDING = 1e-9  # of a time, in units of the step
@@ -40,17 +42,17 @@ def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
         except exudyn.SolverError as error:
             raise DivergenceError(f"EXUDYN: {error} at {system.sys['dynamicSolver'].it.currentTime:g} s") from error
         # Columns of a sensor: time, x, y and the angle, which is positive uphill.
-        axis, turned = (system.GetSensorStoredData(sensor) for sensor in sensors)
-        return -turned[:, 3], axis[:, 1]
+        can, load = (system.GetSensorStoredData(sensor) for sensor in sensors)
+        return -load[:, 3], can[:, 1]
 
     return integrate
 
 
 def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, Any]]:
-    """The assembled system, and the sensors of the can's and the load's coordinates.
+    """Return the assembled system, and the sensors of the can's and the load's coordinates.
 
     Raises:
-      UnsupportedError: on a sliding load in a can without mass.
+      UnsupportedError: if the load slides in a can without mass.
     """
     import exudyn
     from exudyn.itemInterface import (
@@ -75,7 +77,7 @@ def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, 
     radius, slope, normal = can.radius, np.sin(scene.incline), np.cos(scene.incline)
 
     def body(angle: float, rate: float, mass: float, inertia: float, offset: float) -> tuple[Any, Any]:
-        """A body whose reference point is on the axis, its centre of mass `offset` below; inertia about the axis."""
+        """Add a body with its centre of mass `offset` below the axis; return its marker on the axis, and its sensor."""
         node = system.AddNode(
             NodeRigidBody2D(
                 referenceCoordinates=[0, radius, 0],
@@ -109,7 +111,7 @@ def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, 
     system.AddObject(
         ObjectJointRollingDisc(
             markerNumbers=[ground, rolling],
-            constrainedAxes=[0, 1, 1],  # a plane body cannot move sideways as it is
+            constrainedAxes=[0, 1, 1],  # a plane body cannot move sideways anyway
             discRadius=radius,
             discAxis=[0, 0, 1],
             planeNormal=[0, 1, 0],
@@ -120,10 +122,10 @@ def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, 
 
 
 def _settings(times: np.ndarray, timestep: float) -> Any:
-    """Settings of the solver that store a sample at every one of the times.
+    """Return settings of the solver with which it stores a sample at each of the times [s].
 
     Raises:
-      ParameterError: unless these are evenly spaced, by a whole number of timesteps.
+      ParameterError: unless the times are evenly spaced, by a whole number of timesteps.
     """
     import exudyn
 
@@ -152,7 +154,7 @@ def _settings(times: np.ndarray, timestep: float) -> Any:
 
 @contextmanager
 def _silence() -> Generator[None]:
-    """Keep EXUDYN's reports of a failure off the terminal: they are raised."""
+    """Keep EXUDYN from printing failures to the terminal: they are raised as exceptions."""
     from exudyn import config
 
     before, config.printToConsole = config.printToConsole, False
@@ -162,4 +164,10 @@ def _silence() -> Generator[None]:
         config.printToConsole = before
 
 
-PEER = Peer("EXUDYN", "timestep", "s", tuple(_COARSEST / 2**rung for rung in range(_RUNGS)), _set_up)
+PEER = Peer(
+    name="EXUDYN",
+    knob="timestep",
+    unit="s",
+    knobs=tuple(_COARSEST / 2**rung for rung in range(_RUNGS)),
+    set_up=_set_up,
+)

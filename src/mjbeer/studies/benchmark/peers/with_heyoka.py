@@ -1,7 +1,8 @@
-"""heyoka: Taylor's method of any order, compiled for the very equations (https://github.com/bluescarni/heyoka.py).
+"""heyoka: Taylor's method, compiled for the equations of one scene (https://github.com/bluescarni/heyoka.py).
 
-A tool for one system of equations and no general engine, and so the one to be beaten by. A tolerance is compiled in:
-set-up takes up to a third of a second each time, a run then less than a third of a millisecond.
+Its code is specific to these equations, where MuJoCo is a general engine: of all tools it is the one expected to be
+faster. The tolerance is compiled in: set-up takes up to a third of a second for each, and a run then less than a third
+of a millisecond.
 """
 
 from collections.abc import Generator
@@ -14,14 +15,14 @@ from mjbeer.studies.benchmark.peers import equations
 from mjbeer.studies.benchmark.peers.peer import Integrate, Motion, Peer, decades
 from mjbeer.theory.scene import Scene
 
-_MOST_STEPS = 1_000_000  # a run of seconds takes hundreds; without a limit it may go on for ever
+_MOST_STEPS = 1_000_000  # a run over seconds takes hundreds; without a limit it may never end
 
 
 def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Integrate:
     import heyoka
 
     start = np.array(equations.start(scene, phi0, phi_dot0))
-    grid = times.tolist()  # which heyoka takes in faster than an array
+    grid = times.tolist()  # heyoka reads a list faster than an array
     variables = heyoka.make_vars(*(f"x{index}" for index in range(len(start))))
     rates = equations.right_hand_side(scene, heyoka.sin, heyoka.cos)(0.0, variables)
     with _uncached():
@@ -42,7 +43,7 @@ def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
 
 @contextmanager
 def _uncached() -> Generator[None]:
-    """Compile anew: heyoka keeps compiled code, also on disk, and set-up would cost what was compiled before it."""
+    """Turn off heyoka's caches of compiled code, so that the time of set-up does not depend on what ran before."""
     from heyoka import llvm_state
 
     before = llvm_state.get_diskcache_enabled()
@@ -54,4 +55,4 @@ def _uncached() -> Generator[None]:
         llvm_state.set_diskcache_enabled(before)
 
 
-PEER = Peer("heyoka", "tolerance", "", decades(3, 16), _set_up)
+PEER = Peer(name="heyoka", knob="tolerance", unit="", knobs=decades(3, 16), set_up=_set_up)

@@ -1,4 +1,4 @@
-"""SciPy's integrators on equations of motion written by hand."""
+"""SciPy's integrators DOP853, LSODA and odeint, on equations of motion written by hand."""
 
 import warnings
 from collections.abc import Callable, Generator
@@ -11,12 +11,14 @@ from mjbeer.studies.benchmark.peers import equations
 from mjbeer.studies.benchmark.peers.peer import Integrate, Motion, Peer, decades
 from mjbeer.theory.scene import Scene
 
-_FINEST = 2.3e-14  # below 100 eps, SciPy's solve_ivp replaces rtol, with a warning
-_MOST_EVALUATIONS = 1_000_000  # of a run of solve_ivp, which has no limit; runs of seconds need thousands
+_FINEST = 2.3e-14  # solve_ivp replaces an rtol below 100 eps, with a warning
+_MOST_EVALUATIONS = 1_000_000  # of a run of solve_ivp, which has no limit of its own; runs over seconds need thousands
 _MOST_STEPS = 100_000  # of odeint between two samples; its default is 500
 
 
 def _solve_ivp(method: str) -> Callable[[Scene, float, float, np.ndarray, float], Integrate]:
+    """Return the function that sets up a motion for a method of solve_ivp."""
+
     def set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob: float) -> Integrate:
         from scipy.integrate import solve_ivp
 
@@ -24,15 +26,17 @@ def _solve_ivp(method: str) -> Callable[[Scene, float, float, np.ndarray, float]
         span, relative = (0.0, float(times[-1])), max(knob, _FINEST)
 
         def integrate() -> Motion:
-            left = iter(range(_MOST_EVALUATIONS))
+            remaining = iter(range(_MOST_EVALUATIONS))
 
-            def counted(time: float, state: np.ndarray) -> tuple[float, ...]:
-                next(left)
+            def count_and_evaluate(time: float, state: np.ndarray) -> tuple[float, ...]:
+                next(remaining)
                 return rates(time, state.tolist())
 
             try:
-                with _complaints():
-                    solution = solve_ivp(counted, span, start, method, times, rtol=relative, atol=knob)
+                with _warnings_as_errors():
+                    solution = solve_ivp(
+                        count_and_evaluate, span, start, method=method, t_eval=times, rtol=relative, atol=knob
+                    )
             except StopIteration:
                 raise DivergenceError(
                     f"SciPy {method}: {_MOST_EVALUATIONS} evaluations did not reach {span[1]:g} s"
@@ -51,23 +55,23 @@ def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
 
     rates, start = equations.right_hand_side(scene), equations.start(scene, phi0, phi_dot0)
 
-    def listed(time: float, state: np.ndarray) -> tuple[float, ...]:
+    def evaluate(time: float, state: np.ndarray) -> tuple[float, ...]:
         return rates(time, state.tolist())
 
     def integrate() -> Motion:
-        with _complaints():
-            states = odeint(listed, start, times, rtol=knob, atol=knob, tfirst=True, mxstep=_MOST_STEPS)
+        with _warnings_as_errors():
+            states = odeint(evaluate, start, times, rtol=knob, atol=knob, tfirst=True, mxstep=_MOST_STEPS)
         return equations.coordinates(scene, states)
 
     return integrate
 
 
 @contextmanager
-def _complaints() -> Generator[None]:
-    """Make errors of SciPy's warnings: odeint says by a warning alone that what it returns is not the solution.
+def _warnings_as_errors() -> Generator[None]:
+    """Turn SciPy's warnings into errors: if odeint fails, it only warns, and still returns numbers.
 
     Raises:
-      DivergenceError: with SciPy's words, also where a state has become too large for a sine.
+      DivergenceError: with SciPy's message; also if a state is too large for a sine.
     """
     try:
         with warnings.catch_warnings():
@@ -77,7 +81,8 @@ def _complaints() -> Generator[None]:
         raise DivergenceError(f"SciPy: {error}") from error
 
 
-DOP853 = Peer("SciPy DOP853", "tolerance", "", decades(3, 13), _solve_ivp("DOP853"))
-LSODA = Peer("SciPy LSODA", "tolerance", "", decades(3, 13), _solve_ivp("LSODA"))
-ODEINT = Peer("SciPy odeint", "tolerance", "", decades(3, 13), _odeint)
-"""The method of LSODA, in a loop that is compiled."""
+_LADDER = decades(3, 13)
+DOP853 = Peer(name="SciPy DOP853", knob="tolerance", unit="", knobs=_LADDER, set_up=_solve_ivp("DOP853"))
+LSODA = Peer(name="SciPy LSODA", knob="tolerance", unit="", knobs=_LADDER, set_up=_solve_ivp("LSODA"))
+ODEINT = Peer(name="SciPy odeint", knob="tolerance", unit="", knobs=_LADDER, set_up=_odeint)
+"""The method of LSODA, in a compiled loop."""
