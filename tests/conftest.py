@@ -17,7 +17,7 @@ from mjbeer.studies.benchmark.peers.installed import absent
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED"):
     os.environ.pop(each, None)
 
-_no_opengl = functools.cache(opengl.lack)
+_no_opengl = functools.cache(opengl.problem)
 """Asked once a process, before any test makes OpenGL fail."""
 
 

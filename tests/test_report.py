@@ -116,11 +116,11 @@ def test_without_opengl_a_report_has_all_but_films_and_says_so(
 ) -> None:
     stubs.validate(monkeypatch, first=error)
     calls = stubs.draw(monkeypatch)
-    monkeypatch.setattr(opengl, "lack", lambda: "no OpenGL")
+    monkeypatch.setattr(opengl, "problem", lambda: "no OpenGL")
     assert main(["report", "--output", str(tmp_path)]) == status
     assert not calls
     assert set(os.listdir(tmp_path)) == {"validation.json", "summary.md", "paper"}
-    assert set(os.listdir(tmp_path / "paper")) == {"told.svg", "stories.md"}
+    assert set(os.listdir(tmp_path / "paper")) == {"letters.svg", "letters.png", "told.svg", "stories.md"}
     line = opengl.missing([*(f"{film}.mp4" for film in FILMS), "paper/told.mp4"])
     assert capsys.readouterr().err.endswith(f"{line}\n")
     summary = (tmp_path / "summary.md").read_text()

@@ -67,7 +67,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         validation = validate(console)
         (folder / "summary.md").unlink(missing_ok=True)
         files.write(folder / "validation.json", tables.to_json(validation))
-        drawn = {} if opengl.lack() else _FILMS
+        drawn = {} if opengl.problem() else _FILMS
         for name, film in drawn.items():
             trajectory = film.trajectory()
             render(trajectory, folder / f"{name}.mp4", *size, film.speed)

@@ -111,7 +111,7 @@ def test_a_hang_is_survived(monkeypatch: pytest.MonkeyPatch) -> None:
 @linux
 def test_what_is_lacking_is_what_would_be_raised(monkeypatch: pytest.MonkeyPatch) -> None:
     _failing(monkeypatch, "egl", "osmesa")
-    lacking = opengl.lack()
+    lacking = opengl.problem()
     with pytest.raises(RenderingError) as caught:
         opengl.context(16, 16)
     assert lacking == str(caught.value)
@@ -120,7 +120,7 @@ def test_what_is_lacking_is_what_would_be_raised(monkeypatch: pytest.MonkeyPatch
 @linux
 def test_nothing_is_lacking_where_a_backend_works(monkeypatch: pytest.MonkeyPatch) -> None:
     _failing(monkeypatch, "egl")
-    assert opengl.lack() is None
+    assert opengl.problem() is None
 
 
 def test_the_line_on_missing_films_names_them_and_what_to_install() -> None:

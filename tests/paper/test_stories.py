@@ -98,9 +98,9 @@ def test_without_opengl_the_films_are_missing_and_named(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     stubs.draw(monkeypatch)
-    monkeypatch.setattr(opengl, "lack", lambda: "no OpenGL")
+    monkeypatch.setattr(opengl, "problem", lambda: "no OpenGL")
     assert main(["paper", "--films", "--output", str(tmp_path)]) == 0
-    assert set(os.listdir(tmp_path)) == {"told.svg", "stories.md"}
+    assert set(os.listdir(tmp_path)) == {*SKETCH, "told.svg", "stories.md"}
     text, line = (tmp_path / "stories.md").read_text(), opengl.missing(["told.mp4"])
     assert f"Films: {line}\n" in text
     assert "[Film]" not in text

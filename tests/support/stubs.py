@@ -99,7 +99,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
         files.write(path.with_name(f"{path.name}.svg"), "plot")
 
     film = Film(0.5, lambda: exact(sliding(), [0.0, 0.1], 0.1))
-    monkeypatch.setattr(opengl, "lack", lambda: None)
+    monkeypatch.setattr(opengl, "problem", lambda: None)
     monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     for name in ("render", "save_frame"):
         monkeypatch.setattr(video, name, stub(name, getattr(video, name)))

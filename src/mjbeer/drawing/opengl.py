@@ -79,8 +79,8 @@ def backend() -> str:
     raise RenderingError(f"no off-screen OpenGL{only}:\n  {because}\n{REMEDY}")
 
 
-def lack() -> str | None:
-    """Return None if pictures can be drawn here, or what the RenderingError would say."""
+def problem() -> str | None:
+    """Return why no picture can be drawn here, or None if one can."""
     try:
         if sys.platform == "linux":
             backend()
@@ -92,8 +92,8 @@ def lack() -> str | None:
 
 
 def missing(films: Sequence[str]) -> str:
-    """Return the line that says which films there are not for lack of OpenGL, and what brings them."""
-    return f"not drawn, for there is no OpenGL: {', '.join(films)}; this brings it to Debian and Ubuntu: {INSTALL}"
+    """Return the line that names the films that are missing because there is no OpenGL, and what installs it."""
+    return f"not drawn because there is no OpenGL: {', '.join(films)}; on Debian and Ubuntu this installs it: {INSTALL}"
 
 
 def keep_out() -> None:

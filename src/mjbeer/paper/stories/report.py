@@ -33,28 +33,28 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
     from mjbeer.drawing import opengl
     from mjbeer.drawing.video import render
 
-    told = stories()
-    names = [f"{story.name}.mp4" for story in told if films and story.film is not None]
-    missing = names if names and opengl.lack() else []
-    with files.whole(folder / "stories.md") as summary, progress_bar(console, len(told)) as begin:
+    drawn = stories()
+    names = [f"{story.name}.mp4" for story in drawn if films and story.film is not None]
+    missing = names if names and opengl.problem() else []
+    with files.whole(folder / "stories.md") as summary, progress_bar(console, len(drawn)) as begin:
         (folder / "stories.md").unlink(missing_ok=True)
         letters.draw(folder / "letters")
-        for story in told:
+        for story in drawn:
             begin(story.name)
             story.draw(folder / story.name)
             if films and story.film is not None and not missing:
                 file = folder / f"{story.name}.mp4"
                 render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
-        summary.write_text(_summary(told, films, missing), encoding="utf-8")
+        summary.write_text(_summary(drawn, films, missing), encoding="utf-8")
     return missing
 
 
-def _summary(told: list[Story], films: bool, missing: list[str]) -> str:
+def _summary(drawn: list[Story], films: bool, missing: list[str]) -> str:
     from mjbeer.drawing import opengl
 
     lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
     lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
-    for story in told:
+    for story in drawn:
         picture = f"![{story.name}]({story.name}.svg)"
         filmed = films and story.film is not None and not missing
         lines += [f"## {story.name}", "", picture, "", story.caption, ""]
