@@ -153,7 +153,7 @@ class Motion:
 
     scene: AnyScene
     phi0: float = 60.0
-    """Initial angle of the load from the incline's normal, phi in the paper [degrees]."""
+    """Initial phi: the angle of the beer's surface to the incline, as in the paper's Fig. 3 [degrees]."""
     phi_dot0: float = 0.0
     """Initial rate of change of phi [degrees/s]."""
     duration: float = 2.0

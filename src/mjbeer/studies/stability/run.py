@@ -37,7 +37,7 @@ class Stability(Study):
 
 
 def tasks(quick: bool) -> list[Task]:
-    """Return all tasks, or a sample of them that takes two minutes."""
+    """Return all tasks, or a sample of them."""
     return [
         *laws.tasks(),
         *limits.tasks(quick),
