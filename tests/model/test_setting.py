@@ -10,7 +10,7 @@ from mjbeer import build, frozen, sliding
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.build import compile_model, specify
 from mjbeer.model.setting import USUAL, Setting, Softness
-from mjbeer.model.softness import softness
+from mjbeer.model.softness import effective_softness
 from mjbeer.model.state import start
 
 SLIDE_FIRST = USUAL["equality, slide first"]
@@ -50,7 +50,7 @@ def test_a_massless_can_around_a_sliding_load_is_refused() -> None:
 def test_refsafe_raises_a_time_constant_under_two_timesteps() -> None:
     at = start(compile_model(frozen(), SLIDE_FIRST), frozen(), 0.3, 1.0)
     for timestep, expected in ((2e-3, 0.02), (16e-3, 0.032)):
-        soft = softness(compile_model(frozen(), replace(SLIDE_FIRST, timestep=timestep)), at)
+        soft = effective_softness(compile_model(frozen(), replace(SLIDE_FIRST, timestep=timestep)), at)
         assert soft is not None
         assert soft.effective_timeconst == pytest.approx(expected, rel=1e-12)
         assert soft.changed == (expected != 0.02)
@@ -61,7 +61,7 @@ def test_the_share_is_what_the_solver_lets_through() -> None:
     scene = frozen()
     model = compile_model(scene, replace(SLIDE_FIRST, integrator="RK4", timestep=1e-3))
     at = start(model, scene, 0.3, 1.0)
-    soft = softness(model, at)
+    soft = effective_softness(model, at)
     assert soft is not None
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = np.split(at, 2)
@@ -75,18 +75,18 @@ def test_tuned_models_get_what_they_ask_for() -> None:
     scene = frozen()
     for rolling, share in (("equality", 1.0), ("contact", 0.9999)):
         model = build(scene, rolling)
-        soft = softness(model, start(model, scene, 0.3, 0.0))
+        soft = effective_softness(model, start(model, scene, 0.3, 0.0))
         assert soft is not None
         assert not soft.changed
         assert soft.effective_impedance == pytest.approx(share, abs=1e-12)
-    assert softness(build(scene), np.zeros(2)) is None
+    assert effective_softness(build(scene), np.zeros(2)) is None
 
 
 def test_in_the_air_there_is_no_softness() -> None:
     model = specify(frozen(), Setting("contact")).compile()
     at = start(model, frozen(), 0.3, 0.0)
     at[model.joint("lift").qposadr[0]] = 1.0
-    assert softness(model, at) is None
+    assert effective_softness(model, at) is None
 
 
 @pytest.mark.parametrize("rolling", ["equality", "contact"])
@@ -95,7 +95,7 @@ def test_time_constants(rolling: str, refsafe: bool, effective: float) -> None:
     """With refsafe, MuJoCo raises what is under two timesteps to two."""
     soft = Softness(solref=(5e-4, 1.0), impedance=(0.99, 0.99), refsafe=refsafe)
     model = build(frozen(), rolling, softness=soft)
-    effect = softness(model, start(model, frozen(), 1.0, 0.0))
+    effect = effective_softness(model, start(model, frozen(), 1.0, 0.0))
     assert effect is not None
     assert (effect.timeconst, effect.impedance) == (5e-4, pytest.approx(0.99))
     assert effect.effective_timeconst == pytest.approx(effective, rel=1e-9)

@@ -9,7 +9,7 @@ from mjbeer.model.engine import quiet
 
 
 @dataclass(frozen=True)
-class Softness:
+class EffectiveSoftness:
     """The softness of a constraint, as asked for and as the solver used it."""
 
     timeconst: float
@@ -27,7 +27,7 @@ class Softness:
         return abs(self.effective_timeconst / self.timeconst - 1) > 1e-9
 
 
-def softness(model: mujoco.MjModel, state: np.ndarray) -> Softness | None:
+def effective_softness(model: mujoco.MjModel, state: np.ndarray) -> EffectiveSoftness | None:
     """Return the softness of the rolling constraint at a `state`, shape (nq + nv,); None if no constraint is active.
 
     The time constant comes from the stiffness K = 1/(d tau)^2 (damping ratio 1) of MuJoCo's reference acceleration, and
@@ -48,7 +48,7 @@ def softness(model: mujoco.MjModel, state: np.ndarray) -> Softness | None:
     mujoco.mj_fullM(model, data, mass)
     diagonal = float(jacobian @ np.linalg.solve(mass, jacobian))
     share = diagonal / (diagonal + float(data.efc_R[0]))
-    return Softness(
+    return EffectiveSoftness(
         timeconst=float(solref[0, 0]),
         effective_timeconst=1 / (float(solimp[0, 1]) * stiffness**0.5),
         impedance=impedance,

@@ -58,11 +58,6 @@ def footnote_8(q: Quantities) -> Terms:
     )
 
 
-def eq_53(q: Quantities) -> Terms:
-    """Return the terms of sin(alpha + phi_0) = (a/b) sin(alpha)."""
-    return q.sin_theta, -q.a / q.b * q.sin_alpha
-
-
 def equilibrium_53(scene: Scene) -> float:
     """Return phi_0 [rad] by eq. (53), extended to a can with mass.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.softness import softness
+from mjbeer.model.softness import effective_softness
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.tolerance import Solution, scales
@@ -65,7 +65,7 @@ class Rung:
         self.point.judge(motion.phi, motion.u, truth)
         self.point.describe(Trajectory(**vars(motion), scene=self.case.scene))
         self._split_error(motion, truth)
-        soft = softness(self.prepared.model, self.prepared.start(self.case.phi0, 0.0))
+        soft = effective_softness(self.prepared.model, self.prepared.start(self.case.phi0, 0.0))
         if soft:
             self.point.timeconst, self.point.effective_timeconst = soft.timeconst, soft.effective_timeconst
             self.point.impedance, self.point.effective_impedance = soft.impedance, soft.effective_impedance

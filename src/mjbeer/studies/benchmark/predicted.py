@@ -7,7 +7,7 @@ import numpy as np
 
 from mjbeer.model.build import compile_model
 from mjbeer.model.setting import TUNED, USUAL
-from mjbeer.model.softness import softness
+from mjbeer.model.softness import effective_softness
 from mjbeer.output.table import Table
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
 from mjbeer.simulation.simulate import simulate
@@ -134,6 +134,6 @@ def _penetration_and_slip(scene: Scene, tuned: bool) -> tuple[float, float]:
 def _share(scene: Scene) -> float:
     """Return the share of a hard constraint's force that a usual joint equality has, at phi = 0."""
     model = compile_model(scene, USUAL["equality, slide first"])
-    soft = softness(model, np.zeros(model.nq + model.nv))
+    soft = effective_softness(model, np.zeros(model.nq + model.nv))
     assert soft is not None
     return soft.effective_impedance
