@@ -8,7 +8,7 @@ from mjbeer.studies.benchmark.peers.peer import Peer
 PEERS = (with_scipy.DOP853, with_scipy.LSODA, with_scipy.ODEINT, with_heyoka.PEER, with_exudyn.PEER)
 """All peers, whether they can be imported here or not."""
 _OPTIONAL = {with_heyoka.PEER.name: "heyoka", with_exudyn.PEER.name: "exudyn"}
-"""The packages of the peers that are optional; `pip install mjbeer[peers]` has both."""
+"""The packages of the peers that are optional; in a checkout `pip install ".[peers]"` installs both."""
 
 
 def installed() -> list[Peer]:
