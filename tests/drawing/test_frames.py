@@ -47,6 +47,8 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
     u = scene.can.radius * np.array(rolls)
     still = Trajectory(
         scene=scene,
+        phi0=phis[0],
+        phi_dot0=0.0,
         time=times,
         u=u,
         phi=np.array(phis),

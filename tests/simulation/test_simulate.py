@@ -4,15 +4,18 @@ import math
 import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, UnsupportedError
 from mjbeer.model.build import compile_model
-from mjbeer.model.setting import INTEGRATORS, Setting
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting
+from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.run import Run
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.measure import distance
 from tests.support.scenes import SCENES
@@ -106,7 +109,7 @@ def test_a_good_run_is_trusted(name: str) -> None:
     ("run", "reason"),
     [
         (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "energy or momentum drift"),
-        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "as a run at half the timestep shows"),
+        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "as a run at other timesteps shows"),
         (lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02), "the can slips by"),
         (lambda: simulate(hoop(), 0.5, 3.0, rolling="contact", timestep=1e-4, friction=1e3), "parts from the incline"),
         (lambda: simulate(frozen(), 2, math.pi), r"from t = 0\.83.* s the incline would have to pull"),
@@ -116,6 +119,63 @@ def test_a_run_that_is_not_to_be_relied_on_says_so(run: Callable[[], Trajectory]
     trajectory = run()
     assert not trajectory.trusted
     assert any(re.search(reason, each) for each in trajectory.warnings), trajectory.warnings
+
+
+HOLES = {
+    "slips between samples": lambda: simulate(frozen(), 0.5, 1.0, rolling="contact", friction=0.05, times=[0.5]),
+    "hops between samples": lambda: simulate(hoop(), 1.0, 3.0, rolling="contact", timestep=1e-4, times=[1.0]),
+    "decays before the samples": lambda: simulate(
+        frozen(), 3000.0, 1.0, timestep=0.1, times=0.1 * np.arange(29900, 30000)
+    ),
+    "two turns in a step of Euler": lambda: simulate(
+        frozen(incline=0.0), 0.003, 0.0, 4 * math.pi / 1e-3, integrator="Euler"
+    ),
+    "four turns in a step of RK4": lambda: simulate(frozen(incline=0.0), 0.003, 0.0, 8 * math.pi / 1e-3),
+    "34 turns in a step, whose parts are nearly whole turns too": lambda: simulate(
+        frozen(incline=0.0), 0.003, 0.0, 68 * math.pi / 1e-3, integrator="Euler"
+    ),
+    "an arm lost in rounding": lambda: simulate(
+        Scene(Can(0.033, 0.12, 1.0, 5e-4), Load(1e-16, 0.02, 1e-21), 0.0, "frozen"),
+        1e7,
+        1.0,
+        rolling="equality",
+        timestep=1e4,
+    ),
+}
+
+
+@pytest.mark.parametrize("run", HOLES.values(), ids=HOLES.keys())
+def test_a_wrong_run_is_never_trusted(run: Callable[[], Run]) -> None:
+    """Each of these was once trusted. The least error among them is 0.45 rad."""
+    made = run()
+    truth, start = exact(made.scene, made.time, made.phi0, made.phi_dot0), made.scene.start(made.phi0, made.phi_dot0)
+    assert distance(made, truth, made.scene.can.radius, start=(made.phi0, start[0])) > 0.4
+    assert not made.trusted
+
+
+@pytest.mark.parametrize(
+    ("rolling", "integrator"),
+    [  # a contact that parts is not smooth enough for a tolerance
+        *[(rolling, integrator) for rolling in ROLLINGS for integrator in ("Euler", "DOP853")],
+        ("reduced", "tolerance"),
+        ("equality", "tolerance"),
+    ],
+)
+def test_what_a_run_says_of_itself_does_not_depend_on_its_samples(rolling: str, integrator: str) -> None:
+    """A frozen can from the top is pulled at, slips and parts before the end of a second."""
+    setting: dict[str, Any] = {"tolerance": 1e-6} if integrator == "tolerance" else {"integrator": integrator}
+    all_samples, one = (
+        simulate(frozen(), 1.0, math.pi, rolling=rolling, friction=0.1, **setting, times=times)
+        for times in (None, [1.0])
+    )
+    assert len(one.time) == 1
+    # The samples of DOP853 make its last step end elsewhere, by rounding.
+    assert [re.sub(r"[\d.e-]+", "#", text) for text in one.warnings] == [
+        re.sub(r"[\d.e-]+", "#", text) for text in all_samples.warnings
+    ]
+    for name in ("slip", "lift", "turned", "rolled", "path", "fastest", "fails_at", "energy_drift"):
+        assert getattr(one.record, name) == pytest.approx(getattr(all_samples.record, name), rel=1e-6, abs=1e-15)
+    assert one.rolls_until(0.3) == pytest.approx(all_samples.rolls_until(0.3), rel=1e-6)
 
 
 def test_slip_of_a_sliding_contact_is_coulomb_s() -> None:
@@ -153,13 +213,14 @@ def test_measured_frequency_is_that_of_the_exact_period() -> None:
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(rolling: str, integrator: str) -> None:
-    """2.5 times the distance is 2.5 (1 - 2^-p) times the error: 1.25 to 2.5 times, with the order p settled."""
+    """3.2 times the distance is 1.2 times the error where it is of first order in the softness of a contact, 1.5 times
+    where it is of first order in the timestep, and up to 3.2 times for higher orders, once the order has settled."""
     scene, steps = SCENES["frozen, metal can"], {"Euler": 1e-4, "RK4": 4e-3, "DOP853": 3e-2}
     run = simulate(scene, 1.2, 1.0, rolling=rolling, integrator=integrator, timestep=steps[integrator])
     truth = exact(scene, run.time, 1.0)
-    error = distance(run, truth, scene.can.radius)
+    error = distance(run, truth, scene.can.radius, start=(1.0, scene.start(1.0, 0.0)[0]))
     assert run.error_estimate is not None
-    assert 1.2 * error < run.error_estimate < 2.6 * error
+    assert 1.2 * error < run.error_estimate < 3.3 * error
 
 
 def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -174,20 +235,19 @@ def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch:
     assert timesteps == [1e-3]
     assert run.trusted
     assert run.error_estimate == run.error_estimate
-    assert timesteps == [1e-3, 5e-4]
+    assert timesteps == pytest.approx([1e-3, (math.sqrt(5) - 1) / 2 * 1e-3], rel=1e-15)
 
 
 def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    def compile_heavy(scene: Scene, setting: Setting) -> mujoco.MjModel:
-        model = compile_model(scene, setting)
-        if setting.timestep < 1e-3:
-            model.opt.gravity[:] = 1e300
-        return model
+    run, solve = simulate(frozen(), 0.1, 1.0), Prepared.solve
 
-    monkeypatch.setattr("mjbeer.simulation.prepare.compile_model", compile_heavy)
-    run = simulate(frozen(), 0.1, 1.0)
+    def diverge(self: Prepared, start: np.ndarray, times: np.ndarray) -> None:
+        solve(self, start, times)
+        raise DivergenceError("its state is no longer finite")
+
+    monkeypatch.setattr(Prepared, "solve", diverge)
     assert run.error_estimate == math.inf
-    assert run.warnings == ("a run at half the timestep diverges: take a much smaller timestep or a better integrator",)
+    assert run.warnings == ("a run at other timesteps diverges: take a much smaller timestep or a better integrator",)
 
 
 @pytest.mark.parametrize("gravity", [1e-5, 1e-3, 1.0, 1e6])

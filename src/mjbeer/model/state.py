@@ -1,5 +1,8 @@
 """Converts between a scene's coordinates and the joints of its model, which are addressed by name."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import mujoco
 import numpy as np
 
@@ -28,11 +31,28 @@ def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> 
         "swing": (phi0 - roll, phi_dot0 - roll_dot),
         "phi": (phi0, phi_dot0),
     }
-    state, joints = np.zeros(model.nq + model.nv), places(model)
+    return _assemble(model, values, np.zeros(model.nq + model.nv))
+
+
+def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
+    """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion: the inverse of `read`."""
+    values = {
+        "slide": (motion.u, motion.u_dot),
+        "lift": (motion.lift, motion.lift_dot),
+        "roll": (motion.roll, motion.roll_dot),
+        "swing": (motion.phi - motion.roll, motion.phi_dot - motion.roll_dot),
+        "phi": (motion.phi, motion.phi_dot),
+    }
+    return _assemble(model, values, np.zeros((len(motion.time), model.nq + model.nv)))
+
+
+def _assemble(model: mujoco.MjModel, values: Mapping[str, tuple[Any, Any]], states: np.ndarray) -> np.ndarray:
+    """Return `states` with the positions and rates of those joints that the model has."""
+    joints = places(model)
     for name, (position, rate) in values.items():
         if name in joints:
-            state[joints[name]], state[model.nq + joints[name]] = position, rate
-    return state
+            states[..., joints[name]], states[..., model.nq + joints[name]] = position, rate
+    return states
 
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:

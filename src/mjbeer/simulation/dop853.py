@@ -10,6 +10,7 @@ from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
 from mjbeer.model.state import places
 from mjbeer.simulation import dop853_kernel
+from mjbeer.simulation.recorder import Recorder
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -49,11 +50,13 @@ class Integrator:
         tolerance: float = 1e-10,
         scale: np.ndarray | None = None,
         limit: float = math.inf,
+        recorder: Recorder | None = None,
     ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
         With a `timestep` [s] the step is fixed. Without it each step keeps its local error below `tolerance` times
         (`scale` + |state|), with `scale` of shape (nq + nv,). The run is given up after `limit` evaluations.
+        A `recorder` is shown all steps.
 
         Raises:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
@@ -63,9 +66,11 @@ class Integrator:
         scale = np.ones(self._size) if scale is None else scale
         place = (0.0, timestep or 0.0, 0, 0, 1.0)
         self.evaluations, status = 0, dop853_kernel.BLOCK_END
+        rows = dop853_kernel.KEPT if recorder else 0
+        kept = np.empty(rows), np.empty((rows, self._size)), np.empty((rows, self._size))
         with quiet(), untimed():
             while status == dop853_kernel.BLOCK_END:
-                status, place, evaluations = dop853_kernel.advance(
+                status, place, evaluations, count = dop853_kernel.advance(
                     pointers=self._pointers,
                     views=self._views,
                     state=state,
@@ -76,7 +81,10 @@ class Integrator:
                     fixed=timestep is not None,
                     tolerance=tolerance,
                     scale=scale,
+                    kept=kept,
                 )
+                if recorder and count:
+                    recorder.add_smooth(*(part[:count] for part in kept))
                 self.evaluations += evaluations
                 if status == dop853_kernel.BLOCK_END and self.evaluations > limit:
                     raise DivergenceError(

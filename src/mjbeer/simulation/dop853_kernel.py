@@ -6,14 +6,13 @@ II.10 (coefficients from scipy.integrate.DOP853). Each evaluation calls function
 MuJoCo library through their C symbols, so no Python runs between evaluations.
 """
 
-import ctypes
 import math
 
 import numpy as np
-from llvmlite import ir
-from numba import njit, types
-from numba.extending import intrinsic
+from numba import njit
 from scipy.integrate import DOP853
+
+from mjbeer.simulation.call import call
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which `advance` can end."""
@@ -27,20 +26,9 @@ _SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the referen
 _MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
 _LEAST = 1e-4  # smallest error of the step before that counts
 _BLOCK = 20_000  # steps between two returns to Python, so that a long run can be interrupted
+KEPT = _BLOCK + 1
+"""Largest number of steps of a block that are kept, with the start."""
 _LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
-
-
-@intrinsic
-def _call(typing_context, function, model, data):
-    """Call the C function at the address `function` with two pointers; no address is compiled in, so caching works."""
-
-    def generate(context, builder, signature, arguments):
-        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
-        function_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
-        builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
-        return context.get_dummy_value()
-
-    return types.void(types.intp, types.intp, types.intp), generate
 
 
 @njit(cache=True)
@@ -53,7 +41,7 @@ def _slope(pointers, views, state, out):
         qpos[i] = state[i] if needed[i] else 0.0
         qvel[i] = state[n + i]
     for function in functions:
-        _call(function, model, data)
+        call(function, model, data)
     for i in range(n):
         out[i] = qvel[i]
         out[n + i] = qacc[i]
@@ -72,8 +60,8 @@ def _combine(weights, count, slopes, out):
 
 
 @njit(cache=True)
-def advance(pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale):
-    """Take up to a block of steps, and return the status, the new place and the number of evaluations.
+def advance(pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale, kept):
+    """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
     Args:
       pointers: addresses of the functions that compute an acceleration, of the model and of its data.
@@ -86,8 +74,12 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
       fixed: whether the step is fixed, or keeps its error below the tolerance.
       tolerance: local tolerance of a step.
       scale: size below which an error of each component counts absolutely.
+      kept: times, states and slopes at the ends of the steps of this block, and at the start of the run: work space for
+        `KEPT` of them, or for none.
     """
     time, step, sample, steps, before = place
+    kept_times, kept_states, kept_slopes = kept
+    row = 0
     size = state.size
     new, work, total = np.empty(size), np.empty(size), np.empty(size)
     weights = np.empty((7, size))
@@ -98,6 +90,9 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
         if not fixed:
             step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
             evaluations += 1
+        if kept_times.size > 0:
+            kept_times[row], kept_states[row], kept_slopes[row] = time, state, slopes[0]
+            row += 1
     status = BLOCK_END
     for _ in range(_BLOCK):
         while sample < times.size and times[sample] <= time:
@@ -151,13 +146,16 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
         for i in range(size):
             state[i] = new[i]
             slopes[0, i] = slopes[_STAGES, i]
+        if kept_times.size > 0:
+            kept_times[row], kept_states[row], kept_slopes[row] = time, state, slopes[0]
+            row += 1
         if not fixed:
             growth = _SAFETY * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
             step *= min(_GROW, max(_SHRINK, growth))
             before = max(error, _LEAST)
             if time < times[-1]:  # a motion at rest would take steps without bound
                 step = min(step, times[-1] - time)
-    return status, (time, step, sample, steps, before), evaluations
+    return status, (time, step, sample, steps, before), evaluations, row
 
 
 @njit(cache=True)

@@ -1,5 +1,6 @@
 """A scene with its model and integrator, set up once and run often."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -8,36 +9,52 @@ from mjbeer.model import state
 from mjbeer.model.build import compile_model
 from mjbeer.model.setting import DOP853, Setting
 from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import Solution, Solver, tuning
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.scene import Scene
 
+_GREATER = (math.sqrt(5) - 1) / 2
+"""The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
+whole number. So no rate of rotation has the same phase at the ends of both parts, step by step."""
+
 
 class Prepared:
     """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
+
+    If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with DOP853. The two runs of
+    a motion, even and uneven, then have no timestep in common by which both could be wrong alike.
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
       TemplateError: if the template of the scene is missing or not as it should be.
     """
 
-    def __init__(self, scene: Scene, setting: Setting) -> None:
+    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
         self.scene, self.setting = scene, setting
+        self._step = setting.timestep * (_GREATER if uneven else 1)
+        """Timestep to which constraints are tuned, and that of DOP853."""
         if setting.tolerance is not None:
             timestep = tuning(scene, setting.rolling, setting.timestep)
             self.model = compile_model(scene, replace(setting, integrator=DOP853, timestep=timestep))
             self._method: Solver | Integrator | Stepper = Solver(self.model, scene)
+            return
+        self.model = compile_model(scene, replace(setting, timestep=self._step))
+        if setting.integrator == DOP853:
+            self._method = Integrator(self.model)
         else:
-            self.model = compile_model(scene, setting)
-            self._method = Integrator(self.model) if setting.integrator == DOP853 else Stepper(self.model)
+            self.model.opt.timestep = setting.timestep
+            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else ())
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
         return state.start(self.model, self.scene, phi0=phi0, phi_dot0=phi_dot0)
 
-    def solve(self, start: np.ndarray, times: np.ndarray) -> Solution:
+    def solve(self, start: np.ndarray, times: np.ndarray, friction: float | None = None) -> Solution:
         """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.
+
+        If a coefficient of `friction` is given, the solution has the record of all steps, too.
 
         Raises:
           DivergenceError: if the motion stops being finite.
@@ -45,11 +62,14 @@ class Prepared:
         """
         if isinstance(self._method, Solver):
             assert self.setting.tolerance is not None
-            return self._method.run(start, times, self.setting.tolerance)
+            return self._method.run(start, times, self.setting.tolerance, math.inf if friction is None else friction)
+        recorder = None if friction is None else Recorder(self.model, self.scene, friction)
         if isinstance(self._method, Integrator):
-            return Solution(self._method.run(start, times, self.setting.timestep))
-        steps = np.rint(times / self.setting.timestep).astype(np.int64)
-        return Solution(self._method.run(start[None], steps)[0])
+            states = self._method.run(start, times, self._step, recorder=recorder)
+        else:
+            steps = np.rint(times / self.setting.timestep).astype(np.int64)
+            states = self._method.run(start, steps, recorder)
+        return Solution(states, record=recorder.record if recorder else None)
 
     def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
         """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""

@@ -1,39 +1,55 @@
-"""A simulated motion with its setting, which allows a second run at half the timestep to estimate the error."""
+"""A simulated motion with its setting, the record of all its steps, and an estimate of its error by a second run."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from mjbeer.exceptions import DivergenceError, ToleranceError
-from mjbeer.model.setting import DOP853, Setting
+from mjbeer.exceptions import DivergenceError
+from mjbeer.model.setting import DOP853, TUNED, Setting
 from mjbeer.model.state import START_DEPTH
+from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.theory.conserved import implied_error
+from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.measure import distance
+from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import ERROR, Trajectory
+from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trust import ERROR, doubts
 
-_SAFETY = 2.5
-"""Error estimate over the distance to a run at half the timestep. A first-order method needs 2, because halving the
-step halves its error; 2.5 allows for an order that has not settled."""
+_SAFETY = 3.2
+"""Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
+that its distance is 0.38 of the error, or 1/2.6. The error of a first-order method is 0.38^2 + 0.62^2 = 0.53 times as
+large. 3.2 allows for an order that has not settled."""
 _ASIDE = 4e-14
-"""Distance between the starts of a run and of the run at half its timestep [rad]: a hundred times their rounding.
-Beside a separatrix it shows how much rounding matters. In contact it is `START_DEPTH` instead, as no two models would
-have the same depth."""
+"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding. Beside a separatrix
+it shows how much rounding matters. In contact it is `START_DEPTH` instead, as no two models would have the same
+depth."""
+_KEPT = 4096
+"""Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
+_CHECKED = 32
+"""Number of times for a run with a tolerance, which has to interpolate there: three evaluations each, of thousands."""
+_TURN = 1.0
+"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: forces that
+are taken at the same phase of every turn give a rotation that looks even, and is not."""
+_GOLDEN = (math.sqrt(5) - 1) / 2
+"""The fractions of its multiples are spread evenly, and no period is a multiple of the gaps between them."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Run(Trajectory):
-    """A simulated motion, its start and its setting."""
+    """A simulated motion and its setting.
 
-    phi0: float
-    """Start angle phi [rad]."""
-    phi_dot0: float
-    """Start rate of phi [rad/s]."""
+    What it says about itself rests on all of its steps, and does not depend on the samples that were asked for.
+    """
+
     setting: Setting
     """How the can was made to roll and how it was stepped."""
+    steps: Record
+    """The extremes of all steps."""
+    way: Coordinates
+    """The motion at its samples and at times spread over the whole run, where the uneven run is compared with it."""
     estimate: float | None = None
     """Estimated error [rad] of a run with a tolerance, which comes with the run; None without a tolerance."""
 
@@ -52,67 +68,127 @@ class Run(Trajectory):
         """Return the fixed timestep of the integrator [s]; None with a tolerance."""
         return self.setting.timestep if self.setting.tolerance is None else None
 
+    @property
+    def record(self) -> Record:
+        """Return the extremes of the motion over all its steps, on which its warnings rest."""
+        return self.steps
+
+    def rolls_until(self, friction: float = np.inf) -> float:
+        """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.
+
+        It is infinite if rolling was possible to the end. Infinite friction, the default, leaves only N > 0 to hold;
+        any other takes a run as long as this one, all of whose steps are looked at.
+        """
+        if friction == self.steps.friction:
+            return self.steps.fails_at
+        prepared = Prepared(self.scene, self.setting)
+        solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.way.time, friction)
+        assert solution.record is not None
+        return solution.record.fails_at
+
     @cached_property
     def error_estimate(self) -> float | None:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It rests on the distance from a second run. With a tolerance that was made already. Otherwise the first access
-        makes a run at half the timestep, which takes twice as long as this one; the error is infinite if it diverges.
+        It rests on the largest distance from a second run, along the whole way. With a tolerance that was made already.
+        Otherwise the first access makes the uneven run, which takes twice as long as this one; the error is infinite
+        if it diverges.
         """
-        if self.estimate is not None:
-            return self.estimate
+        return self.estimate if self.estimate is not None else self._second.estimate
+
+    @cached_property
+    def _second(self) -> "Second":
+        return Second.of(self)
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
+        found = doubts(self.steps, can_part=self.rolling == "contact")
+        return (*found, *self._in_a_step(), *self._second_run())
+
+    def _in_a_step(self) -> list[str]:
+        """Return what a timestep in which the load turns far says against this run: at most one sentence."""
+        turn = self.steps.fastest * (self.timestep or 0.0)
+        if turn <= _TURN or self.scene.oscillator.unevenness(self.phi0, self.phi_dot0) <= ERROR:
+            return []
+        return [
+            f"the load turns by {turn:.2g} rad in a timestep (trusted up to {_TURN:g}), in which its weight and "
+            "inertia change unseen"
+        ]
+
+    def _second_run(self) -> list[str]:
+        """Return what the second run says against this one: at most one sentence."""
+        if self.estimate is None and self._second.lost > ERROR:
+            return [
+                "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
+                f"by an error of {self._second.lost:.2g} rad"
+            ]
+        estimate = self.error_estimate
+        if estimate is None or estimate <= ERROR:
+            return []
+        finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
+        if math.isfinite(estimate):
+            return [f"phi and u/a are off by {estimate:.2g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"]
+        return [f"a run at {finer} diverges: take a much smaller timestep or a better integrator"]
+
+
+@dataclass(frozen=True)
+class Second:
+    """What a second run says about a run: the same motion with uneven timesteps, from a start that is a little aside.
+
+    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
+    effect of their softness. The other start includes the effect of rounding.
+    """
+
+    estimate: float
+    """Estimated error of phi and u/a [rad], relative beyond 1 rad; infinite if the second run diverges."""
+    lost: float
+    """The error [rad] that the model has because MuJoCo's sums lose something in rounding."""
+
+    @classmethod
+    def of(cls, run: Run) -> "Second":
+        """Make the second run, which takes twice as long as the first one."""
+        scene, setting = run.scene, run.setting
+        prepared = Prepared(scene, setting, uneven=True)
+        exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
+        lost = residual.lost(prepared.model, scene, run.way, run.steps, exact_constraint)
+        aside = max(START_DEPTH if setting.rolling == "contact" else _ASIDE, lost)
         try:
-            return _SAFETY * distance(self, self.finer(), self.scene.can.radius)
+            states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), run.way.time).states
         except DivergenceError:
-            return math.inf
-
-    def finer(self) -> "Run":
-        """Return the same motion at half the timestep, from a start that is `_ASIDE` from this one.
-
-        Constraints that are tuned to the timestep are harder in it, so that its distance from this motion includes the
-        effect of their softness. The other start includes the effect of rounding.
-
-        Raises:
-          DivergenceError: if the motion stops being finite.
-        """
-        aside = START_DEPTH if self.rolling == "contact" else _ASIDE
-        setting = replace(self.setting, timestep=self.setting.timestep / 2)
-        return integrate(self.scene, phi0=self.phi0 + aside, phi_dot0=self.phi_dot0, setting=setting, times=self.time)
+            return cls(math.inf, lost)
+        start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
+        uneven = prepared.coordinates(states, run.way.time)
+        return cls(_SAFETY * distance(run.way, uneven, scene.can.radius, start), lost)
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
     prepared = Prepared(scene, setting)
-    solution = prepared.solve(prepared.start(phi0, phi_dot0), times)
-    coordinates = prepared.coordinates(solution.states, times)
-    run = Run(
-        **vars(coordinates),
+    along, samples = _way(times, setting)
+    solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
+    way = prepared.coordinates(solution.states, along)
+    assert solution.record is not None
+    return Run(
+        **{name: array[samples] for name, array in vars(way).items()},
         scene=scene,
         phi0=phi0,
         phi_dot0=phi_dot0,
         setting=setting,
+        steps=solution.record,
+        way=way,
         estimate=solution.estimate,
     )
-    if setting.tolerance is not None and setting.rolling != "contact":
-        _check_conserved(run, setting.tolerance)
-    return run
 
 
-def _check_conserved(run: Run, tolerance: float) -> None:
-    """Check what the comparison of two runs cannot show, because both are wrong alike: lost digits, and slip.
-
-    Raises:
-      ToleranceError: if energy, momentum or slip implies an error above the tolerance.
-    """
-    implied, radius = implied_error(run.scene, run), run.scene.can.radius
-    if implied > max(tolerance, ERROR):
-        raise ToleranceError(
-            f"tolerance {tolerance:g} rad is not reached: two runs agree, but energy or momentum drift like an error "
-            f"of {implied:.2g} rad; the model loses in rounding what moves it"
-        )
-    slip = float(np.abs(run.slip).max() / max(radius, np.abs(run.u - run.u[0]).max()))
-    if slip > tolerance:
-        raise ToleranceError(
-            f"tolerance {tolerance:g} rad is not reached: the can slips by {slip:.2g} of its way; with masses so "
-            'unequal MuJoCo has no harder equality, and rolling="reduced" needs none'
-        )
+def _way(times: np.ndarray, setting: Setting) -> tuple[np.ndarray, np.ndarray | slice]:
+    """Return the times [s] of the samples with those spread over the whole run, and which of them are the samples."""
+    end = times[-1]
+    if setting.tolerance is None:
+        last = max(1, int(end / setting.timestep))
+        spread = setting.timestep * np.unique(np.linspace(0, last, min(last, _KEPT) + 1).astype(np.int64))
+        spread = spread[spread <= end]
+    else:
+        spread = np.append(0.0, end * np.sort(np.arange(1, _CHECKED) * _GOLDEN % 1))
+    along = np.union1d(times, spread)
+    return (along, slice(None)) if len(along) == len(times) else (along, np.searchsorted(along, times))

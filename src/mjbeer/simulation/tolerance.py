@@ -1,5 +1,6 @@
 """Integration to a global tolerance, with an error estimate from the distance of two runs of DOP853."""
 
+import math
 from dataclasses import dataclass
 
 import mujoco
@@ -7,8 +8,11 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.state import read
+from mjbeer.simulation import residual
 from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.recorder import Recorder
 from mjbeer.theory.measure import angle_distance
+from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _FIRST = 0.07
@@ -38,6 +42,15 @@ includes the effect of a small change of the start, which is large beside a sepa
 _ROUNDING_OVER_NUDGE = 3 / 40
 """Estimated effect of rounding over the effect of `_NUDGE`: the rounding of a run is like a nudge of some 1e-15, with a
 safety factor of 3."""
+_NO_LOSS = 1e-2
+"""Relative error of the model's accelerations over the tolerance, below which its effect is not looked at: it would
+have to grow a hundredfold."""
+_LOSS = 2.0
+"""Estimated effect of that error over the effect of an equal nudge of the start (measured: up to 1.8)."""
+_DRIFT = 0.5
+"""Error of phi over the largest one that the drift of the swing's energy implies. The rate of a rotation goes with the
+square root of its energy. So does that of a swing, times the share by which its frequency depends on its energy: 0.1 at
+1 rad, and more than 1 only beside a separatrix, where the distance of two runs shows it."""
 _EVALUATIONS = 5_000_000
 """Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
 
@@ -50,60 +63,73 @@ class Solution:
     """States, shape (samples, nq + nv)."""
     estimate: float | None = None
     """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
+    record: Record | None = None
+    """The record of all steps, if it was asked for."""
 
 
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
     def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
+        self._model, self._scene = model, scene
         self._integrator, self._scale = Integrator(model), scales(model, scene)
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
 
-    def run(self, start: np.ndarray, times: np.ndarray, tolerance: float) -> Solution:
+    def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float = math.inf) -> Solution:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
         Each run has a local tolerance of an eighth of that of the run before, and the first starts `_NUDGE` from
-        `start`. The error estimate is a multiple of the distance of the last two runs. From the third run on these may
-        be close by chance, and so an eighth of the distance before counts if that is larger. Their distance does not
-        show the effect of rounding either; it is estimated by further runs if the first two were so far apart that it
-        may matter.
+        `start`. The error estimate is a multiple of the distance of the last two runs, and no less than what the drift
+        of energy and momentum implies: over many turns the errors of two runs may be the same by chance. From the third
+        run on an eighth of the distance before counts if that is larger. None of these shows the effect of rounding; it
+        is estimated by further runs where it may matter.
+
+        The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
         safety = _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
-        coarse = self._run(start + _NUDGE * self._scale, times, local=local, tolerance=tolerance)
-        fine = self._run(start, times, local=local / _RATIO, tolerance=tolerance)
-        first = before = self._distance(coarse, fine)
-        if safety * first <= tolerance:
-            return Solution(fine, safety * first)
-        while True:
-            local /= _RATIO
+        coarse, _ = self._run(start + _NUDGE * self._scale, times, local=local, tolerance=tolerance)
+        fine, record = self._run(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
+        first = before = self._distance(coarse, fine, start)
+        estimate, drift, further = safety * first, self._drift(record), False
+        while max(estimate, drift) > tolerance:
+            if estimate <= tolerance:  # the drift may be that of a model which no smaller steps can cure
+                self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
+            local, further = local / _RATIO, True
             if local < _RATIO * _SMALLEST:
-                raise ToleranceError(
-                    f"tolerance {tolerance:g} rad is not reached: two runs at the limit of rounding differ by "
-                    f"{before:.2g} rad"
-                )
-            coarse, fine = fine, self._run(start, times, local=local / _RATIO, tolerance=tolerance)
-            distance = self._distance(coarse, fine)
+                apart = f"two runs at the limit of rounding differ by {before:.2g} rad"
+                raise _not_reached(tolerance, apart if estimate > tolerance else _lost(drift))
+            coarse = fine
+            fine, record = self._run(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
+            distance, drift_before, drift = self._distance(coarse, fine, start), drift, self._drift(record)
             estimate = _SAFETY_BY_CHANCE * max(distance, before / _RATIO)
-            if estimate <= tolerance:
-                rounding = _ROUNDING_OVER_NUDGE * first
-                if rounding > tolerance:
-                    rounding = self._rounding_effect(
-                        fine, start=start, times=times, local=local / _RATIO, tolerance=tolerance
-                    )
-                return Solution(fine, max(estimate, rounding))
-            stalled = stalled + 1 if distance > _STALLED * before else 0
-            if stalled > _PATIENCE:
-                raise ToleranceError(
-                    f"tolerance {tolerance:g} rad is not reached: two runs differ by {before:.2g} rad, and finer "
-                    f"ones by {distance:.2g} rad; the motion is not smooth enough, or rounding has the upper hand"
+            progress = distance <= _STALLED * before if estimate > tolerance else drift <= _STALLED * drift_before
+            stalled = 0 if progress else stalled + 1
+            if max(estimate, drift) > tolerance and stalled > _PATIENCE:
+                apart = (
+                    f"two runs differ by {before:.2g} rad, and finer ones by {distance:.2g} rad; the motion is not "
+                    "smooth enough, or rounding has the upper hand"
                 )
+                raise _not_reached(tolerance, apart if estimate > tolerance else _lost(drift))
             before = distance
+        local /= _RATIO
+        rounding = _ROUNDING_OVER_NUDGE * first if further else 0.0  # the first distance includes the nudge
+        if rounding > tolerance:
+            rounding = self._rounding_effect(fine, start=start, times=times, local=local, tolerance=tolerance)
+        loss = self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
+        return Solution(fine, max(estimate, drift, rounding, loss), record)
+
+    def _drift(self, record: Record) -> float:
+        """Return the error of phi and u/a [rad] that the drift of energy and momentum implies.
+
+        A contact has no such drift to judge by: it takes energy, and gives it back.
+        """
+        return 0.0 if self._model.npair else max(_DRIFT * record.swing_error, record.axis_error)
 
     def _rounding_effect(
         self, fine: np.ndarray, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
@@ -117,26 +143,74 @@ class Solver:
         """
         distances = []
         for side in (1, -1):
-            nudged = self._run(start + side * _NUDGE * self._scale, times, local=local, tolerance=tolerance)
-            distances.append(self._distance(nudged, fine))
+            nudged, _ = self._run(start + side * _NUDGE * self._scale, times, local=local, tolerance=tolerance)
+            distances.append(self._distance(nudged, fine, start))
         effect = _ROUNDING_OVER_NUDGE * max(distances)
         if effect > tolerance:
-            raise ToleranceError(
-                f"tolerance {tolerance:g} rad is not reached: the rounding of the start grows to {effect:.2g} rad"
+            raise _not_reached(tolerance, f"the rounding of the start grows to {effect:.2g} rad")
+        return effect
+
+    def _loss(self, fine: np.ndarray, start: np.ndarray, times: np.ndarray, local: float, tolerance: float) -> float:
+        """Return the estimated effect on phi and u/a [rad] of what MuJoCo's sums lose in rounding, if it may matter.
+
+        It is that of a start as far aside as the model's accelerations are from theory's, relative to them. Only an
+        equality between very unequal masses loses that much.
+
+        Raises:
+          ToleranceError: if the effect is above `tolerance` [rad].
+        """
+        if not self._model.neq:
+            return 0.0
+        chosen = np.linspace(0, len(fine) - 1, min(residual.STATES, len(fine))).astype(int)
+        loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
+        if loss <= _NO_LOSS * tolerance:
+            return 0.0
+        aside, _ = self._run(start + min(loss, 1.0) * self._scale, times, local=local, tolerance=tolerance)
+        effect = _LOSS * self._distance(aside, fine, start)
+        if effect > tolerance:
+            raise _not_reached(
+                tolerance,
+                f"with masses so unequal MuJoCo's equality loses {loss:.2g} of what moves the load, an error of "
+                f'{effect:.2g} rad; rolling="reduced" loses nothing',
             )
         return effect
 
-    def _run(self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float) -> np.ndarray:
-        """Return the states of one run with a `local` tolerance; `tolerance` is only for the error message."""
-        try:
-            return self._integrator.run(start, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
-        except DivergenceError as error:
-            raise ToleranceError(f"tolerance {tolerance:g} rad is not reached: {error}") from error
+    def _run(
+        self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, friction: float | None = None
+    ) -> tuple[np.ndarray, Record]:
+        """Return the states of one run with a `local` tolerance, and its record, which is empty without a `friction`.
 
-    def _distance(self, coarse: np.ndarray, fine: np.ndarray) -> float:
+        The `tolerance` is only for the error message.
+        """
+        recorder = Recorder(self._model, self._scene, math.inf if friction is None else friction)
+        try:
+            states = self._integrator.run(
+                start,
+                times,
+                tolerance=local,
+                scale=self._scale,
+                limit=_EVALUATIONS,
+                recorder=None if friction is None else recorder,
+            )
+        except DivergenceError as error:
+            raise _not_reached(tolerance, str(error)) from error
+        return states, recorder.record
+
+    def _distance(self, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
         """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
-        angles, truth = coarse @ self._angles, fine @ self._angles
-        return max(angle_distance(angles[:, column], truth[:, column]) for column in (0, 1))
+        angles, truth, first = coarse @ self._angles, fine @ self._angles, start @ self._angles
+        return max(angle_distance(angles[:, column], truth[:, column], float(first[column])) for column in (0, 1))
+
+
+def _not_reached(tolerance: float, reason: str) -> ToleranceError:
+    return ToleranceError(f"tolerance {tolerance:g} rad is not reached: {reason}")
+
+
+def _lost(drift: float) -> str:
+    return (
+        f"two runs agree, but energy or momentum drift like an error of {drift:.2g} rad; the model loses in rounding "
+        "what moves it"
+    )
 
 
 def tuning(scene: Scene, rolling: str, timestep: float) -> float:

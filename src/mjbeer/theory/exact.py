@@ -33,6 +33,8 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     radius, zeros = scene.can.radius, np.zeros_like(time)
     return Trajectory(
         scene=scene,
+        phi0=phi0,
+        phi_dot0=phi_dot0,
         time=time,
         u=u,
         phi=phi,
@@ -51,8 +53,8 @@ def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
     If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
     error that a tolerance bounds.
     """
-    truth = exact(trajectory.scene, trajectory.time, phi0=trajectory.phi[0], phi_dot0=trajectory.phi_dot[0])
-    return angle_distance(trajectory.phi, truth.phi, relative)
+    truth = exact(trajectory.scene, trajectory.time, phi0=trajectory.phi0, phi_dot0=trajectory.phi_dot0)
+    return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
 
 
 def _axis(

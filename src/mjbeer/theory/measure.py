@@ -4,33 +4,44 @@ import math
 
 import numpy as np
 
+from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import Forces
 from mjbeer.theory.oscillator import Oscillator
 
+_LEAST_SWING = 1e-10
+"""Smallest swing whose frequency is measured [rad], relative beyond 1 rad: a million times the rounding of phi."""
+_FOLLOWED = 0.05
+"""Largest difference between the angle from one sample to the next and that from their rates and accelerations, over
+the range of phi. Four samples a period of a small swing have 0.007, three have 0.03, two have 0.2."""
 
-def angle_distance(angles: np.ndarray, truth: np.ndarray, relative: bool = True) -> float:
+
+def angle_distance(angles: np.ndarray, truth: np.ndarray, start: float | None = None) -> float:
     """Return the largest distance of `angles` from `truth` [rad].
 
-    If `relative`, each distance is divided by the largest angle that `truth` has turned from its start so far, where
-    that exceeds 1 rad.
+    With the angle at the `start` [rad], each distance is divided by the largest angle that `truth` has turned from
+    there so far, where that exceeds 1 rad: this is the error that a tolerance bounds. `truth` is then in order of time.
     """
-    turned = np.maximum.accumulate(np.abs(truth - truth[0])) if relative else np.zeros_like(truth)
-    return float(np.max(np.abs(angles - truth) / np.maximum(1, turned)))
+    apart = np.abs(angles - truth)
+    if start is None:
+        return float(np.max(apart))
+    return float(np.max(apart / np.maximum(1, np.maximum.accumulate(np.abs(truth - start)))))
 
 
-def distance(motion: Coordinates, truth: Coordinates, radius: float, relative: bool = True) -> float:
-    """Return the larger of `angle_distance` for phi and for u/a [rad] from another motion at the same times."""
+def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None) -> float:
+    """Return the larger of `angle_distance` for phi and for u/a [rad] from another motion at the same times.
+
+    `start` has phi [rad] and u [m] at time 0, from which the distance is made relative.
+    """
+    phi, u = start if start is not None else (None, None)
     return max(
-        angle_distance(motion.phi, truth.phi, relative),
-        angle_distance(motion.u / radius, truth.u / radius, relative),
+        angle_distance(motion.phi, truth.phi, phi),
+        angle_distance(motion.u / radius, truth.u / radius, u / radius if u is not None else None),
     )
 
 
 def slip(motion: Coordinates, radius: float) -> np.ndarray:
-    """Return the distance that a can has slid instead of rolled: u - a roll less its value at the first sample [m]."""
-    slid = motion.u - radius * motion.roll
-    return slid - slid[0]
+    """Return the distance that a can of this `radius` [m] has slid instead of rolled [m]: u - a roll."""
+    return motion.u - radius * motion.roll
 
 
 def mean_acceleration(motion: Coordinates) -> float:
@@ -45,22 +56,6 @@ def takeoff(motion: Coordinates, radius: float) -> float | None:
     """
     above = np.flatnonzero(motion.lift > 1e-9 * radius)
     return None if not len(above) else math.pi - float(motion.phi[above[0]])
-
-
-def rolls_until(time: np.ndarray, forces: Forces, friction: float = math.inf) -> float:
-    """Return the first time [s] at which N < 0 or |F| > friction N, interpolated between samples; infinity if none."""
-    margin = forces.normal
-    if math.isfinite(friction):
-        margin = np.minimum(margin, friction * forces.normal - np.abs(forces.friction))
-    failed = np.flatnonzero(margin < 0)
-    if not len(failed):
-        return math.inf
-    after = int(failed[0])
-    if after == 0:
-        return float(time[0])
-    before = after - 1
-    fraction = margin[before] / (margin[before] - margin[after])
-    return float(time[before] + fraction * (time[after] - time[before]))
 
 
 def turning_times(motion: Coordinates, oscillator: Oscillator) -> np.ndarray:
@@ -82,3 +77,30 @@ def turning_times(motion: Coordinates, oscillator: Oscillator) -> np.ndarray:
         inside = real[(real >= -1e-9) & (real <= 1 + 1e-9)]
         turns.append(time[before] + step * (inside[0] if len(inside) else p0 / (p0 - p1)))
     return np.array(turns)
+
+
+def require_swing(motion: Coordinates, oscillator: Oscillator, phi0: float, phi_dot0: float) -> None:
+    """Check that turning points of the motion from a start [rad, rad/s] are those of a swing that its samples follow.
+
+    Raises:
+      NoEquilibriumError: if the load has no equilibrium to swing about.
+      MjbeerError: if the motion rests but for rounding and the softness of a contact, or its samples are too far apart.
+    """
+    rest = oscillator.equilibrium()
+    rest += 2 * math.pi * round((phi0 - rest) / (2 * math.pi))
+    energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + float(oscillator.drop(rest, phi0))
+    least = oscillator.stiffness() * (_LEAST_SWING * max(1.0, abs(phi0))) ** 2 / 2
+    kinetic = float((oscillator.inertia(motion.phi) * motion.phi_dot**2).max()) / 2
+    if not energy > least or kinetic > 2 * energy:
+        raise MjbeerError(
+            f"no frequency: the load starts with {energy:.2g} J above its equilibrium, which is a swing of less than "
+            f"{_LEAST_SWING:g} rad, or one that is hidden by what else moves the load, up to {kinetic:.2g} J"
+        )
+    phi, phi_dot, step = motion.phi, motion.phi_dot, np.diff(motion.time)
+    phi_ddot = oscillator.acceleration(phi, phi_dot)
+    turned = step * (phi_dot[:-1] + phi_dot[1:]) / 2 - step**2 * np.diff(phi_ddot) / 12
+    if len(phi) > 1 and not np.abs(turned - np.diff(phi)).max() <= _FOLLOWED * np.ptp(phi):
+        raise MjbeerError(
+            f"no frequency: the samples, up to {step.max():.3g} s apart, do not follow the swing; at least three a "
+            "period are needed"
+        )

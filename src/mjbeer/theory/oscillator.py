@@ -129,6 +129,14 @@ class Oscillator:
             return self.slope - self.depth * math.sin(phi - self.bottom)
         return 2 * self.depth * math.sin((phi - self.barrier()) / 2) * math.sin((phi - self.equilibrium()) / 2)
 
+    def unevenness(self, phi0: float, phi_dot0: float) -> float:
+        """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
+
+        It is large where the energy is not much more than a rotation needs.
+        """
+        kinetic = float(self.inertia(phi0)) * phi_dot0**2 / 2
+        return (self.chord + self.swing) / (2 * self.base) + (self.depth / kinetic if kinetic > 0 else math.inf)
+
     def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
         """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""
         inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)

@@ -63,7 +63,7 @@ class Rung:
             return
         motion = self.prepared.coordinates(result.states, self.case.times)
         self.point.judge(motion.phi, motion.u, truth)
-        self.point.describe(Trajectory(**vars(motion), scene=self.case.scene))
+        self.point.describe(Trajectory(**vars(motion), scene=self.case.scene, phi0=self.case.phi0, phi_dot0=0.0))
         self._split_error(motion, truth)
         soft = effective_softness(self.prepared.model, self.prepared.start(self.case.phi0, 0.0))
         if soft:
@@ -96,5 +96,5 @@ class Rung:
         except DivergenceError:
             return
         fine, radius = prepared.coordinates(states, case.times), case.scene.can.radius
-        self.point.model_error = distance(fine, truth, radius, relative=False)
-        self.point.integrator_error = distance(motion, fine, radius, relative=False)
+        self.point.model_error = distance(fine, truth, radius)
+        self.point.integrator_error = distance(motion, fine, radius)

@@ -4,13 +4,12 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.exact import exact
 from mjbeer.theory.measure import distance
-from mjbeer.theory.trajectory import ERROR, Trajectory
+from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trust import ERROR
 
 ACCURATE = "stable and accurate"
 INACCURATE = "stable, inaccurate"
@@ -51,16 +50,16 @@ def judge(simulate: Callable[[], Trajectory]) -> Outcome:
         return Outcome(UNSTABLE, None, None, str(error))
     except MjbeerError as error:
         return Outcome(REFUSED, None, None, str(error))
-    truth = exact(run.scene, run.time, float(run.phi[0]), float(run.phi_dot[0]))
+    truth = exact(run.scene, run.time, run.phi0, run.phi_dot0)
     radius = run.scene.can.radius
-    error = distance(run, truth, radius)
+    error = distance(run, truth, radius, start=(run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]))
     if run.trusted:
         verdict = ACCURATE if error <= ERROR else SILENT
     elif _explodes(run, truth):
         verdict = UNSTABLE
     else:
         verdict = ACCURATE if error <= ERROR else INACCURATE
-    admitted = (run.error_estimate or 0.0) + float(np.abs(run.slip).max() + np.abs(run.lift).max()) / radius
+    admitted = (run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius
     return Outcome(verdict, _finite(error), _finite(admitted), "; ".join(run.warnings))
 
 

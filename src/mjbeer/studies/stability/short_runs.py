@@ -17,7 +17,8 @@ from mjbeer.model.state import places, settle
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
 from mjbeer.predictions.soft_constraint import SoftRow, diagonal_excess
-from mjbeer.simulation import dop853, stepping
+from mjbeer.simulation import dop853
+from mjbeer.simulation.stepping import Stepper
 from mjbeer.theory.scene import Scene, frozen
 
 FREE = ("gravity", "spring")
@@ -80,7 +81,7 @@ class ShortRuns:
             if self._plan.integrator == DOP853:
                 states = dop853.integrate(self._model, rest + start, samples * timestep, timestep)
             else:
-                states = stepping.step(self._model, (rest + start)[None], samples)[0]
+                states = Stepper(self._model).run(rest + start, samples)
         except DivergenceError:
             return UNSTABLE
         return self._judge(states - rest, rest, start, timestep)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import mujoco
 import numpy as np
@@ -11,8 +12,8 @@ from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, INTEGRATORS
 from mjbeer.model.state import start
 from mjbeer.paper.scenarios import TOP, fall_from_top
-from mjbeer.simulation import stepping
 from mjbeer.simulation.simulate import simulate
+from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.check import Check
 from mjbeer.studies.convergence import order
 from mjbeer.theory.can import LENGTH, RADIUS, Can
@@ -116,9 +117,11 @@ def _count_differences() -> int:
                 continue
             for integrator in INTEGRATORS:
                 model = build(scene, rolling, integrator=integrator)
-                state = np.stack([start(model, scene, phi0, 0.0) for phi0 in (0.5, 1.0)])
-                runs = [stepping.step(model, state, np.arange(201), threads) for threads in (1, 1, 2)]
-                count += sum(int(np.count_nonzero(run != runs[0])) for run in runs[1:])
+                state, steps = start(model, scene, 0.5, 0.0), np.arange(201)
+                alone = Stepper(model).run(state, steps)
+                with ThreadPoolExecutor(2) as pool:
+                    together = [pool.submit(Stepper(model).run, state, steps) for _ in range(2)]
+                count += sum(int(np.count_nonzero(run.result() != alone)) for run in together)
             once, again = (simulate(scene, 0.2, 1.0, rolling=rolling, integrator=DOP853).phi for _ in range(2))
             count += int(np.count_nonzero(once != again))
     once, again = (simulate(frozen(), 2, math.pi, tolerance=1e-9).phi for _ in range(2))
