@@ -41,8 +41,10 @@ class Record:
         """Largest friction coefficient that rolling needed; infinite where the incline would have to pull."""
         self.fails_at = math.inf
         """Time [s] at which N < 0 or |F| > friction N for the first time, interpolated; infinity if it never was."""
+        self.swing = 0.0
+        """Largest kinetic energy of the swing, J phi_dot^2 / 2 [J]."""
         self._by_rates = self._by_angles = 0.0
-        self._kinetic = self._swing = self._energy_change = self._swing_change = self._axis_change = 0.0
+        self._kinetic = self._energy_change = self._swing_change = self._axis_change = 0.0
         self._first: Coordinates | None = None
         self._last: Coordinates | None = None
         self._last_margin: tuple[float, float] | None = None
@@ -112,12 +114,12 @@ class Record:
         balanced load.
         """
         depth = self.scene.oscillator.depth
-        return _ratio(self._energy_change, max(self._swing, _SMALL_SWING * depth, _ROUNDING * self._kinetic))
+        return _ratio(self._energy_change, max(self.swing, _SMALL_SWING * depth, _ROUNDING * self._kinetic))
 
     @property
     def swing_drift(self) -> float:
         """Return the largest change of the swing's energy J phi_dot^2 / 2 + V over its largest kinetic energy."""
-        return _ratio(self._swing_change, max(self._swing, _SMALL_SWING * self.scene.oscillator.depth))
+        return _ratio(self._swing_change, max(self.swing, _SMALL_SWING * self.scene.oscillator.depth))
 
     @property
     def implied_error(self) -> float:
@@ -137,6 +139,12 @@ class Record:
         return self.swing_drift * self.path / max(1.0, self.turned)
 
     @property
+    def to_barrier(self) -> float:
+        """Return how far the energy of the motion is from that of the barrier between swings and turns [J]."""
+        assert self._first is not None, "a record without a motion"
+        return self.scene.oscillator.to_barrier(float(self._first.phi[0]), float(self._first.phi_dot[0]))
+
+    @property
     def axis_error(self) -> float:
         """Return the error of u/a [rad], relative beyond 1 rad, that the drift of the momentum implies."""
         return self._axis_change / max(self.scene.can.radius, self.rolled)
@@ -147,7 +155,7 @@ class Record:
         self._kinetic = _largest(self._kinetic, kinetic_energy(self.scene, motion))
         swing = oscillator.inertia(motion.phi) * motion.phi_dot**2 / 2
         at_first = oscillator.inertia(first.phi) * first.phi_dot**2 / 2
-        self._swing = _largest(self._swing, swing)
+        self.swing = _largest(self.swing, swing)
         change = swing - at_first - oscillator.drop(motion.phi, float(first.phi[0]))
         self._swing_change = _largest(self._swing_change, change)
 
