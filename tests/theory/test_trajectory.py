@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, sliding
+from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run
 from mjbeer.theory.coordinates import Coordinates
@@ -246,3 +246,32 @@ def test_no_frequency_without_a_swing(scene: Scene, phi0: float, phi_dot0: float
     motion = exact(scene, np.linspace(0, 0.3, 100), phi0, phi_dot0)
     with pytest.raises(MjbeerError, match=r"no frequency: the motion turns \d times in 0\.3 s, 3 are needed"):
         motion.frequency()
+
+
+@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
+@pytest.mark.parametrize("aside", [0.0, 1e-13])
+def test_a_load_at_rest_has_no_frequency(rolling: str, aside: float) -> None:
+    """What moves there is rounding, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
+    scene = frozen(can=METAL)
+    run = simulate(scene, 4.0, scene.equilibrium() + aside, rolling=rolling)
+    with pytest.raises(MjbeerError, match="no frequency: "):
+        run.frequency()
+
+
+@pytest.mark.parametrize("gap", [0.45, 0.55, 0.7, 0.93, 1.0, 1.07, 2.3])
+def test_samples_that_do_not_follow_the_swing_have_no_frequency(gap: float) -> None:
+    """A swing that is sampled every 0.93 periods looks like one of 0.07 of its frequency."""
+    scene = frozen()
+    period = scene.period(0.5)
+    motion = exact(scene, np.arange(0, 60 * period, gap * period), scene.equilibrium() + 0.5)
+    with pytest.raises(MjbeerError, match="no frequency: "):
+        motion.frequency()
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.2, 0.3])
+def test_three_samples_a_period_are_enough(gap: float) -> None:
+    """The cubic between two samples has an error of (2 pi gap)^4 / 384 = 0.03 of a radian of the swing at most."""
+    scene = frozen()
+    period = scene.period(0.5)
+    motion = exact(scene, np.arange(0, 60 * period, gap * period), scene.equilibrium() + 0.5)
+    assert motion.frequency() * period / (2 * math.pi) == pytest.approx(1, abs=(2 * math.pi * gap) ** 4 / 384 / 60)
