@@ -48,19 +48,21 @@ class Stepper:
             for first in range(0, last, _BLOCK):
                 block = self._states[: min(_BLOCK, last - first)]
                 count = advance(address("mj_step"), self._addresses, data._address, self._views, block)
+                end, cause = (first + count) * self._timestep, _warnings(data)
                 if count < len(block):
                     raise DivergenceError(
-                        f"the run diverged at t = {(first + count) * self._timestep:.6g} s: {_cause(data)}"
+                        f"the run diverged at t = {end:.6g} s: {cause or 'its state is no longer finite'}"
                     )
-                begin, end = np.searchsorted(samples, [first + 1, first + len(block) + 1])
-                states[begin:end] = block[samples[begin:end] - first - 1]
+                if cause:  # as of an inertia that rounding loses: what follows is finite, and may be anything
+                    raise DivergenceError(f"the run diverged before t = {end:.6g} s: {cause}")
+                begin, after = np.searchsorted(samples, [first + 1, first + len(block) + 1])
+                states[begin:after] = block[samples[begin:after] - first - 1]
                 if recorder:
                     recorder.add(self._timestep * np.arange(first + 1, first + len(block) + 1), block)
         return states
 
 
-def _cause(data: mujoco.MjData) -> str:
-    """Return the warnings with which MuJoCo gave up a run."""
+def _warnings(data: mujoco.MjData) -> str:
+    """Return what MuJoCo warns of in a run; empty if it does not."""
     kinds = [kind for name, kind in mujoco.mjtWarning.__members__.items() if name != "mjNWARNING"]
-    warnings = [mujoco.mju_warningText(kind, 0) for kind in kinds if data.warning[kind].number]
-    return "; ".join(warnings) if warnings else "its state is no longer finite"
+    return "; ".join(mujoco.mju_warningText(kind, 0) for kind in kinds if data.warning[kind].number)

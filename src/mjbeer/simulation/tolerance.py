@@ -53,6 +53,9 @@ square root of its energy, and the frequency of a swing depends on its energy le
 _FAR = 4.0
 """Beside a barrier the frequency depends on the energy more, and _DRIFT grows: from where the energy is as near to that
 of the barrier as a quarter of the largest kinetic energy (measured for swings of 2.85 rad: 2 instead of 0.5)."""
+_NEAREST = 10.0
+"""How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
+runs shows how much the motion amplifies."""
 _EVALUATIONS = 5_000_000
 """Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
 
@@ -133,7 +136,8 @@ class Solver:
         """
         if self._model.npair:
             return 0.0
-        share = max(1.0, record.swing / (_FAR * gap)) if (gap := record.to_barrier) > 0 else math.inf
+        gap = _FAR * record.to_barrier
+        share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST
         return max(_DRIFT * share * record.swing_error, record.axis_error)
 
     def _rounding_effect(
