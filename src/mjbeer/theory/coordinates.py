@@ -1,13 +1,20 @@
 """Positions and velocities of can and load at some times."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
+
+from mjbeer import require
+from mjbeer.exceptions import ParameterError
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Coordinates:
-    """A motion in the coordinates of the paper's Fig. 3; every array has shape (samples,)."""
+    """A motion in the coordinates of the paper's Fig. 3; every array has shape (samples,).
+
+    Raises:
+      ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
+    """
 
     time: np.ndarray
     """Time [s]."""
@@ -27,3 +34,9 @@ class Coordinates:
     """Height of the can above the incline [m]; slightly negative in a soft contact."""
     lift_dot: np.ndarray
     """Velocity of the can away from the incline [m/s]."""
+
+    def __post_init__(self) -> None:
+        for each in fields(Coordinates):
+            require.store(self, **{each.name: require.samples(each.name, getattr(self, each.name))})
+            if (count := len(getattr(self, each.name))) != len(self.time):
+                raise ParameterError(f"{each.name} must have as many entries as time, {len(self.time)}, got {count}")

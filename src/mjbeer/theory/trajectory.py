@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory import conserved, measure
 from mjbeer.theory.conserved import implied_error
@@ -72,7 +73,7 @@ class Trajectory(Coordinates):
 
         It is infinite if rolling was possible to the end. Infinite friction, the default, leaves only N > 0 to hold.
         """
-        return measure.rolls_until(self.time, self.forces, friction)
+        return measure.rolls_until(self.time, self.forces, require.friction(friction))
 
     def takeoff(self) -> float | None:
         """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays."""
