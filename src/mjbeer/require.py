@@ -1,83 +1,274 @@
 """Checks of arguments: each returns the valid value, or raises an error that names the value and what is allowed."""
 
 import math
-from collections.abc import Iterable
+import numbers
+import os
+import pathlib
+import reprlib
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+from decimal import Decimal
+from typing import Any, TypeVar
+
+import numpy as np
 
 from mjbeer.exceptions import ParameterError
 
-_LARGEST = 1e100
-"""Largest magnitude of a start [rad, rad/s]: the square of a larger one may overflow."""
+T = TypeVar("T")
+Name = TypeVar("Name", bound=str)
+
+SMALLEST, LARGEST = 1e-50, 1e50
+"""Smallest and largest magnitude of a number that is not 0. Nothing that rolls comes near them, and a product or
+quotient of six such numbers is between 1e-300 and 1e300, which a double can hold."""
+_FARTHEST = 1e10
+"""Largest magnitude of a start angle [rad]: there doubles are 2e-6 rad apart. MuJoCo has the same limit (mjMAXVAL)."""
+_SHOWN_ENTRIES = 4
+"""Number of entries of an array that a message shows."""
+_SHOWN_CHARACTERS = 80
+"""Length at which a message abbreviates a value."""
 
 
 def number(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a finite float.
 
+    Python's and NumPy's real numbers, fractions, decimals and arrays without dimensions are numbers.
+
     Raises:
       ParameterError: if `value` is not a number, is NaN, or is infinite.
     """
-    try:
-        result = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {value!r}") from None
-    if isinstance(value, (str, bytes, bool)) or not math.isfinite(result):
-        raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {value!r}")
+    result = _float(value)
+    if not math.isfinite(result):
+        raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {shown(value)}")
     return result
 
 
 def positive(name: str, value: float, unit: str = "") -> float:
-    """Return `value` as a finite float greater than zero.
+    """Return `value` as a float greater than zero.
 
     Raises:
-      ParameterError: if `value` is not finite and greater than zero.
+      ParameterError: if `value` is not greater than zero, or not between `SMALLEST` and `LARGEST`.
     """
     result = number(name, value, unit)
     if result <= 0:
-        raise ParameterError(f"{name} must be greater than 0{_in(unit)}, got {value!r}")
+        raise ParameterError(f"{name} must be greater than 0{_in(unit)}, got {shown(value)}")
+    if not SMALLEST <= result <= LARGEST:
+        raise ParameterError(f"{name} must be between {SMALLEST:g} and {LARGEST:g}{_in(unit)}, got {shown(value)}")
     return result
 
 
 def non_negative(name: str, value: float, unit: str = "") -> float:
-    """Return `value` as a finite float of zero or more.
+    """Return `value` as a float of zero or more.
 
     Raises:
-      ParameterError: if `value` is not finite, or is negative.
+      ParameterError: if `value` is negative, or neither zero nor between `SMALLEST` and `LARGEST`.
     """
     result = number(name, value, unit)
     if result < 0:
-        raise ParameterError(f"{name} must be 0 or greater{_in(unit)}, got {value!r}")
+        raise ParameterError(f"{name} must be 0 or greater{_in(unit)}, got {shown(value)}")
+    if result != 0 and not SMALLEST <= result <= LARGEST:
+        raise ParameterError(
+            f"{name} must be 0, or between {SMALLEST:g} and {LARGEST:g}{_in(unit)}, got {shown(value)}"
+        )
     return result
 
 
-def store_floats(instance: object, *names: str) -> None:
-    """Convert the named attributes of a frozen dataclass to doubles: single precision would spread from there."""
-    for name in names:
-        object.__setattr__(instance, name, float(getattr(instance, name)))
+def friction(value: float) -> float:
+    """Return a coefficient of friction as a float of zero or more, or infinity.
+
+    Raises:
+      ParameterError: if `value` is neither.
+    """
+    result = _float(value)
+    if not result >= 0:
+        raise ParameterError(f"friction must be 0 or greater (infinity is allowed), got {shown(value)}")
+    return result if result == math.inf else non_negative("friction", result)
 
 
 def start(phi0: float, phi_dot0: float) -> tuple[float, float]:
     """Return the start angle [rad] and rate [rad/s] as floats.
 
     Raises:
-      ParameterError: if either is not finite, or is so large that its square may overflow.
+      ParameterError: if either is not finite, or is beyond `_FARTHEST` or `LARGEST`.
     """
-    values = number("phi0", phi0, "rad"), number("phi_dot0", phi_dot0, "rad/s")
-    for name, value in zip(("phi0", "phi_dot0"), values, strict=True):
-        if abs(value) > _LARGEST:
-            raise ParameterError(f"{name} must be between -1e100 and 1e100, got {value!r}")
-    return values
+    values = []
+    for name, value, unit, limit in (("phi0", phi0, "rad", _FARTHEST), ("phi_dot0", phi_dot0, "rad/s", LARGEST)):
+        values.append(number(name, value, unit))
+        if abs(values[-1]) > limit:
+            raise ParameterError(f"{name} must be between {-limit:g} and {limit:g} [{unit}], got {shown(value)}")
+    return values[0], values[1]
 
 
-def choice(name: str, value: str, allowed: Iterable[str]) -> str:
+def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
+    """Return at least one finite number as an array of shape (samples,).
+
+    `value` is a list, a tuple, a range or a one-dimensional array; an array of doubles is returned as it is.
+
+    Raises:
+      ParameterError: if `value` is none of these, is empty, or has an entry that is no finite number; the message names
+        the entry.
+    """
+    entries = _entries(value)
+    if entries is None or not len(entries):
+        raise ParameterError(
+            f"{name} must be a list or a one-dimensional array of one or more numbers{_in(unit)}, got {shown(value)}"
+        )
+    if isinstance(entries, np.ndarray) and entries.dtype != object and not np.ma.is_masked(entries):
+        with np.errstate(over="ignore"):  # a long double may become infinite
+            array = entries.astype(float, copy=False)
+        if np.isfinite(array).all():
+            return array
+    return np.array([number(f"{name}[{index}]", each, unit) for index, each in enumerate(entries)])
+
+
+def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
+    """Return times [s] as a new array of shape (samples,).
+
+    `value` is what `samples` takes, with no time before 0. Unless the times have to be `increasing`, a single number
+    will do as well.
+
+    Raises:
+      ParameterError: if `value` is nothing of that; the message names the first entry that is wrong.
+    """
+    single = not increasing and _is_number(value)
+    array = np.array([number(name, value, "s")]) if single else samples(name, value, "s").copy()
+    for index in np.flatnonzero(~((array == 0) | ((array >= SMALLEST) & (array <= LARGEST)))):
+        non_negative(name if single else f"{name}[{index}]", array[index], "s")
+    back = np.flatnonzero(np.diff(array) <= 0) + 1
+    if increasing and len(back):
+        earlier, later = (shown(array[index]) for index in (back[0] - 1, back[0]))
+        raise ParameterError(f"{name} must increase, but {name}[{back[0]}] is {later} s after {earlier} s")
+    return array
+
+
+def choice(name: str, value: str, allowed: Iterable[Name]) -> Name:
     """Return `value` if it is one of the `allowed` names.
 
     Raises:
       ParameterError: if it is none of them; the message lists the names.
     """
-    names = tuple(allowed)
+    names = {str(name): name for name in allowed}
     if not isinstance(value, str) or value not in names:
         listed = ", ".join(repr(name) for name in names)
-        raise ParameterError(f"{name} must be one of {listed}; got {value!r}")
+        raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}")
+    return names[value]
+
+
+def path(value: str | os.PathLike[str]) -> pathlib.Path:
+    """Return the path of a file to be written.
+
+    Raises:
+      ParameterError: if `value` is no text and no path, or has a null character, which no system allows.
+    """
+    name = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise ParameterError(f"path must be the name of a file, got {shown(value)}")
+    return pathlib.Path(name)
+
+
+def boolean(name: str, value: bool) -> bool:
+    """Return `value` as True or False.
+
+    Raises:
+      ParameterError: if it is neither: a text such as "no" would count as true.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise ParameterError(f"{name} must be True or False, got {shown(value)}")
+    return bool(value)
+
+
+def instance(name: str, value: T, kind: type[T]) -> T:
+    """Return `value` if it is an instance of a class of mjbeer.
+
+    Raises:
+      ParameterError: if it is not; the message names the class.
+    """
+    if not isinstance(value, kind):
+        raise ParameterError(f"{name} must be a {kind.__name__}, got {shown(value)}")
     return value
+
+
+def store(instance: object, **values: object) -> None:
+    """Set fields of a frozen dataclass to their checked values: single precision would spread from there."""
+    for name, value in values.items():
+        object.__setattr__(instance, name, value)
+
+
+@contextmanager
+def from_given(**given: float) -> Generator[None]:
+    """Add to an error about computed values the values that were given.
+
+    Raises:
+      ParameterError: the error from inside the `with` block, with the addition.
+    """
+    try:
+        yield
+    except ParameterError as error:
+        listed = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
+        raise ParameterError(f"{error}, which follows from {listed}") from None
+
+
+def shown(value: object) -> str:
+    """Return a value as messages show it: in one short line, and NumPy's numbers as plain ones."""
+    try:
+        text = _PLAIN.repr(value)
+    except Exception:  # whatever the __repr__ of an unknown object raises, its type can be named
+        text = f"<{type(value).__name__}>"
+    return " ".join(text.splitlines())
+
+
+class _Plain(reprlib.Repr):
+    """Abbreviates long values, also within lists."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxstring = self.maxother = _SHOWN_CHARACTERS
+
+    def repr_int(self, x: int, level: int) -> str:
+        digits = math.ceil(x.bit_length() * math.log10(2))
+        return repr(x) if digits < _SHOWN_CHARACTERS else f"an integer of about {digits} digits"
+
+    def repr1(self, x: Any, level: int) -> str:
+        if x is np.ma.masked:
+            return "masked"
+        if isinstance(x, np.generic) or (isinstance(x, np.ndarray) and x.ndim == 0):
+            plain = x.item()
+            return str(x) if isinstance(plain, (np.generic, np.ndarray)) else super().repr1(plain, level)
+        if isinstance(x, np.ndarray):
+            entries = [super(_Plain, self).repr1(each, level) for each in x.ravel()[:_SHOWN_ENTRIES].tolist()]
+            entries += ["..."] if x.size > _SHOWN_ENTRIES else []
+            return f"{type(x).__name__} of shape {x.shape} and type {x.dtype}: [{', '.join(entries)}]"
+        return super().repr1(x, level)
+
+
+_PLAIN = _Plain()
+
+
+def _float(value: Any) -> float:
+    """Return a number as a float, which may be infinite, and NaN for what is no number."""
+    try:
+        return float(value) if _is_number(value) else math.nan
+    except (ValueError, OverflowError):  # a decimal that signals, and an integer of 400 digits
+        return math.nan
+
+
+def _is_number(value: object) -> bool:
+    """Return whether a value is a real number of Python's or NumPy's, which True, "1" and [1.0] are not."""
+    if isinstance(value, np.ndarray):
+        return value.ndim == 0 and value.dtype.kind in "iuf" and not np.ma.is_masked(value)
+    return isinstance(value, (numbers.Real, Decimal)) and not isinstance(value, (bool, np.timedelta64))
+
+
+def _entries(value: Any) -> Any:
+    """Return what has numbers to be checked: a list, a tuple, a range or an array; None for anything else."""
+    if isinstance(value, (list, tuple, range)):
+        return value
+    if isinstance(value, type) or not hasattr(value, "__array__"):
+        return None
+    try:
+        array = value if np.ma.is_masked(value) else np.asarray(value)
+    except Exception:  # whatever an object of another library raises, it is no array
+        return None
+    return array if array.ndim == 1 and array.dtype.kind in "iufO" else None
 
 
 def _in(unit: str) -> str:

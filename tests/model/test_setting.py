@@ -1,17 +1,19 @@
 """Settings: models are as soft as a setting says, and as usually written they have MuJoCo's defaults."""
 
+import re
 from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import build, frozen, sliding
-from mjbeer.exceptions import UnsupportedError
+from mjbeer import Can, Load, Scene, build, frozen, sliding
+from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model.build import compile_model, specify
 from mjbeer.model.setting import USUAL, Setting, Softness
 from mjbeer.model.softness import effective_softness
 from mjbeer.model.state import start
+from mjbeer.require import shown
 
 SLIDE_FIRST = USUAL["equality, slide first"]
 REFSAFE = int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
@@ -113,3 +115,61 @@ def test_what_is_not_given_stays_as_it_is_tuned() -> None:
     assert model.pair_solref[0].tolist() == [1e-3, 1]
     assert model.pair_solimp[0, :2].tolist() == [0.9999, 0.9999]
     assert model.opt.disableflags & REFSAFE
+
+
+@pytest.mark.parametrize("field", ["timestep", "friction", "tolerance"])
+@pytest.mark.parametrize("bad", [0, -1, np.float64(-1.0), np.nan, np.inf, "1", True, 1e160, 1e-320])
+def test_a_setting_refuses_what_is_no_positive_number(field: str, bad: object) -> None:
+    with pytest.raises(ParameterError, match=rf"^{field} must be .*, got {re.escape(shown(bad))}$"):
+        Setting("equality", **{field: bad})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            {"solref": (0.02, 0)},
+            r"solref must be a time constant \[s\] and a damping ratio, both greater than 0, or .*got",
+        ),
+        ({"solref": (0.02, -1)}, r"got \(0\.02, -1\)$"),
+        ({"solref": (-1e4, 5)}, r"got \(-10000\.0, 5\)$"),
+        ({"solref": (0, 1)}, r"got \(0, 1\)$"),
+        ({"solref": 0.02}, r"solref must be two numbers, got 0\.02"),
+        ({"solref": (0.02, "1")}, r"solref\[1\] must be a finite number, got '1'"),
+        ({"impedance": (0.0, 0.9)}, r"impedance must be two numbers from 0\.0001 to 0\.9999, got \(0\.0, 0\.9\)"),
+        ({"impedance": (0.9, 1.0)}, r"impedance must be two numbers from 0\.0001 to 0\.9999, got \(0\.9, 1\.0\)"),
+        ({"impratio": 0}, "impratio must be greater than 0, got 0"),
+        ({"refsafe": "no"}, "refsafe must be True or False, got 'no'"),
+        ({"elliptic": 1}, "elliptic must be True or False, got 1"),
+        ({"first": "roll"}, "first must be one of 'slide', 'hinge'; got 'roll'"),
+    ],
+)
+def test_a_softness_refuses_what_mujoco_would_replace_in_silence(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        Softness(**arguments)
+
+
+def test_the_limits_are_mujoco_s() -> None:
+    """In the constraint that MuJoCo computes, what is at its limit is used as it is."""
+    scene = frozen()
+    for share in (1e-4, 0.9999):
+        model = build(scene, "equality", softness=Softness(impedance=(share, share)))
+        soft = effective_softness(model, start(model, scene, 0.3, 0.0))
+        assert soft is not None
+        assert soft.impedance == share
+    model = build(scene, "contact", friction=1e-5)
+    data, at = mujoco.MjData(model), start(model, scene, 0.3, 0.0)
+    data.qpos[:], data.qvel[:] = np.split(at, 2)
+    mujoco.mj_forward(model, data)
+    assert data.contact[0].friction[0] == 1e-5
+    model.pair_friction[0, :2] = 9e-6
+    mujoco.mj_forward(model, data)
+    assert data.contact[0].friction[0] == 1e-5
+
+
+def test_a_mass_matrix_that_mujoco_calls_singular_is_refused() -> None:
+    scene = Scene(Can(2e-10, 1, 3e3, 1.5e-16), Load(1.2e4, 3e-12, 9e9))
+    with pytest.raises(
+        UnsupportedError, match="MuJoCo cannot represent this scene: Inertia matrix is too close to singular"
+    ):
+        build(scene, "equality")

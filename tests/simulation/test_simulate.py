@@ -4,6 +4,8 @@ import math
 import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from decimal import Decimal
+from fractions import Fraction
 from typing import Any
 
 import mujoco
@@ -20,6 +22,8 @@ from mjbeer.theory.exact import phi_error
 from mjbeer.theory.measure import distance
 from tests.support.scenes import SCENES
 
+HUGE = Scene(Can(radius=1e20), Load(1.0, 1e20, 1.0), attachment="frozen")
+WEIGHTLESS = pendulum(gravity=0.0)
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
 
 
@@ -55,22 +59,101 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
         ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
         ({"duration": math.inf}, "duration must be a finite number"),
         ({"duration": 1e6, "timestep": 1e-12}, "too many timesteps of 1e-12 s: at most 1e.08, or say with times="),
-        ({"duration": 1e300, "timestep": 1e-300}, "too many timesteps"),
+        ({"duration": 1e40, "timestep": 1e-40}, "too many timesteps"),
+        ({"duration": 1e300}, r"duration must be between 1e-50 and 1e\+50 \[s\], got 1e\+300"),
+        ({"duration": np.float64(-1.0)}, r"duration must be greater than 0 \[s\], got -1\.0$"),
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
         ({"phi0": "1"}, "phi0 must be a finite number"),
         ({"phi_dot0": math.inf}, "phi_dot0 must be a finite number"),
-        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e100 and 1e100, got 1e\+200"),
+        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e\+50 and 1e\+50 \[rad/s\], got 1e\+200"),
+        (
+            {"phi_dot0": -2e10},
+            r"phi_dot0 of the start must be between -1e\+10 .* \[rad/s\], beyond .*mjMAXVAL.*, got -2",
+        ),
+        ({"phi0": 2e10}, r"phi0 must be between -1e\+10 and 1e\+10 \[rad\], got 20000000000\.0"),
+        (
+            {"scene": HUGE},
+            r"u of the start must be between -1e\+10 and 1e\+10 \[m\], beyond which MuJoCo .*, got 1e\+20",
+        ),
+        ({"scene": HUGE, "phi0": 0.0, "phi_dot0": 1.0}, r"u_dot of the start .* \[m/s\], .*, got 1e\+20"),
+        ({"scene": "frozen"}, "scene must be a Scene, got 'frozen'"),
+        ({"softness": "hard"}, "softness must be a Softness, got 'hard'"),
         ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
         ({"integrator": "rk4"}, "integrator must be one of 'Euler'.*'DOP853'; got 'rk4'"),
-        ({"times": [0.0, 0.5]}, "between 0 and the duration 0.1 s"),
-        ({"times": [0.01, 0.01]}, "increasing"),
-        ({"times": []}, "increasing"),
-        ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at .*0.0105.* s; integrator="DOP853"'),
+        ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
+        ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
+        ({"times": []}, r"times must be a list or a one-dimensional array of one or more numbers \[s\], got \[\]"),
+        ({"times": 0.05}, r"times must be a list .* \[s\], got 0\.05"),
+        ({"times": "0.05"}, r"times must be a list .* \[s\], got '0\.05'"),
+        ({"times": (each for each in (0.0, 0.1))}, r"times must be a list .* \[s\], got <generator object"),
+        (
+            {"times": np.zeros((2, 2))},
+            r"times must be a list .*, got ndarray of shape \(2, 2\) and type float64: \[0\.0",
+        ),
+        ({"times": np.array([0.0, 0.1j])}, r"times must be a list .*, got ndarray of shape \(2,\) and type complex128"),
+        ({"times": [0.0, 0.1j]}, r"times\[1\] must be a finite number \[s\], got 0\.1j"),
+        ({"times": [[0.0], [0.0, 0.1]]}, r"times\[0\] must be a finite number \[s\], got \[0\.0\]"),
+        ({"times": [0.0, None]}, r"times\[1\] must be a finite number \[s\], got None"),
+        ({"times": [False, True]}, r"times\[0\] must be a finite number \[s\], got False"),
+        ({"times": np.array([0.0, "x"], object)}, r"times\[1\] must be a finite number \[s\], got 'x'"),
+        ({"times": np.ma.array([0.0, 0.1], mask=[0, 1])}, r"times\[1\] must be a finite number \[s\], got masked"),
+        ({"times": [-0.01, 0.1]}, r"times\[0\] must be 0 or greater \[s\], got -0\.01"),
+        ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at 0.0105 s; integrator="DOP853"'),
+        ({"times": [5e-10]}, "multiples of the timestep 0.001 s only, not at 5e-10 s"),
+        (
+            {"times": [0.01, 0.01 * (1 + 1e-12)]},
+            r"times must be at least a timestep of 0\.001 s apart, got 0\.01 s and 0\.01",
+        ),
+        (
+            {"duration": 1e15, "times": [1e15]},
+            r"times must be within 1e\+12 timesteps of 0\.001 s, got 1000000000000000\.0 s",
+        ),
+        ({"duration": 1e15, "times": [1e15], "integrator": "DOP853"}, r"times must be within 1e\+12 timesteps"),
+        *(
+            ({"rolling": rolling, "tolerance": 1e-6, "timestep": bad}, f"timestep must be .*, got {bad}")
+            for rolling in ("reduced", "equality")
+            for bad in (0, -1e-3, math.nan, math.inf)
+        ),
+        ({"tolerance": 1e-6, "integrator": "foo"}, "integrator must be one of .*; got 'foo'"),
+        ({"friction": 1e-6}, r"friction must be at least 1e-05, MuJoCo's smallest \(mjMINMU\), got 1e-06"),
     ],
 )
 def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: str) -> None:
     with pytest.raises(ParameterError, match=message):
-        simulate(frozen(), **({"duration": 0.1, "phi0": 1.0} | arguments))
+        simulate(**({"scene": frozen(), "duration": 0.1, "phi0": 1.0} | arguments))
+
+
+def test_a_run_has_a_step_however_short_it_is() -> None:
+    assert simulate(frozen(), 1e-10, 1.0).time.tolist() == [0.0, 1e-3]
+
+
+@pytest.mark.parametrize("timestep", [0.1, 1e-3, 1 / 3])
+def test_rounding_does_not_take_a_time_from_its_step(timestep: float) -> None:
+    """Times as people write them, and as clocks that add up timesteps count: all are the steps that were meant."""
+    steps = np.arange(29_900, 30_000)
+    clock = np.cumsum(np.full(30_000, timestep))[steps - 1]
+    for times in (timestep * steps, np.linspace(29_900 * timestep, 29_999 * timestep, 100), clock):
+        run = simulate(WEIGHTLESS, 30_000 * timestep, 0.0, timestep=timestep, times=times)
+        assert np.array_equal(run.time, timestep * steps)
+
+
+def test_a_run_ends_on_its_duration_if_that_is_a_step_but_for_rounding() -> None:
+    for duration in (0.3, 0.1 * 3, 0.3 * (1 - 1e-15), sum([0.1] * 3)):
+        assert len(simulate(frozen(), duration, 1.0, timestep=0.1).time) == 4
+
+
+def test_numbers_of_any_kind_become_doubles() -> None:
+    run = simulate(frozen(), Decimal("0.01"), Fraction(1, 2), np.float32(0.5), timestep=np.float16(0.0009765625))
+    assert all(type(each) is float for each in (run.phi0, run.phi_dot0, run.setting.timestep, run.setting.friction))
+    assert (run.phi0, run.phi_dot0, run.timestep) == (0.5, 0.5, 2**-10)
+
+
+def test_the_times_are_a_copy() -> None:
+    times = np.array([0.0, 0.1])
+    for motion in (exact(frozen(), times, 1.0), simulate(frozen(), 0.1, 1.0, integrator="DOP853", times=times)):
+        times[1] = 7.0
+        assert motion.time[1] == 0.1
+        times[1] = 0.1
 
 
 def test_a_massless_can_needs_reduced() -> None:

@@ -256,9 +256,7 @@ def test_balanced_load(fill: float | None) -> None:
 
 @pytest.mark.parametrize("time", [[-1e-9, 1.0], [math.nan], [0.0, math.inf], [[0.0, 1.0]]])
 def test_times_are_finite_and_after_the_start(time: list) -> None:
-    with pytest.raises(
-        ParameterError, match=r"time must be a one-dimensional array of finite times at or after 0 \[s\]"
-    ):
+    with pytest.raises(ParameterError, match=r"time\[\d\] must be (a finite number|0 or greater) \[s\], got "):
         exact(sliding(), time, 0.1)
 
 
@@ -269,4 +267,3 @@ def test_times_in_any_order() -> None:
         assert motion.phi[0] == motion.phi[3]
         assert motion.phi[1] == pytest.approx(phi0, rel=ROUNDING)
         assert float(exact(scene, 2.0, phi0).phi[0]) == pytest.approx(motion.phi[2], rel=ROUNDING)
-        assert exact(scene, [], phi0).phi.shape == (0,)

@@ -4,6 +4,8 @@ import dataclasses
 import math
 import re
 from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
 from functools import partial
 
 import numpy as np
@@ -11,6 +13,7 @@ import pytest
 
 from mjbeer import Can, Load, MjbeerError, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ParameterError
+from mjbeer.require import LARGEST, SMALLEST, shown
 
 NAN, INFINITY = math.nan, math.inf
 BEER = Load(0.2, 0.01, 1e-5)
@@ -39,7 +42,8 @@ def refuses(message: str, make: Callable[..., object], *arguments: object, **nam
         ("load length", "m", lambda bad: Load.segment(length=bad)),
         ("load density", "kg/m^3", lambda bad: Load.segment(density=bad)),
         ("load density", "kg/m^3", lambda bad: sliding(density=bad)),
-        ("hoop mass", "kg", lambda bad: pendulum(wheel_mass=bad)),
+        ("wheel mass", "kg", lambda bad: pendulum(wheel_mass=bad)),
+        ("wheel radius", "m", lambda bad: pendulum(radius=bad)),
         ("load mass", "kg", lambda bad: hoop(load_mass=bad)),
     ],
 )
@@ -61,7 +65,28 @@ def test_must_not_be_negative(name: str, unit: str, make: Callable[[float], obje
     refuses(f"{name} must be 0 or greater [{unit}], got -1e-09", make, -1e-9)
 
 
-@pytest.mark.parametrize("bad", [NAN, INFINITY, -INFINITY, "0.033", "wide", b"1", None, True, 1j, [1.0], 10**400])
+@pytest.mark.parametrize(
+    "bad",
+    [
+        NAN,
+        INFINITY,
+        -INFINITY,
+        "0.033",
+        "wide",
+        b"1",
+        None,
+        True,
+        1j,
+        [1.0],
+        10**400,
+        np.True_,
+        np.ma.masked,
+        np.array([1.0]),
+        Decimal("NaN"),
+        np.timedelta64(1, "s"),
+    ],
+    ids=shown,
+)
 @pytest.mark.parametrize(
     ("name", "unit", "make"),
     [
@@ -78,7 +103,7 @@ def test_must_not_be_negative(name: str, unit: str, make: Callable[[float], obje
     ],
 )
 def test_must_be_a_finite_number(name: str, unit: str, make: Callable[[object], object], bad: object) -> None:
-    refuses(f"{name} must be a finite number{unit}, got {bad!r}", make, bad)
+    refuses(f"{name} must be a finite number{unit}, got {shown(bad)}", make, bad)
 
 
 @pytest.mark.parametrize("bad", [0, 0.0, -0.1, 1.2, math.nextafter(1, 2)])
@@ -120,7 +145,55 @@ def test_frozen_point_off_the_rim_needs_no_can() -> None:
 
 
 def test_film_too_thin_to_weigh_anything() -> None:
-    refuses("load mass must be greater than 0 [kg], got 0.0", sliding, fill=1e-300)
+    follows = "which follows from radius = 0.033, length = 0.12, fill = 1e-300, density = 1000.0"
+    refuses(f"load mass must be greater than 0 [kg], got 0.0, {follows}", sliding, fill=1e-300)
+
+
+@pytest.mark.parametrize("bad", [1e160, 1e51, 1e-51, 1e-320])
+@pytest.mark.parametrize(
+    ("allowed", "unit", "make"),
+    [
+        ("can radius must be", "m", lambda bad: Can(radius=bad)),
+        ("can mass must be 0, or", "kg", lambda bad: Can(mass=bad)),
+        ("load mass must be", "kg", lambda bad: Load(bad, 0.01)),
+        ("load inertia must be 0, or", "kg m^2", lambda bad: Load(1.0, 0.01, bad)),
+        ("gravity must be 0, or", "m/s^2", lambda bad: frozen(gravity=bad)),
+        ("load density must be", "kg/m^3", lambda bad: frozen(density=bad)),
+    ],
+)
+def test_magnitudes_have_limits(allowed: str, unit: str, make: Callable[[float], object], bad: float) -> None:
+    refuses(f"{allowed} between 1e-50 and 1e+50 [{unit}], got {bad!r}", make, bad)
+
+
+def test_a_product_of_six_numbers_within_the_limits_is_a_normal_double() -> None:
+    tiny, huge = np.finfo(float).tiny, np.finfo(float).max
+    assert tiny < math.prod([SMALLEST] * 6) < SMALLEST
+    assert LARGEST < math.prod([LARGEST] * 6) < huge
+    largest = Scene(Can(LARGEST, LARGEST, LARGEST, LARGEST), Load(LARGEST, LARGEST, LARGEST), 1.5, "frozen", LARGEST)
+    smallest = Scene(Can(SMALLEST, SMALLEST, SMALLEST), Load(SMALLEST, SMALLEST, SMALLEST), 1e-300, "sliding", SMALLEST)
+    for scene in (largest, smallest):
+        numbers = [*dataclasses.astuple(scene.oscillator), scene.acceleration(), scene.mass]
+        assert all(abs(each) < huge for each in numbers)
+
+
+@pytest.mark.parametrize(
+    "number", [Decimal("0.25"), Fraction(1, 4), np.float16(0.25), np.float64(0.25), np.longdouble(0.25), np.array(0.25)]
+)
+def test_numbers_of_any_kind_become_doubles(number: object) -> None:
+    scene = Scene(Can(number, number, number, number), Load(number, number, number, number), number, gravity=number)
+    for values in (dataclasses.astuple(scene.can), dataclasses.astuple(scene.load), (scene.incline, scene.gravity)):
+        assert all(type(each) is float and each == 0.25 for each in values)
+
+
+@pytest.mark.parametrize("bad", ["metal", 3, Can, BEER, [Can()]])
+def test_a_can_is_a_can(bad: object) -> None:
+    refuses(f"can must be a Can, got {shown(bad)}", sliding, can=bad)
+    refuses(f"can must be a Can, got {shown(bad)}", Scene, bad, BEER)
+
+
+@pytest.mark.parametrize("bad", ["beer", None, Can(), Load])
+def test_a_load_is_a_load(bad: object) -> None:
+    refuses(f"load must be a Load, got {shown(bad)}", Scene, Can(), bad)
 
 
 def test_parameters_are_frozen() -> None:

@@ -14,7 +14,7 @@ from mjbeer.simulation.run import Run
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.measure import turning_times
 from mjbeer.theory.record import Record, axis_drift
-from mjbeer.theory.trust import ERROR, LIFT, SLIP
+from mjbeer.theory.trust import ERROR, LIFT, SLIP, doubts
 from tests.support.scenes import METAL, SCENES
 
 # After 2 s the can as a whole has some thousand times the energy of the swing, to which a drift is compared.
@@ -178,10 +178,10 @@ def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:
 @pytest.mark.parametrize("name", ["phi", "u", "phi_dot", "roll", "lift"])
 def test_a_number_that_is_not_finite_is_never_trusted(name: str) -> None:
     motion = exact(sliding(can=METAL), TIME, 0.8)
-    values = getattr(motion, name).copy()
-    values[200] = np.nan
+    arrays = {each: getattr(motion, each).copy() for each in Coordinates.__dataclass_fields__}
+    arrays[name][200] = np.nan
     with np.errstate(invalid="ignore"):
-        assert not replace(motion, **{name: values}).trusted
+        assert doubts(Record.of(Coordinates(**arrays), motion.scene), can_part=False)
 
 
 def test_frozen_can_from_the_top_leaves_the_incline() -> None:

@@ -38,11 +38,26 @@ def draw(
       ParameterError: if a parameter is not allowed.
       RenderingError: while the first picture is drawn, if OpenGL does not work.
     """
-    for name, pixels in (("width", width), ("height", height)):
-        if require.positive(name, pixels) % 1 != 0 or pixels > _LARGEST:
-            raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {pixels!r}")
+    require.instance("trajectory", trajectory, Trajectory)
+    if (np.diff(trajectory.time) <= 0).any():
+        raise ParameterError(
+            f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
+        )
+    width, height = whole("width", width), whole("height", height)
     require.choice("camera", camera, CAMERAS)
-    return _draw(trajectory, times, width=int(width), height=int(height), camera=camera, speed=speed)
+    return _draw(trajectory, times, width=width, height=height, camera=camera, speed=speed)
+
+
+def whole(name: str, pixels: float) -> int:
+    """Return a number of pixels as an integer.
+
+    Raises:
+      ParameterError: if it is not a whole number, not positive, or larger than encoders support.
+    """
+    number = require.positive(name, pixels)
+    if number % 1 != 0 or number > _LARGEST:
+        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.shown(pixels)}")
+    return int(number)
 
 
 def _draw(

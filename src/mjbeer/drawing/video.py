@@ -14,6 +14,9 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
 
+_MOST_FRAMES = 1e6
+"""Largest number of frames of a video: four and a half hours at 60 frames per second."""
+
 
 def render(
     trajectory: Trajectory,
@@ -36,10 +39,14 @@ def render(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
+    require.instance("trajectory", trajectory, Trajectory)
     target = _file(path, ".mp4")
+    width, height = frames.whole("width", width), frames.whole("height", height)
     for name, pixels in (("width", width), ("height", height)):
-        if require.number(name, pixels) % 2 != 0:
+        if pixels % 2 != 0:
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
+    fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", speed)
+    progress = require.boolean("progress", progress)
     times = frame_times(trajectory, fps, speed)
     pictures = frames.draw(trajectory, times, width=width, height=height, camera=camera, speed=speed)
     console = terminal.STDERR if progress else None
@@ -49,7 +56,7 @@ def render(
         terminal.progress_bar(console, len(times)) as begin,
     ):
         counted = _count(pictures, begin, target.name)
-        encoder.encode(counted, temporary, width=int(width), height=int(height), fps=fps)
+        encoder.encode(counted, temporary, width=width, height=height, fps=fps)
 
 
 def _count(pictures: Iterable[np.ndarray], begin: Callable[[str], None], name: str) -> Iterator[np.ndarray]:
@@ -89,10 +96,12 @@ def frame(
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL does not work; the message names what to install.
     """
+    require.instance("trajectory", trajectory, Trajectory)
     start, end = float(trajectory.time[0]), float(trajectory.time[-1])
-    if not start <= require.number("time", time, "s") <= end:
-        raise ParameterError(f"time must be within the trajectory, {start:g} to {end:g} s, got {time!r}")
-    pictures = frames.draw(trajectory, np.array([time]), width=width, height=height, camera=camera)
+    moment = require.number("time", time, "s")
+    if not start <= moment <= end:
+        raise ParameterError(f"time must be within the trajectory, {start:g} to {end:g} s, got {require.shown(time)}")
+    pictures = frames.draw(trajectory, np.array([moment]), width=width, height=height, camera=camera)
     with contextlib.closing(pictures):
         return next(pictures)
 
@@ -101,16 +110,21 @@ def frame_times(trajectory: Trajectory, fps: float, speed: float) -> np.ndarray:
     """Return the times [s] of a video's frames; the video lasts as long as the trajectory, divided by `speed`.
 
     Raises:
-      ParameterError: if `fps` or `speed` is not greater than 0.
+      ParameterError: if `fps` or `speed` is not greater than 0, or the video would have too many frames.
     """
-    require.positive("fps", fps, "1/s")
-    require.positive("speed", speed)
-    start, duration = trajectory.time[0], trajectory.time[-1] - trajectory.time[0]
-    return start + speed / fps * np.arange(max(1, round(duration * fps / speed)))
+    fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", speed)
+    start, duration = float(trajectory.time[0]), float(trajectory.time[-1] - trajectory.time[0])
+    count = duration * fps / speed
+    if count > _MOST_FRAMES:
+        raise ParameterError(
+            f"a video must have at most {_MOST_FRAMES:g} frames, got {duration:g} s at {fps:g} frames per second and a "
+            f"speed of {speed:g}, which are {count:.3g}"
+        )
+    return start + speed / fps * np.arange(max(1, round(count)))
 
 
 def _file(path: str | os.PathLike[str], suffix: str) -> pathlib.Path:
-    target = pathlib.Path(path)
+    target = require.path(path)
     if target.suffix.lower() != suffix:
-        raise ParameterError(f"the file's name must end in {suffix}, got {str(path)!r}")
+        raise ParameterError(f"the file's name must end in {suffix}, got {require.shown(str(path))}")
     return target

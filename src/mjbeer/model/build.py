@@ -1,13 +1,16 @@
 """Builds the MuJoCo model of a scene, for each of three ways of rolling, from an MJCF template."""
 
 import math
+import threading
+import warnings
 
 import mujoco
 
+from mjbeer import require
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import appearance, constrained, reduced, templates
 from mjbeer.model.inertia import mass_unit
-from mjbeer.model.setting import DOP853, FRICTION, TUNED, Setting, Softness
+from mjbeer.model.setting import DOP853, FRICTION, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.theory.scene import Scene
 
 _INTEGRATORS = {
@@ -31,6 +34,10 @@ _UNUSED = (
     | _DISABLE.mjDSBL_SENSOR
     | _DISABLE.mjDSBL_SPRING
 )
+_SINGULAR = "Inertia matrix is too close to singular"
+"""What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
+_compiling = threading.Lock()
+"""Warnings are caught by the whole process, and so by one thread at a time."""
 _UNCONSTRAINED = (
     _DISABLE.mjDSBL_CONSTRAINT | _DISABLE.mjDSBL_CONTACT | _DISABLE.mjDSBL_EQUALITY | _DISABLE.mjDSBL_WARMSTART
 )
@@ -38,9 +45,9 @@ _UNCONSTRAINED = (
 
 def build(
     scene: Scene,
-    rolling: str = "reduced",
+    rolling: Rolling = "reduced",
     visuals: bool = False,
-    integrator: str = "RK4",
+    integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
     softness: Softness = TUNED,
@@ -62,6 +69,8 @@ def build(
       UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
       TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
     """
+    require.instance("scene", scene, Scene)
+    visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
     return compile_model(scene, setting, visuals)
 
@@ -80,10 +89,18 @@ def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
     Raises:
       UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the template.
     """
-    try:
-        return spec.compile()
-    except ValueError as error:
-        raise UnsupportedError(f"MuJoCo cannot represent this scene: {error}") from error
+    with _compiling, warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            model = spec.compile()
+        except ValueError as error:
+            reason = "; ".join(str(error).splitlines())
+            raise UnsupportedError(f"MuJoCo cannot represent this scene: {reason}") from error
+    for warning in caught:
+        if _SINGULAR in str(warning.message):
+            raise UnsupportedError(f"MuJoCo cannot represent this scene: {warning.message}")
+        warnings.warn(warning.message, stacklevel=2)
+    return model
 
 
 def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:

@@ -6,6 +6,7 @@ import pathlib
 import mujoco
 import numpy as np
 
+from mjbeer import require
 from mjbeer.exceptions import MjbeerError, UnsupportedError
 from mjbeer.model import build, setting, state
 from mjbeer.model.engine import library
@@ -32,8 +33,8 @@ def export(
     path: str | os.PathLike[str],
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
-    rolling: str = "reduced",
-    integrator: str = "RK4",
+    rolling: setting.Rolling = "reduced",
+    integrator: setting.Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = setting.FRICTION,
 ) -> None:
@@ -49,12 +50,15 @@ def export(
       OutputError: if the file cannot be written.
       MjbeerError: if the text does not give the same model.
     """
-    if integrator == setting.DOP853:
+    require.instance("scene", scene, Scene)
+    target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
+    wanted = setting.Setting(rolling, integrator, timestep, friction=friction)
+    if wanted.integrator == setting.DOP853:
         raise UnsupportedError(
             f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
         )
-    spec = build.specify(scene, setting.Setting(rolling, integrator, timestep, friction=friction), visuals=True)
-    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r} "  # replaces the template's
+    spec = build.specify(scene, wanted, visuals=True)
+    spec.comment = f" Written by mjbeer: rolling={wanted.rolling!r}, {scene!r} "  # replaces the template's
     folder = pathlib.Path(spec.modelfiledir).resolve()
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
@@ -65,7 +69,7 @@ def export(
     built = spec.compile()
     text = _text(spec)
     _compare(built, mujoco.MjModel.from_xml_string(text))
-    files.write(path, text)
+    files.write(target, text)
 
 
 def _text(spec: mujoco.MjSpec) -> str:

@@ -4,24 +4,73 @@ from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from mjbeer import require
+from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 
 Rolling = Literal["reduced", "equality", "contact"]
 MujocoIntegrator = Literal["Euler", "implicit", "implicitfast", "discrete", "RK4"]
 Integrator = Literal[MujocoIntegrator, "DOP853"]
-ROLLINGS: tuple[str, ...] = get_args(Rolling)
+ROLLINGS: tuple[Rolling, ...] = get_args(Rolling)
 """The ways in which a can is made to roll; see `Setting.rolling`."""
-INTEGRATORS: tuple[str, ...] = get_args(MujocoIntegrator)
+INTEGRATORS: tuple[MujocoIntegrator, ...] = get_args(MujocoIntegrator)
 """The names of MuJoCo's own integrators, as in MJCF."""
 DOP853 = "DOP853"
 """The name of mjbeer's integrator of eighth order."""
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
+_LEAST_FRICTION = 1e-5
+"""Smallest friction coefficient in MuJoCo (mjMINMU): it would raise a smaller one to this, and say nothing."""
+_IMPEDANCES = (1e-4, 0.9999)
+"""Smallest and largest impedance in MuJoCo (mjMINIMP and mjMAXIMP): it would move others there, and say nothing."""
+FirstJoint = Literal["slide", "hinge"]
+
+
+def _checked_solref(solref: tuple[float, float]) -> tuple[float, float]:
+    """Return solref as two floats, in one of the two forms that MuJoCo does not replace by its default.
+
+    Raises:
+      ParameterError: if it is neither.
+    """
+    first, second = _pair("solref", solref)
+    if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):
+        raise ParameterError(
+            "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness [1/s^2] and a "
+            f"damping [1/s], both negated, got {require.shown(solref)}"
+        )
+    return first, second
+
+
+def _checked_impedance(impedance: tuple[float, float]) -> tuple[float, float]:
+    """Return dmin and dmax of solimp as two floats.
+
+    Raises:
+      ParameterError: if one is not in the range of MuJoCo.
+    """
+    low, high = _IMPEDANCES
+    pair = _pair("impedance", impedance)
+    if not low <= min(pair) <= max(pair) <= high:
+        raise ParameterError(f"impedance must be two numbers from {low:g} to {high:g}, got {require.shown(impedance)}")
+    return pair
+
+
+def _pair(name: str, value: tuple[float, float]) -> tuple[float, float]:
+    """Return two numbers as two floats.
+
+    Raises:
+      ParameterError: if `value` is no list or tuple of two finite numbers.
+    """
+    if not isinstance(value, (list, tuple)) or len(value) != 2:
+        raise ParameterError(f"{name} must be two numbers, got {require.shown(value)}")
+    return require.number(f"{name}[0]", value[0]), require.number(f"{name}[1]", value[1])
 
 
 @dataclass(frozen=True)
 class Softness:
-    """How soft the rolling constraint is, in MuJoCo's terms; None means as hard as is stable under the integrator."""
+    """How soft the rolling constraint is, in MuJoCo's terms; None means as hard as is stable under the integrator.
+
+    Raises:
+      ParameterError: if a number is none that MuJoCo would use as it is.
+    """
 
     solref: tuple[float, float] | None = None
     """Time constant [s] and damping ratio; or, both negated, stiffness [1/s^2] and damping [1/s]."""
@@ -35,8 +84,19 @@ class Softness:
     """Whether softness is proportional to the exact inverse inertia of the constraint (MuJoCo's `diagexact`)."""
     elliptic: bool = True
     """Whether the friction cone of a contact is elliptic instead of MuJoCo's default, a pyramid."""
-    first: Literal["slide", "hinge"] = "slide"
+    first: FirstJoint = "slide"
     """The joint that the equality names first: MuJoCo then constrains a distance ("slide") or an angle ("hinge")."""
+
+    def __post_init__(self) -> None:
+        if self.solref is not None:
+            require.store(self, solref=_checked_solref(self.solref))
+        if self.impedance is not None:
+            require.store(self, impedance=_checked_impedance(self.impedance))
+        if self.impratio is not None:
+            require.store(self, impratio=require.positive("impratio", self.impratio))
+        for name in ("refsafe", "exact_diagonal", "elliptic"):
+            require.store(self, **{name: require.boolean(name, getattr(self, name))})
+        require.choice("first", self.first, get_args(FirstJoint))
 
 
 TUNED = Softness()
@@ -51,9 +111,9 @@ class Setting:
       ParameterError: if a name is unknown or a number is not allowed.
     """
 
-    rolling: str = "reduced"
+    rolling: Rolling = "reduced"
     """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a plane)."""
-    integrator: str = "RK4"
+    integrator: Integrator = "RK4"
     """One of `INTEGRATORS`, or "DOP853"; with a tolerance it is not used."""
     timestep: float = 1e-3
     """Timestep [s]; with a tolerance it is the sampling interval."""
@@ -66,10 +126,17 @@ class Setting:
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
         require.choice("integrator", self.integrator, (*INTEGRATORS, DOP853))
-        require.positive("timestep", self.timestep, "s")
-        require.positive("friction", self.friction)
-        if self.tolerance is not None:
-            require.positive("tolerance", self.tolerance, "rad")
+        require.store(
+            self,
+            timestep=require.positive("timestep", self.timestep, "s"),
+            friction=require.positive("friction", self.friction),
+            tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
+        )
+        if self.friction < _LEAST_FRICTION:
+            raise ParameterError(
+                f"friction must be at least {_LEAST_FRICTION:g}, MuJoCo's smallest (mjMINMU), got {self.friction!r}"
+            )
+        require.instance("softness", self.softness, Softness)
 
 
 _DEFAULTS = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.model.setting import DOP853
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
@@ -27,7 +28,7 @@ class Looping:
 
 def loop(scene: Scene, phi_dot0: float) -> Looping:
     """Simulate one turn from phi = 0 and return its ripples; `phi_dot0` [rad/s] must be enough for a turn."""
-    turn = 2 * math.pi / phi_dot0
+    turn = 2 * math.pi / require.positive("phi_dot0", phi_dot0, "rad/s")
     for _ in range(8):  # Newton's method for the time of a turn
         end = simulate(scene, turn, 0.0, phi_dot0, integrator=DOP853, timestep=turn / 64, times=np.array([0, turn]))
         turn += (2 * math.pi - end.phi[-1]) / end.phi_dot[-1]

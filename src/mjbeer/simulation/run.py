@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.setting import DOP853, TUNED, Setting
 from mjbeer.model.state import START_DEPTH
@@ -79,6 +80,7 @@ class Run(Trajectory):
         It is infinite if rolling was possible to the end. Infinite friction, the default, leaves only N > 0 to hold;
         any other takes a run as long as this one, all of whose steps are looked at.
         """
+        friction = require.friction(friction)
         if friction == self.steps.friction:
             return self.steps.fails_at
         prepared = Prepared(self.scene, self.setting)

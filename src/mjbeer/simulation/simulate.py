@@ -2,18 +2,24 @@
 
 import math
 
+import mujoco
 import numpy as np
+from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import DOP853, FRICTION, TUNED, Setting, Softness
+from mjbeer.model.setting import DOP853, FRICTION, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
 
-_ON_A_STEP = 1e-6
-"""Largest distance of a requested time from a multiple of the timestep, in timesteps: it allows for rounding."""
+_ON_A_STEP = 1e-10
+"""Largest distance of a requested time from a multiple of the timestep h, over the time itself: it allows for rounding.
+Rounding is relative: k h and what np.linspace gives are off by 1e-15 or less, and a running sum of a million timesteps,
+which is how MuJoCo's own clock counts, by 2e-11 (measured). So no time but 0 counts as step 0, however short it is."""
 _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
+_MOST_STEPS = 1e12
+"""Largest number of steps: at half a microsecond each they take a week."""
 
 
 def simulate(
@@ -21,11 +27,11 @@ def simulate(
     duration: float,
     phi0: float,
     phi_dot0: float = 0.0,
-    rolling: str = "reduced",
-    integrator: str = "RK4",
+    rolling: Rolling = "reduced",
+    integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     tolerance: float | None = None,
-    times: np.ndarray | None = None,
+    times: ArrayLike | None = None,
     friction: float = FRICTION,
     softness: Softness = TUNED,
 ) -> Run:
@@ -50,8 +56,10 @@ def simulate(
       DivergenceError: if the motion stops being finite.
       ToleranceError: if the tolerance is not reached.
     """
-    require.positive("duration", duration, "s")
+    require.instance("scene", scene, Scene)
+    duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
+    _check_start(scene, phi0, phi_dot0)
     setting = Setting(
         rolling=rolling,
         integrator=integrator,
@@ -60,34 +68,71 @@ def simulate(
         friction=friction,
         softness=softness,
     )
-    sample_times = _sample_times(duration, setting, times)
+    if times is None:
+        sample_times = _every_step(duration, setting.timestep)
+    else:
+        sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     return integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
 
 
-def _sample_times(duration: float, setting: Setting, times: np.ndarray | None) -> np.ndarray:
+def _check_start(scene: Scene, phi0: float, phi_dot0: float) -> None:
+    """Check that MuJoCo would not call the start itself diverged.
+
+    Raises:
+      ParameterError: if a coordinate or a rate of the start is beyond mjMAXVAL.
+    """
+    u, u_dot = scene.start(phi0, phi_dot0)
+    radius, limit = scene.can.radius, mujoco.mjMAXVAL
+    rates = {"phi_dot0": (phi_dot0, "rad/s"), "u_dot": (u_dot, "m/s"), "roll_dot": (u_dot / radius, "rad/s")}
+    places = {"phi0": (phi0, "rad"), "u": (u, "m"), "roll": (u / radius, "rad")}
+    for name, (value, unit) in (places | rates).items():
+        if not abs(value) <= limit:
+            raise ParameterError(
+                f"{name} of the start must be between {-limit:g} and {limit:g} [{unit}], beyond which MuJoCo calls a "
+                f"state diverged (mjMAXVAL), got {value!r}"
+            )
+
+
+def _every_step(duration: float, timestep: float) -> np.ndarray:
+    """Return the times of all steps [s], from 0 to the first one at or after `duration`."""
+    ratio = duration / timestep
+    if ratio > _MOST_SAMPLES:
+        raise ParameterError(
+            f"a duration of {duration!r} s has too many timesteps of {timestep!r} s: at most {_MOST_SAMPLES:g}, "
+            "or say with times= which samples to keep"
+        )
+    nearest = round(ratio)
+    last = nearest if abs(ratio - nearest) <= _ON_A_STEP * ratio else math.ceil(ratio)
+    return timestep * np.arange(last + 1)
+
+
+def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.ndarray:
     """Return the times of the samples [s], which for MuJoCo's integrators are exact multiples of the timestep."""
     timestep = setting.timestep
-    if times is None:
-        if duration / timestep > _MOST_SAMPLES:
-            raise ParameterError(
-                f"a duration of {duration!r} s has too many timesteps of {timestep!r} s: at most {_MOST_SAMPLES:g}, "
-                "or say with times= which samples to keep"
-            )
-        return timestep * np.arange(math.ceil(duration / timestep - _ON_A_STEP) + 1)
-    moments = np.asarray(times, dtype=float)
-    if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all() or (np.diff(moments) <= 0).any():
-        raise ParameterError("times must be a one-dimensional array of increasing finite times [s]")
-    if moments[0] < 0 or moments[-1] > duration * (1 + 1e-12):
+    if times[-1] > duration * (1 + _ON_A_STEP):
         raise ParameterError(
-            f"times must be between 0 and the duration {duration!r} s, got {moments[0]!r} to {moments[-1]!r}"
+            f"times must be between 0 and the duration {duration!r} s, got {require.shown(times[-1])} s"
         )
-    if setting.tolerance is not None or setting.integrator == DOP853:
-        return moments
-    steps = np.rint(moments / timestep)
-    off = np.abs(moments / timestep - steps)
-    if off.max() > _ON_A_STEP:
+    if setting.tolerance is not None:
+        return times
+    ratios = times / timestep
+    if ratios[-1] > _MOST_STEPS:
+        raise ParameterError(
+            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.shown(times[-1])} s"
+        )
+    if setting.integrator == DOP853:
+        return times
+    steps = np.rint(ratios)
+    off = np.flatnonzero(np.abs(ratios - steps) > _ON_A_STEP * ratios)
+    if len(off):
         raise ParameterError(
             f"MuJoCo's integrators have samples at multiples of the timestep {timestep!r} s only, not at "
-            f'{moments[off.argmax()]!r} s; integrator="DOP853" has them anywhere'
+            f'{require.shown(times[off[0]])} s; integrator="DOP853" has them anywhere'
+        )
+    same = np.flatnonzero(np.diff(steps) == 0)
+    if len(same):
+        raise ParameterError(
+            f"times must be at least a timestep of {timestep!r} s apart, got {require.shown(times[same[0]])} s and "
+            f"{require.shown(times[same[0] + 1])} s"
         )
     return steps * timestep

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mjbeer.model.setting import DOP853
+from mjbeer.model.setting import DOP853, Integrator
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.scene import Scene
@@ -16,13 +16,13 @@ def observed_order(steps: np.ndarray, errors: np.ndarray) -> float:
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
-def ladder(scene: Scene, integrator: str, steps: np.ndarray, duration: float, phi0: float) -> np.ndarray:
+def ladder(scene: Scene, integrator: Integrator, steps: np.ndarray, duration: float, phi0: float) -> np.ndarray:
     """Simulate a scene with reduced rolling at each of some timesteps [s], and return the errors of phi [rad]."""
     runs = (simulate(scene, duration, phi0, integrator=integrator, timestep=float(h)) for h in steps)
     return np.array([phi_error(run) for run in runs])
 
 
-def order(scene: Scene, integrator: str) -> float:
+def order(scene: Scene, integrator: Integrator) -> float:
     """Return the observed order of an integrator on a swing of 0.3 rad, over six halvings of the timestep.
 
     At order 8 the error falls by 14 digits over six halvings, more than a double has. For DOP853 each halving is

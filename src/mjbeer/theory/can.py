@@ -35,11 +35,13 @@ class Can:
     """Moment of inertia I_can about the axis [kg m^2], eq. (31)."""
 
     def __post_init__(self) -> None:
-        require.positive("can radius", self.radius, "m")
-        require.positive("can length", self.length, "m")
-        require.non_negative("can mass", self.mass, "kg")
-        require.non_negative("can inertia", self.inertia, "kg m^2")
-        require.store_floats(self, "radius", "length", "mass", "inertia")
+        require.store(
+            self,
+            radius=require.positive("can radius", self.radius, "m"),
+            length=require.positive("can length", self.length, "m"),
+            mass=require.non_negative("can mass", self.mass, "kg"),
+            inertia=require.non_negative("can inertia", self.inertia, "kg m^2"),
+        )
         if self.mass == 0 and self.inertia > 0:
             raise ParameterError(
                 f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"
@@ -61,22 +63,24 @@ class Can:
         Raises:
           ParameterError: if one of the numbers is not positive.
         """
-        require.positive("can radius", radius, "m")
-        require.positive("can length", length, "m")
-        require.positive("sheet thickness", thickness, "m")
-        require.positive("sheet density", density, "kg/m^3")
+        radius = require.positive("can radius", radius, "m")
+        length = require.positive("can length", length, "m")
+        thickness = require.positive("sheet thickness", thickness, "m")
+        density = require.positive("sheet density", density, "kg/m^3")
         sheet = math.pi * radius * thickness * density
-        return cls(
-            radius, length, mass=2 * sheet * (length + radius), inertia=sheet * radius**2 * (2 * length + radius)
-        )
+        mass, inertia = 2 * sheet * (length + radius), sheet * radius**2 * (2 * length + radius)
+        with require.from_given(radius=radius, length=length, thickness=thickness, density=density):
+            return cls(radius, length, mass, inertia)
 
     @classmethod
     def hoop(cls, radius: float = RADIUS, length: float = LENGTH, mass: float = 0.05) -> "Can":
         """Return a hoop, which has all of its `mass` [kg] at the rim: I_can = m_can a^2 (appendices A.4 and B).
 
         Raises:
-          ParameterError: if `radius` or `mass` is not positive.
+          ParameterError: if one of the numbers is not positive.
         """
-        require.positive("hoop radius", radius, "m")
-        require.positive("hoop mass", mass, "kg")
-        return cls(radius, length, mass=mass, inertia=mass * radius**2)
+        radius = require.positive("hoop radius", radius, "m")
+        length = require.positive("hoop length", length, "m")
+        mass = require.positive("hoop mass", mass, "kg")
+        with require.from_given(radius=radius, mass=mass):
+            return cls(radius, length, mass=mass, inertia=mass * radius**2)

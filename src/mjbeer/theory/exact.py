@@ -7,10 +7,13 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory import motion
+from mjbeer.theory import motion, reach
 from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
+
+_LARGE = 1e4
+"""Start angle [rad] from which whole turns are subtracted."""
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
@@ -21,16 +24,29 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     along the incline; for a frozen load it starts at u = a phi0 with u_dot = a phi_dot0.
 
     Raises:
-      ParameterError: if a time or a start is not finite, or a time is before 0.
+      ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e10 and 1e10
+        rad or -1e50 and 1e50 rad/s, or the motion is too long or too extreme for double precision.
       NoLibrationError: if the start lies exactly on the separatrix.
     """
+    require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    time = np.atleast_1d(np.asarray(time, dtype=float))
-    if time.ndim != 1 or not np.isfinite(time).all() or (time < 0).any():
-        raise ParameterError("time must be a one-dimensional array of finite times at or after 0 [s]")
-    phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
-    u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
-    radius, zeros = scene.can.radius, np.zeros_like(time)
+    time = require.times("time", time)
+    reach.check_turns(scene.oscillator, float(time.max()), phi0=phi0, phi_dot0=phi_dot0)
+    # Whole turns change phi and nothing else, and the rounding of a large angle would make the quadrature slow.
+    within = phi0 if abs(phi0) < _LARGE else math.remainder(phi0, 2 * math.pi)
+    try:
+        with np.errstate(over="raise", invalid="raise", divide="raise"):
+            phi, phi_dot = motion.solve(scene.oscillator, time, phi0=within, phi_dot0=phi_dot0)
+            phi = phi + (phi0 - within)
+            u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
+            roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
+    except (ArithmeticError, ValueError) as error:
+        raise ParameterError(
+            f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
+            f"until {float(time.max())!r} s in {scene!r}"
+        ) from error
+    reach.check_phase(time, phi, phi_dot)
+    zeros = np.zeros_like(time)
     return Trajectory(
         scene=scene,
         phi0=phi0,
@@ -40,8 +56,8 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
         phi=phi,
         u_dot=u_dot,
         phi_dot=phi_dot,
-        roll=u / radius,
-        roll_dot=u_dot / radius,
+        roll=roll,
+        roll_dot=roll_dot,
         lift=zeros,
         lift_dot=zeros,
     )

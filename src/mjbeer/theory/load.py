@@ -31,13 +31,13 @@ class Load:
     only how the load is drawn: without it the load is a ball at its centre of mass."""
 
     def __post_init__(self) -> None:
-        require.positive("load mass", self.mass, "kg")
-        require.non_negative("load offset", self.offset, "m")
-        require.non_negative("load inertia", self.inertia, "kg m^2")
-        require.store_floats(self, "mass", "offset", "inertia")
-        if self.fill is not None:
-            _checked_fill(self.fill)
-            require.store_floats(self, "fill")
+        require.store(
+            self,
+            mass=require.positive("load mass", self.mass, "kg"),
+            offset=require.non_negative("load offset", self.offset, "m"),
+            inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
+            fill=None if self.fill is None else _checked_fill(self.fill),
+        )
 
     @classmethod
     def segment(
@@ -50,12 +50,14 @@ class Load:
         Raises:
           ParameterError: if `fill` is outside (0, 1], or another number is not positive.
         """
-        require.positive("load radius", radius, "m")
-        require.positive("load length", length, "m")
-        require.positive("load density", density, "kg/m^3")
-        shape = segment(_checked_fill(fill))
+        radius = require.positive("load radius", radius, "m")
+        length = require.positive("load length", length, "m")
+        density = require.positive("load density", density, "kg/m^3")
+        fill = _checked_fill(fill)
+        shape = segment(fill)
         mass = density * length * radius**2 * shape.area
-        return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
+        with require.from_given(radius=radius, length=length, fill=fill, density=density):
+            return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
 
     @classmethod
     def point(cls, mass: float, offset: float) -> "Load":
@@ -64,7 +66,9 @@ class Load:
 
 
 def _checked_fill(fill: float) -> float:
-    require.number("fill", fill)
-    if not 0 < fill <= 1:
-        raise ParameterError(f"fill (height of the beer over the can's diameter) must be in (0, 1], got {fill!r}")
-    return fill
+    share = require.number("fill", fill)
+    if not 0 < share <= 1:
+        raise ParameterError(
+            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {require.shown(fill)}"
+        )
+    return share

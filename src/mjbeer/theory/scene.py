@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from typing import Literal, get_args
 
 from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
@@ -10,7 +11,8 @@ from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.oscillator import Oscillator
 
-ATTACHMENTS = ("sliding", "frozen")
+Attachment = Literal["sliding", "frozen"]
+ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
 """The ways in which a load can be attached; see `Scene.attachment`."""
 INCLINE = math.radians(10)
 """Default incline [rad]: 10 degrees, as in the paper's footnote 8."""
@@ -31,7 +33,7 @@ class Scene:
     load: Load
     incline: float = INCLINE
     """Angle alpha of the incline to the horizontal [rad]; if positive, u grows downhill."""
-    attachment: str = "sliding"
+    attachment: Attachment = "sliding"
     """"sliding": the load slides without friction about the axis; "frozen": it is rigidly attached."""
     gravity: float = GRAVITY
     """Acceleration of gravity g [m/s^2]."""
@@ -39,12 +41,15 @@ class Scene:
     """The scene as one degree of freedom, phi; it follows from the other fields."""
 
     def __post_init__(self) -> None:
-        require.number("incline", self.incline, "rad")
-        if not abs(self.incline) < math.pi / 2:
-            raise ParameterError(f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {self.incline!r}")
+        require.instance("can", self.can, Can)
+        require.instance("load", self.load, Load)
+        incline = require.number("incline", self.incline, "rad")
+        if not abs(incline) < math.pi / 2:
+            raise ParameterError(
+                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.shown(self.incline)}"
+            )
         require.choice("attachment", self.attachment, ATTACHMENTS)
-        require.non_negative("gravity", self.gravity, "m/s^2")
-        require.store_floats(self, "incline", "gravity")
+        require.store(self, incline=incline, gravity=require.non_negative("gravity", self.gravity, "m/s^2"))
         if self.load.offset > self.can.radius:
             raise ParameterError(
                 f"the load must be inside the can: its offset must be at most the radius {self.can.radius!r} m, "
@@ -116,7 +121,7 @@ class Scene:
           NoEquilibriumError: if there is no equilibrium.
           NoLibrationError: if `amplitude` is at or beyond the separatrix.
         """
-        require.number("amplitude", amplitude, "rad")
+        amplitude = require.number("amplitude", amplitude, "rad")
         self.equilibrium()
         return motion.period(self.oscillator, amplitude)
 
@@ -133,7 +138,11 @@ class Scene:
         """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
 
         A sliding load starts with s = 0 and s_dot = 0 (eq. 12), a frozen one without slip from u = a phi (eq. 50).
+
+        Raises:
+          ParameterError: if the start is not allowed, as in `exact`.
         """
+        phi0, phi_dot0 = require.start(phi0, phi_dot0)
         if self.attachment == "frozen":
             return self.can.radius * phi0, self.can.radius * phi_dot0
         return self.load.offset * math.sin(phi0), self.load.offset * math.cos(phi0) * phi_dot0
@@ -160,8 +169,11 @@ def sliding(
     """Return the scene of beer that slides without friction in a can: sections 2 (massless can, the default) and 3.
 
     `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3].
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
     """
-    can = Can.massless() if can is None else can
+    can = Can.massless() if can is None else require.instance("can", can, Can)
     load = Load.segment(can.radius, can.length, fill=fill, density=density)
     return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity)
 
@@ -172,8 +184,11 @@ def frozen(
     """Return the scene of beer frozen to the can: appendix A (massless can, the default).
 
     `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3].
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
     """
-    can = Can.massless() if can is None else can
+    can = Can.massless() if can is None else require.instance("can", can, Can)
     load = Load.segment(can.radius, can.length, fill=fill, density=density)
     return Scene(can, load, incline=incline, attachment="frozen", gravity=gravity)
 
@@ -191,7 +206,12 @@ def pendulum(
 
     `incline` is in [rad]; `wheel_mass` and `load_mass` are M and m [kg], and `offset` is the pendulum's length b [m].
     The paper gives no numbers: the defaults are a wheel of the can's size and a bob of half its mass.
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
     """
+    radius = require.positive("wheel radius", radius, "m")
+    wheel_mass = require.positive("wheel mass", wheel_mass, "kg")
     can, load = Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset)
     return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity)
 
@@ -208,6 +228,9 @@ def hoop(
 
     `incline` is in [rad]; `hoop_mass` and `load_mass` are M and m [kg]. The default M/m = 1/20 is light enough to hop,
     for which M/m must be below 1/13.
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
     """
     can, load = Can.hoop(radius, length, hoop_mass), Load.point(load_mass, radius)
     return Scene(can, load, incline=incline, attachment="frozen", gravity=gravity)

@@ -5,7 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from mjbeer.exceptions import MjbeerError
+from mjbeer import require
+from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import conserved, measure
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import Forces, rolling_forces
@@ -16,13 +17,26 @@ from mjbeer.theory.trust import doubts
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Trajectory(Coordinates):
-    """A motion of a scene, with the energy, forces and warnings that follow from it."""
+    """A motion of a scene, with the energy, forces and warnings that follow from it.
+
+    Raises:
+      ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
+    """
 
     scene: Scene
     phi0: float
     """Angle phi at time 0 [rad], whether there is a sample of it or not."""
     phi_dot0: float
     """Rate of phi at time 0 [rad/s]."""
+
+    def __post_init__(self) -> None:
+        require.instance("scene", self.scene, Scene)
+        phi0, phi_dot0 = require.start(self.phi0, self.phi_dot0)
+        require.store(self, phi0=phi0, phi_dot0=phi_dot0)
+        for name in Coordinates.__dataclass_fields__:
+            require.store(self, **{name: require.samples(name, getattr(self, name))})
+            if (count := len(getattr(self, name))) != len(self.time):
+                raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
 
     @property
     def rolling(self) -> str:
@@ -74,7 +88,7 @@ class Trajectory(Coordinates):
 
         It is infinite if rolling was possible to the end. Infinite friction, the default, leaves only N > 0 to hold.
         """
-        return Record.of(self, self.scene, friction).fails_at
+        return Record.of(self, self.scene, require.friction(friction)).fails_at
 
     def takeoff(self) -> float | None:
         """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays."""

@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 
+from mjbeer.model.setting import Rolling
 from mjbeer.paper.audit.claim import Claim, confirmed, limit
 from mjbeer.paper.audit.motions import CONTACT, THEORY
 from mjbeer.paper.equations import hopping
@@ -97,7 +98,7 @@ def _skid_angle() -> float:
     return math.pi - float(run.phi[np.argmax(rim > 1e-5 * np.abs(run.u_dot).max())])
 
 
-def _axis_height_is_radius(rolling: str) -> Terms:
+def _axis_height_is_radius(rolling: Rolling) -> Terms:
     """Return the terms of: the axis of a hoop that starts with a push stays one radius high, in radii."""
     run = simulate(_hoop(), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)
     height = 1 + np.maximum(run.lift / run.scene.can.radius, 0.0)

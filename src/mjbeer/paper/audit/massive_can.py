@@ -216,7 +216,7 @@ def _steady() -> Iterator[Claim]:
 @cache
 def _steady_motion(scene: Scene) -> Witness:
     """Return a second of a can whose beer does not swing, with MuJoCo's constraint to make it roll."""
-    return equilibrium_motion(scene, EQUALITY.split()[-1])
+    return equilibrium_motion(scene, "equality")
 
 
 def _can_energy(motion: Witness) -> np.ndarray:

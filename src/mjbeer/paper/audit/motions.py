@@ -3,7 +3,7 @@
 import math
 from functools import cache
 
-from mjbeer.model.setting import DOP853
+from mjbeer.model.setting import DOP853, Rolling
 from mjbeer.paper.audit.witness import Witness, watch
 from mjbeer.paper.scenarios import footnote_scene
 from mjbeer.simulation.simulate import simulate
@@ -53,11 +53,11 @@ def footnote() -> Witness:
 
 
 @cache
-def long_swing(scene: Scene, phi0: float, duration: float = 4.0, rolling: str = "reduced") -> Trajectory:
+def long_swing(scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced") -> Trajectory:
     """Return a swing, simulated in 4000 steps, whose frequency is to be measured."""
     return simulate(scene, duration, phi0, rolling=rolling, integrator=DOP853, timestep=duration / 4000)
 
 
-def equilibrium_motion(scene: Scene, rolling: str) -> Witness:
+def equilibrium_motion(scene: Scene, rolling: Rolling) -> Witness:
     """Return a second that starts at the equilibrium; a balanced load starts at phi = 0."""
     return watch(scene, rolling, 1.0, scene.equilibrium() if scene.load.offset else 0.0)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from mjbeer import require
 from mjbeer.model.build import build
 from mjbeer.model.inertia import mass_unit
-from mjbeer.model.setting import DOP853
+from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
 from mjbeer.model.state import places
 from mjbeer.paper.letters import Quantities
 from mjbeer.simulation.simulate import simulate
@@ -39,7 +40,7 @@ class Witness:
 
 
 def watch(
-    scene: Scene, rolling: str, duration: float, phi0: float, phi_dot0: float = 0.0, samples: int = 101
+    scene: Scene, rolling: Rolling, duration: float, phi0: float, phi_dot0: float = 0.0, samples: int = 101
 ) -> Witness:
     """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it.
 
@@ -54,7 +55,7 @@ def watch(
 def examine(run: Trajectory) -> Witness:
     """Return what MuJoCo computes at each sample of a simulated motion."""
     scene, timestep = run.scene, run.timestep or 1e-3
-    model = build(scene, run.rolling, integrator=DOP853, timestep=timestep)
+    model = build(scene, require.choice("rolling", run.rolling, ROLLINGS), integrator=DOP853, timestep=timestep)
     data = mujoco.MjData(model)
     rows = [_evaluate(model, data, scene, run, i) for i in range(len(run.time))]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}

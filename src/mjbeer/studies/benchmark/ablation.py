@@ -12,6 +12,7 @@ from mujoco import rollout
 from mjbeer.model import state
 from mjbeer.model.build import build
 from mjbeer.model.engine import quiet, untimed
+from mjbeer.model.setting import Integrator
 from mjbeer.studies.cases import CASES
 
 _STEPS, _REPEATS = 4000, 7
@@ -47,7 +48,7 @@ def ablate() -> list[dict[str, Any]]:
     return rows
 
 
-def _loops(name: str, integrator: str) -> dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]]:
+def _loops(name: str, integrator: Integrator) -> dict[str, Callable[[], tuple[np.ndarray, np.ndarray]]]:
     """Return a function for each stage that runs `_STEPS` steps of a case with it; "nothing" is without any."""
     case = CASES[name]
     lean = build(case.scene, integrator=integrator)
@@ -64,7 +65,7 @@ def _loops(name: str, integrator: str) -> dict[str, Callable[[], tuple[np.ndarra
     return loops
 
 
-def _drawable(name: str, integrator: str, disabled: int) -> mujoco.MjModel:
+def _drawable(name: str, integrator: Integrator, disabled: int) -> mujoco.MjModel:
     """Return the model of a case with geoms to be drawn, with the stages in the flags `disabled`."""
     model = build(CASES[name].scene, visuals=True, integrator=integrator)
     model.opt.disableflags = disabled

@@ -34,10 +34,10 @@ class Curve:
     def setting(self, value: float) -> Setting:
         """Return the setting of mjbeer for a `value` of the knob: a timestep [s] or a tolerance [rad]."""
         if self.knob == TOLERANCE:
-            return Setting(self.way, tolerance=value)
+            return replace(Setting(), rolling=self.way, tolerance=value)
         if self.way in USUAL:
             return replace(USUAL[self.way], integrator=self.method, timestep=value)
-        return Setting(self.way, self.method, timestep=value)
+        return replace(Setting(), rolling=self.way, integrator=self.method, timestep=value)
 
 
 def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:

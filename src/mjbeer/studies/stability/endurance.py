@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import scipy.integrate
 
-from mjbeer.model.setting import DOP853, Setting
+from mjbeer.model.setting import DOP853, Integrator, Setting
 from mjbeer.predictions.semi_implicit_euler import energy_per_swing
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.studies.study import Task
@@ -43,7 +43,7 @@ class Endurance:
     name: str
     """What kind of can swings."""
     scene: Scene
-    integrator: str
+    integrator: Integrator
     steps: int
     """Timesteps a period."""
     swings: int

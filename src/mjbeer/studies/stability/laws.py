@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from mjbeer.model.setting import DOP853
+from mjbeer.model.setting import DOP853, Integrator
 from mjbeer.predictions.semi_implicit_euler import euler_motion
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Check
@@ -120,7 +120,7 @@ def _measured_fall_slope(scene: Scene) -> float:
     return float(np.polyfit(np.log(_BESIDE_SEPARATRIX), times, 1)[0])
 
 
-def _timestep_error_ratio(integrator: str, duration: float) -> float:
+def _timestep_error_ratio(integrator: Integrator, duration: float) -> float:
     """Return the error of the turn due to the timestep over the predicted one, less 1."""
     scene, timestep, times = frozen(), 1e-3, np.array([0.0, duration])
     truth = exact(scene, times, math.pi).phi[-1]

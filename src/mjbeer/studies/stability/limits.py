@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
 from mjbeer.output.table import Table
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA
@@ -31,7 +31,7 @@ _ACCURATE_FROM = {True: 0.1, False: 0.01}
 """Smallest omega h in the search for a limit of accuracy, by whether the method is a Runge-Kutta method."""
 
 
-def measure(case: str, rolling: str, integrator: str, settled: bool = True) -> dict[str, Any]:
+def measure(case: str, rolling: Rolling, integrator: Integrator, settled: bool = True) -> dict[str, Any]:
     """Return the two limits of one way to simulate one scene, measured and predicted, all as omega h.
 
     "agrees" is whether both are within `AGREEMENT` of the prediction. A can in contact that is not `settled` starts
@@ -90,9 +90,9 @@ def table(results: list[dict[str, Any]]) -> Table:
     return Table("Largest timesteps of a small swing", columns, rows)
 
 
-def _combinations() -> list[tuple[str, str, str, bool]]:
+def _combinations() -> list[tuple[str, Rolling, Integrator, bool]]:
     """Return all scenes, ways of rolling and integrators, and whether a can in contact starts settled."""
-    combinations = []
+    combinations: list[tuple[str, Rolling, Integrator, bool]] = []
     for case, kind in CASES.items():
         for rolling in ROLLINGS:
             if rolling != "reduced" and kind.scene.attachment == "sliding" and kind.scene.can.mass == 0:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.outcome import ACCURATE, SILENT, VERDICTS, Outcome, judge
 from mjbeer.studies.study import Task
@@ -35,8 +35,8 @@ class RandomRun:
     scene: Scene
     phi0: float
     phi_dot0: float
-    rolling: str
-    integrator: str
+    rolling: Rolling
+    integrator: Integrator
     timestep: float
     steps: int
     tolerance: float | None

@@ -12,7 +12,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853, Softness
+from mjbeer.model.setting import DOP853, Integrator, Softness
 from mjbeer.model.state import places, settle
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
@@ -44,7 +44,7 @@ class Plan:
     family: str
     """What makes the motion stiff: a constraint ("equality" or "contact") whose solref has a time constant, an equality
     with a direct solref ("direct"), or, without a constraint, "gravity" or a joint's "spring" of the same frequency."""
-    integrator: str
+    integrator: Integrator
     refsafe: bool = False
     dampratio: float = 1.0
     written: str = "exact"

@@ -8,7 +8,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model import state
 from mjbeer.model.build import build
-from mjbeer.model.setting import Setting
+from mjbeer.model.setting import Integrator, Rolling, Setting
 from mjbeer.model.state import settle
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS
@@ -32,8 +32,8 @@ class Swings:
     """Swings of one scene with one way of rolling and one integrator. `swing` is the timestep as omega h."""
 
     scene: Scene
-    rolling: str
-    integrator: str
+    rolling: Rolling
+    integrator: Integrator
     settled: bool = True
     """Whether a can in contact starts at the depth at which it is carried, or 1e-9 radii deep as in `simulate`."""
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from mjbeer.model import mesh
 from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853, INTEGRATORS
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.model.state import start
 from mjbeer.paper.scenarios import TOP, fall_from_top
 from mjbeer.simulation.simulate import simulate
@@ -21,7 +21,11 @@ from mjbeer.theory.exact import exact
 from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 
-ORDERS = {"RK4": (4, 0.2), DOP853: (8, 0.5)} | {name: (1, 0.1) for name in INTEGRATORS if name != "RK4"}
+ORDERS: dict[Integrator, tuple[int, float]] = {
+    "RK4": (4, 0.2),
+    DOP853: (8, 0.5),
+    **{name: (1, 0.1) for name in INTEGRATORS if name != "RK4"},
+}
 """Order of each integrator, and the largest difference of the observed order from it."""
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the mesh of the beer is checked."""

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from mjbeer.model.setting import DOP853, supported
+from mjbeer.model.setting import DOP853, Integrator, Rolling, supported
 from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_frequency_55
 from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
@@ -107,7 +107,11 @@ def _rest() -> Iterator[Check]:
 
 
 def _trajectories() -> Iterator[Check]:
-    bounds = {"reduced": (1e-7, "RK4"), "equality": (1e-7, "RK4"), "contact": (1e-4, "softness, slip")}
+    bounds: dict[Rolling, tuple[float, str]] = {
+        "reduced": (1e-7, "RK4"),
+        "equality": (1e-7, "RK4"),
+        "contact": (1e-4, "softness, slip"),
+    }
     scenes = {
         "sliding": sliding(),
         "sliding, metal can": metal(sliding),
@@ -153,7 +157,7 @@ def _frequency(scene: Scene, amplitude: float) -> float:
     return simulate(scene, 4, scene.equilibrium() + amplitude).frequency()
 
 
-def _period_error(scene: Scene, amplitude: float, integrator: str, timestep: float) -> float:
+def _period_error(scene: Scene, amplitude: float, integrator: Integrator, timestep: float) -> float:
     """Return the relative error of the period of a simulated swing."""
     run = simulate(scene, 4, amplitude, integrator=integrator, timestep=timestep)
     return 2 * math.pi / run.frequency() / scene.period(amplitude) - 1
@@ -164,12 +168,12 @@ def _steady_acceleration(scene: Scene) -> float:
     return mean_acceleration(simulate(scene, 2, scene.equilibrium()))
 
 
-def _creep(scene: Scene, rolling: str) -> float:
+def _creep(scene: Scene, rolling: Rolling) -> float:
     """Return the largest distance from equilibrium [rad] over 5 s that start there, at rest."""
     rest = equilibrium_53(scene)
     return float(np.abs(simulate(scene, 5, rest, rolling=rolling).phi - rest).max())
 
 
-def _phi_error(scene: Scene, rolling: str) -> float:
+def _phi_error(scene: Scene, rolling: Rolling) -> float:
     """Return the largest error of phi [rad] over 2 s. In theory contact holds all that time in all of these scenes."""
     return phi_error(simulate(scene, 2, 1.0, rolling=rolling, friction=_FRICTION))

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from mjbeer.exceptions import NoEquilibriumError
-from mjbeer.model.setting import DOP853, INTEGRATORS, supported
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, supported
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.outcome import ACCURATE, REFUSED, SILENT, judge
 from mjbeer.studies.study import Task
@@ -106,7 +106,8 @@ def attempts(
     for rolling in ("reduced", "equality", "contact"):
         possible = supported(scene, rolling)
         usual = expected.get(rolling, (ACCURATE,) if rolling != "contact" else ()) if possible else (REFUSED,)
-        steps = dict.fromkeys(INTEGRATORS, period / _STEPS) | {DOP853: period / _LARGE_STEPS}
+        steps: dict[Integrator, float] = dict.fromkeys((*INTEGRATORS, DOP853), period / _STEPS)
+        steps[DOP853] = period / _LARGE_STEPS
         for integrator, timestep in steps.items():
             first_order = integrator not in ("RK4", DOP853)
             run = partial(start, rolling, integrator, timestep)

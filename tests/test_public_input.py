@@ -1,0 +1,257 @@
+"""Whatever is passed to a public function: a result comes back, or an error of mjbeer's that says what came.
+
+Every parameter of everything public gets every value below, while the other arguments are good.
+"""
+
+import contextlib
+import inspect
+import math
+import pathlib
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, reject, settings
+from hypothesis import strategies as st
+
+import mjbeer
+from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, exact, frozen, require, simulate
+from mjbeer.drawing import encoder, frames, video
+from mjbeer.exceptions import ParameterError
+from mjbeer.model.export import export
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, Softness
+from mjbeer.paper.looping import loop
+from mjbeer.require import shown
+from mjbeer.theory import reach
+from mjbeer.theory.scene import ATTACHMENTS
+
+VALUES: dict[str, Callable[[], object]] = {
+    "None": lambda: None,
+    "text": lambda: "0.5",
+    "empty text": lambda: "",
+    "bytes": lambda: b"1",
+    "True": lambda: True,
+    "NumPy's True": lambda: np.True_,
+    "nan": lambda: math.nan,
+    "inf": lambda: math.inf,
+    "-inf": lambda: -math.inf,
+    "-1": lambda: -1,
+    "0": lambda: 0,
+    "-0.0": lambda: -0.0,
+    "0.3": lambda: 0.3,
+    "huge": lambda: 1e160,
+    "tiny": lambda: 1e-320,
+    "largest": lambda: 1e50,
+    "smallest": lambda: 1e-50,
+    "long integer": lambda: 10**5000,
+    "complex": lambda: 1 + 2j,
+    "decimal": lambda: Decimal("0.3"),
+    "decimal NaN": lambda: Decimal("sNaN"),
+    "fraction": lambda: Fraction(1, 3),
+    "single precision": lambda: np.float32(0.3),
+    "half precision": lambda: np.float16(0.3),
+    "long double": lambda: np.longdouble("1e400"),
+    "NumPy's complex": lambda: np.complex128(1),
+    "duration": lambda: np.timedelta64(1, "s"),
+    "array without dimensions": lambda: np.array(0.3),
+    "masked": lambda: np.ma.masked,
+    "list": lambda: [0.1, 0.2],
+    "empty list": list,
+    "list of one": lambda: [0.3],
+    "list with None": lambda: [0.0, None],
+    "list of texts": lambda: ["0", "0.1"],
+    "list with NaN": lambda: [0.0, math.nan],
+    "list from the future": lambda: [0.0, 1e160],
+    "list of complex": lambda: [0.0, 1j],
+    "list of booleans": lambda: [False, True],
+    "list in reverse": lambda: [0.2, 0.1],
+    "list before the start": lambda: [-0.1, 0.1],
+    "ragged list": lambda: [[0.0], [0.0, 0.1]],
+    "list of lists": lambda: [[0.0, 0.1]],
+    "list of decimals": lambda: [Decimal(0), Fraction(1, 10)],
+    "generator": lambda: (each for each in (0.0, 0.1)),
+    "range": lambda: range(1),
+    "dict": lambda: {0.0: 0.1},
+    "set": lambda: {0.1},
+    "object": object,
+    "class": lambda: Scene,
+    "function": lambda: frozen,
+    "array": lambda: np.array([0.0, 0.1]),
+    "empty array": lambda: np.array([]),
+    "array of one": lambda: np.array([0.0]),
+    "two-dimensional array": lambda: np.zeros((2, 2)),
+    "complex array": lambda: np.array([0.0, 1j]),
+    "boolean array": lambda: np.array([False, True]),
+    "text array": lambda: np.array(["0", "1"]),
+    "array of objects": lambda: np.array([0.0, None]),
+    "single-precision array": lambda: np.array([0.0, 0.1], np.float32),
+    "masked array": lambda: np.ma.array([0.0, 0.1], mask=[False, True]),
+    "masked array without a mask": lambda: np.ma.array([0.0, 0.1]),
+    "can": Can,
+    "load": lambda: Load(0.2, 0.01, 1e-5),
+    "scene": frozen,
+    "softness": Softness,
+    "path": lambda: pathlib.Path("somewhere"),
+}
+MOTION = exact(frozen(), np.linspace(0, 0.1, 11), 1.0)
+RUN = simulate(frozen(), 0.01, 1.0)
+GOOD: dict[str, Any] = {
+    **{name: getattr(MOTION, name) for name in inspect.signature(Trajectory).parameters},
+    **{"can": Can(), "load": Load(0.2, 0.01, 1e-5), "mass": 0.2, "offset": 0.01, "amplitude": 0.3},
+    **{"phi0": 1.0, "phi_dot0": 10.0, "duration": 0.01, "trajectory": MOTION, "path": "can.mp4"},
+}
+"""Good arguments, by the names of the parameters."""
+GOOD_HERE: dict[str, dict[str, Any]] = {
+    "save_frame": {"time": 0.1, "path": "can.png"},
+    "frame": {"time": 0.1},
+    "export": {"path": "can.xml"},
+}
+"""Those that are others in one function."""
+
+
+def public() -> Iterator[tuple[str, Callable[..., object]]]:
+    """Everything that is called: public names, their class methods, the methods of what they return, and some more."""
+    for name in mjbeer.__all__:
+        thing = getattr(mjbeer, name)
+        if not (inspect.isclass(thing) and issubclass(thing, Exception)):
+            yield name, thing
+        if inspect.isclass(thing):
+            yield from methods(name, thing, thing)
+    for name, instance in (("Scene()", frozen()), ("Trajectory()", MOTION), ("Run()", RUN)):
+        yield from methods(name, type(instance), instance)
+    for more in (Setting, Softness, export, loop, video.save_frame, video.frame):
+        yield more.__name__, more
+
+
+def methods(name: str, kind: type, owner: object) -> Iterator[tuple[str, Callable[..., object]]]:
+    """The public methods of an instance, or the class methods of a class."""
+    for each in dir(kind):
+        static = inspect.getattr_static(kind, each)
+        if not each.startswith("_") and (
+            isinstance(static, classmethod) or (inspect.isfunction(static) and owner is not kind)
+        ):
+            yield f"{name}.{each}", getattr(owner, each)
+
+
+CASES = {
+    f"{name}, {parameter}": (name, function, parameter)
+    for name, function in public()
+    for parameter in inspect.signature(function).parameters
+}
+
+
+def good(name: str, function: Callable[..., object]) -> dict[str, Any]:
+    """Good arguments for the parameters without a default."""
+    parameters = inspect.signature(function).parameters.values()
+    needed = [each.name for each in parameters if each.default is inspect.Parameter.empty]
+    return {each: (GOOD | GOOD_HERE.get(name, {}))[each] for each in needed}
+
+
+def use(result: object) -> None:
+    """Ask a result for all that it knows; it may be an error of mjbeer's, and a number must be one."""
+    if isinstance(result, (Scene, Trajectory)):
+        for name in (each for each in dir(type(result)) if not each.startswith("_") and each not in ("finer", "start")):
+            try:
+                value = getattr(result, name)
+                value = value(*([0.1] if name == "period" else [])) if callable(value) else value
+            except MjbeerError:
+                continue
+            assert not (isinstance(value, float) and math.isnan(value)), name
+            assert not (isinstance(value, np.ndarray) and np.isnan(value).any()), name
+
+
+def named(value: object) -> set[str]:
+    """What an error may show of a value: the value, how many entries it has, or an entry, as it came or as a double."""
+    several = isinstance(value, (list, tuple, range)) or (isinstance(value, np.ndarray) and value.ndim > 0)
+    entries = list(value) if several else [value]
+    texts = {shown(value), f" {len(entries)}, got ", f"got {len(entries)}"} | {shown(each) for each in entries}
+    texts |= {shown(str(value))} if isinstance(value, pathlib.PurePath) else set()
+    for each in entries:
+        with contextlib.suppress(ParameterError):
+            texts.add(shown(require.number("entry", each)))
+    return texts
+
+
+@pytest.fixture(autouse=True)
+def undrawn(monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path) -> None:
+    """Draw and encode nothing, and write where nothing is."""
+    monkeypatch.setattr(frames, "_draw", lambda *_, **__: (np.zeros((2, 2, 3), np.uint8) for _ in range(1)))
+    monkeypatch.setattr(encoder, "encode", lambda *_, **__: None)
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_result_or_an_error_that_says_what_came(case: str) -> None:
+    name, function, parameter = CASES[case]
+    for label, make in VALUES.items():
+        value = make()
+        try:
+            use(function(**(good(name, function) | {parameter: value})))
+        except MjbeerError as error:
+            said = str(error)
+            assert "\n" not in said, label
+            assert len(said) < 500, label
+            if isinstance(error, ParameterError):
+                assert any(text in said for text in named(value)), f"{label}: {said}"
+        except Exception as error:
+            pytest.fail(f"{label}: {error!r}")
+
+
+MAGNITUDES = st.floats(-50, 50).map(lambda exponent: 10.0**exponent)
+EITHER_SIGN = st.tuples(st.sampled_from([-1.0, 1.0]), MAGNITUDES).map(math.prod)
+OR_ZERO = st.one_of(st.just(0.0), MAGNITUDES)
+STARTS = st.one_of(st.sampled_from([0.0, 1.0, math.pi]), EITHER_SIGN)
+
+
+@st.composite
+def extreme(draw: st.DrawFn) -> Scene:
+    """Any scene of numbers over a hundred decades, drawn until there is one."""
+    radius, mass = draw(MAGNITUDES), draw(OR_ZERO)
+    inertia = draw(st.one_of(OR_ZERO, st.just(mass * radius**2))) if mass else 0.0
+    offset = draw(st.one_of(st.floats(0, 1).map(lambda share: share * radius), st.just(radius)))
+    try:
+        can, load = Can(radius, radius, mass, inertia), Load(draw(MAGNITUDES), offset, draw(OR_ZERO))
+        incline = draw(st.one_of(st.floats(-1.5, 1.5), st.sampled_from([0.0, -1e-9, 1e-40])))
+        return Scene(can, load, incline, draw(st.sampled_from(ATTACHMENTS)), draw(OR_ZERO))
+    except ParameterError:
+        reject()
+
+
+@pytest.mark.slow
+@settings(max_examples=500, deadline=None, suppress_health_check=list(HealthCheck))
+@given(extreme(), STARTS, STARTS, MAGNITUDES)
+def test_exact_theory_answers_or_refuses(scene: Scene, phi0: float, phi_dot0: float, end: float) -> None:
+    """Whatever the sizes: no overflow, no warning, no NaN, and no memory that runs out."""
+    use(scene)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reach, "_FARTHEST", 1e4)  # to follow more turns takes more than a second
+        with contextlib.suppress(MjbeerError):
+            use(exact(scene, [0.0, end / 3, end], phi0, phi_dot0))
+
+
+@pytest.mark.slow
+@settings(max_examples=500, deadline=None, suppress_health_check=list(HealthCheck))
+@given(
+    extreme(),
+    STARTS,
+    STARTS,
+    MAGNITUDES,
+    st.sampled_from(ROLLINGS),
+    st.sampled_from((*INTEGRATORS, DOP853)),
+    MAGNITUDES,
+)
+def test_a_simulation_answers_or_refuses(
+    scene: Scene,
+    phi0: float,
+    phi_dot0: float,
+    timestep: float,
+    rolling: Rolling,
+    integrator: Integrator,
+    friction: float,
+) -> None:
+    """A few steps of whatever size, of whatever scene: no warning, no NaN, and no fault of MuJoCo's that gets out."""
+    with contextlib.suppress(MjbeerError):
+        use(simulate(scene, 5 * timestep, phi0, phi_dot0, rolling, integrator, timestep, friction=friction))
