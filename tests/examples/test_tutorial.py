@@ -16,7 +16,9 @@ def test_the_tutorial_runs_and_shows_a_plot_a_video_and_tables(monkeypatch: pyte
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     notebook = nbformat.read(TUTORIAL, as_version=4)
     client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(TUTORIAL.parent)}})
-    client.create_kernel_manager().kernel_spec.argv[0] = sys.executable
+    kernel = client.create_kernel_manager().kernel_spec
+    assert kernel is not None
+    kernel.argv[0] = sys.executable
     client.execute()
     outputs = [output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs]
     html = "".join(output.data.get("text/html", "") for output in outputs if "data" in output)

@@ -63,7 +63,7 @@ class Scene:
 
     def _repr_html_(self) -> str:
         """Return the parameters of the scene as a table, for a notebook."""
-        return import_module("mjbeer.views").scene_html(self)  # theory knows no pictures: not imported above
+        return import_module("mjbeer.drawing.views").scene_html(self)  # theory knows no pictures: not imported above
 
     @property
     def mass(self) -> float:

@@ -19,7 +19,7 @@ from mjbeer.theory.trust import doubts
 
 def _views() -> Any:
     """Return the module that makes pictures and files of a motion; theory knows neither, and does not import it."""
-    return import_module("mjbeer.views")
+    return import_module("mjbeer.drawing.views")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
