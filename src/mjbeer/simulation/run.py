@@ -38,7 +38,7 @@ _GOLDEN = (math.sqrt(5) - 1) / 2
 """The fractions of its multiples are spread evenly, and no period is a multiple of the gaps between them."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Run(Trajectory):
     """A simulated motion and its setting.
 

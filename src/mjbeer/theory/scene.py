@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Literal, get_args
 
 from mjbeer import require
@@ -64,6 +65,10 @@ class Scene:
                 f"(attachment {self.attachment!r}, load inertia {self.load.inertia!r} kg m^2, load offset "
                 f"{self.load.offset!r} m, can mass {self.can.mass!r} kg)"
             )
+
+    def _repr_html_(self) -> str:
+        """Return the parameters of the scene as a table, for a notebook."""
+        return import_module("mjbeer.drawing.views").scene_html(self)  # theory knows no pictures: not imported above
 
     @property
     def mass(self) -> float:

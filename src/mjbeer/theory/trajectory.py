@@ -1,7 +1,10 @@
 """The motion of a scene, from theory or from a simulation, with checks of whether it can be trusted."""
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 
@@ -15,9 +18,21 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import doubts
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+def _views() -> Any:
+    """Return the module that makes pictures and files of a motion; theory knows neither, and does not import it."""
+    return import_module("mjbeer.drawing.views")
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Trajectory(Coordinates):
     """A motion of a scene, with the energy, forces and warnings that follow from it.
+
+    The coordinates are those of Fig. 3 of the paper. `u` is the distance of the can's axis down the incline [m],
+    positive downhill. `phi` is the angle of the load to the incline [rad]: 0 where its centre of mass is nearest to the
+    incline, and growing as the can rolls downhill. `roll` is the angle by which the can itself has turned [rad], which
+    is u/a as long as it does not slip. `lift` is its height above the incline [m]. `u_dot`, `phi_dot`, `roll_dot` and
+    `lift_dot` are their rates. A sliding load starts at u = b sin(phi0) and not at 0, so that its centre of mass starts
+    at s = 0 (eq. 12); a frozen one starts at u = a phi0 (eq. 50).
 
     Raises:
       ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
@@ -98,6 +113,51 @@ class Trajectory(Coordinates):
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
         return tuple(doubts(self.record, can_part=self.rolling == "contact"))
+
+    def plot(self, theory: bool = False) -> Any:
+        """Plot phi [degrees] and u [m] over time in a new figure, and return its two matplotlib axes.
+
+        With `theory`, the exact motion from the same start is drawn beneath.
+        """
+        return _views().plot(self, theory)
+
+    def to_dataframe(self) -> Any:
+        """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
+
+        Raises:
+          MjbeerError: if pandas is not installed.
+        """
+        return _views().dataframe(self)
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the motion as CSV: one line per sample, units in the header, numbers with all their digits.
+
+        Raises:
+          OutputError: if the file cannot be written.
+        """
+        _views().write_csv(self, path)
+
+    def video(self, **how: Any) -> Any:
+        """Return a video of the motion, which a notebook shows; `how` are the named arguments of `mjbeer.render`.
+
+        Raises:
+          ParameterError: if an argument is not allowed.
+          RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
+        """
+        return _views().video(self, **how)
+
+    def __repr__(self) -> str:
+        """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""
+        time = self.time
+        return (
+            f"<{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}: {len(time)} "
+            f"sample{'s' * (len(time) != 1)} to t = {time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, "
+            f"u = {self.u[-1]:.6g} m>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Return the motion's key figures, and what it says about itself, for a notebook."""
+        return _views().trajectory_html(self)
 
     @property
     def trusted(self) -> bool:

@@ -1,0 +1,87 @@
+"""What a notebook shows of a run: plots, tables, files and one line."""
+
+import math
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+
+import mjbeer
+from mjbeer import MjbeerError, exact, frozen, simulate, sliding
+from mjbeer.exceptions import OutputError
+
+
+def test_a_plot_shows_the_motion_over_theory() -> None:
+    run = simulate(frozen(), 1.0, 1.0)
+    above, below = run.plot(theory=True)
+    theory, simulated = above.get_lines()
+    assert np.array_equal(simulated.get_ydata(), np.degrees(run.phi))
+    assert np.array_equal(theory.get_ydata(), np.degrees(exact(run.scene, theory.get_xdata(), 1.0).phi))
+    assert np.array_equal(below.get_lines()[1].get_ydata(), run.u)
+    assert (above.get_ylabel(), below.get_ylabel(), below.get_xlabel()) == ("φ [degrees]", "u [m]", "time [s]")
+    assert [text.get_text() for text in above.get_legend().get_texts()] == ["exact theory", "MuJoCo"]
+    plt.close(above.figure)
+
+
+def test_a_plot_without_theory_has_one_line() -> None:
+    above, _ = exact(sliding(), np.linspace(0, 1, 11), 0.5).plot()
+    assert len(above.get_lines()) == 1
+    plt.close(above.figure)
+
+
+def test_a_table_and_a_file_have_the_same_columns(tmp_path: pathlib.Path) -> None:
+    run = simulate(frozen(), 0.1, 1.0)
+    table, path = run.to_dataframe(), tmp_path / "run.csv"
+    run.to_csv(path)
+    assert path.read_text().splitlines()[0] == ",".join(table.columns)
+    assert np.array_equal(np.loadtxt(path, delimiter=",", skiprows=1), table.to_numpy())
+    assert np.array_equal(table["phi [rad]"], run.phi)
+
+
+def test_a_file_that_cannot_be_written_is_an_error(tmp_path: pathlib.Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError, match="file"):
+        simulate(frozen(), 0.1, 1.0).to_csv(tmp_path / "file" / "run.csv")
+
+
+def test_without_pandas_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MjbeerError, match="pip install pandas"):
+        simulate(frozen(), 0.1, 1.0).to_dataframe()
+
+
+@pytest.mark.draws
+@pytest.mark.slow
+def test_a_video_is_shown_and_saved(tmp_path: pathlib.Path) -> None:
+    video = simulate(frozen(), 0.2, 1.0).video(progress=False, width=320, height=180)
+    assert video.data[4:8] == b"ftyp"
+    assert 'width="320"' in video._repr_html_()
+    video.save(tmp_path / "run.mp4")
+    assert (tmp_path / "run.mp4").read_bytes() == video.data
+
+
+def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
+    monkeypatch.setattr("mjbeer.simulation.run.Second.of", lambda _: pytest.fail("a second run"))
+    assert repr(run) == (
+        f"<Run frozen, contact, RK4: 501 samples to t = 0.5 s, phi = {run.phi[-1]:.6g} rad, u = {run.u[-1]:.6g} m>"
+    )
+    assert repr(exact(sliding(), [1.0], 0.0)) == (
+        "<Trajectory sliding, exact, exact: 1 sample to t = 1 s, phi = 0 rad, u = 0.851744 m>"
+    )
+
+
+def test_a_notebook_shows_whether_a_run_is_trusted() -> None:
+    good, bad = simulate(frozen(), 0.5, 1.0), simulate(frozen(), 2.0, math.pi)
+    assert "<th>trusted</th><td>yes</td>" in good._repr_html_()
+    assert "no: from t = 0.83" in bad._repr_html_()
+    assert "N &lt; 0" in bad._repr_html_()
+    assert "<th>incline</th><td>10 degrees</td>" in good.scene._repr_html_()
+
+
+def test_help_says_what_the_coordinates_are() -> None:
+    text = mjbeer.Trajectory.__doc__ or ""
+    for word in ("`u`", "`phi`", "`roll`", "`lift`", "[m]", "[rad]", "positive downhill", "eq. 12"):
+        assert word in text
