@@ -112,6 +112,10 @@ GOOD_HERE: dict[str, dict[str, Any]] = {
 """Those that are others in one function."""
 
 
+NOT_ASKED = ("start", "plot", "to_csv", "to_dataframe", "video")
+"""Methods with arguments, or which draw or write: they are called by themselves."""
+
+
 def public() -> Iterator[tuple[str, Callable[..., object]]]:
     """Everything that is called: public names, their class methods, the methods of what they return, and some more."""
     for name in mjbeer.__all__:
@@ -153,7 +157,7 @@ def good(name: str, function: Callable[..., object]) -> dict[str, Any]:
 def use(result: object) -> None:
     """Ask a result for all that it knows; it may be an error of mjbeer's, and a number must be one."""
     if isinstance(result, (Scene, Trajectory)):
-        for name in (each for each in dir(type(result)) if not each.startswith("_") and each not in ("finer", "start")):
+        for name in (each for each in dir(type(result)) if not each.startswith("_") and each not in NOT_ASKED):
             try:
                 value = getattr(result, name)
                 value = value(*([0.1] if name == "period" else [])) if callable(value) else value

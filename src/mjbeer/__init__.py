@@ -7,7 +7,7 @@ docstrings cite are from K. T. McDonald, "The Rolling Motion of a Half-Full Beer
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from mjbeer.exceptions import MjbeerError
+from mjbeer.exceptions import AngleWarning, MjbeerError, UntrustedWarning
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
@@ -20,11 +20,13 @@ if TYPE_CHECKING:
     from mjbeer.simulation.simulate import simulate
 
 __all__ = [
+    "AngleWarning",
     "Can",
     "Load",
     "MjbeerError",
     "Scene",
     "Trajectory",
+    "UntrustedWarning",
     "build",
     "exact",
     "frozen",

@@ -33,6 +33,14 @@ class RenderingError(MjbeerError):
     """Off-screen rendering or video writing could not start; the message names a remedy."""
 
 
+class AngleWarning(UserWarning):
+    """A start angle is so large that degrees may have been meant, where radians are taken."""
+
+
+class UntrustedWarning(UserWarning):
+    """A run is not to be relied on, as all of its steps show; `Trajectory.warnings` has the reasons."""
+
+
 class TemplateError(MjbeerError):
     """An MJCF template is missing, lacks a part that mjbeer uses, or has a part that could act on the motion."""
 

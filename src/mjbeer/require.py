@@ -5,6 +5,7 @@ import numbers
 import os
 import pathlib
 import reprlib
+import warnings
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from decimal import Decimal
@@ -12,7 +13,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from mjbeer.exceptions import ParameterError
+from mjbeer.exceptions import AngleWarning, ParameterError
 
 T = TypeVar("T")
 Name = TypeVar("Name", bound=str)
@@ -163,6 +164,23 @@ def path(value: str | os.PathLike[str]) -> pathlib.Path:
     if not isinstance(name, str) or not name or "\0" in name:
         raise ParameterError(f"path must be the name of a file, got {shown(value)}")
     return pathlib.Path(name)
+
+
+def radians(phi0: float, many_turns: bool) -> None:
+    """Warn if a start angle [rad] is beyond a whole turn, as one in degrees would be, unless `many_turns` are meant.
+
+    The warning points to the line that called the function by which this one was called.
+
+    Raises:
+      ParameterError: if `many_turns` is neither True nor False.
+    """
+    if not boolean("many_turns", many_turns) and abs(phi0) > 2 * math.pi:
+        warnings.warn(
+            f"phi0 = {phi0:.6g} is taken as radians, {phi0 / (2 * math.pi):.4g} turns: if degrees are meant, write "
+            f"math.radians({phi0:.6g}); if radians are, add many_turns=True",
+            AngleWarning,
+            stacklevel=3,
+        )
 
 
 def boolean(name: str, value: bool) -> bool:

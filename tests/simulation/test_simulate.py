@@ -2,6 +2,7 @@
 
 import math
 import re
+import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
@@ -13,7 +14,14 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
-from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, UnsupportedError
+from mjbeer.exceptions import (
+    AngleWarning,
+    DivergenceError,
+    MjbeerError,
+    ParameterError,
+    UnsupportedError,
+    UntrustedWarning,
+)
 from mjbeer.model.build import compile_model
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting
 from mjbeer.simulation.prepare import Prepared
@@ -344,3 +352,48 @@ def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: floa
     run = simulate(scene(gravity=gravity), 2 * slow, 1.0, rolling="contact", timestep=1e-3 * slow)
     assert phi_error(run, relative=True) < 5e-7
     assert np.abs(run.slip).max() < 1e-6 * run.scene.can.radius
+
+
+@pytest.mark.parametrize("call", [lambda: simulate(sliding(), 0.1, 60), lambda: exact(sliding(), [0.1], 60)])
+def test_degrees_in_place_of_radians_are_a_warning(call: Callable[[], Trajectory]) -> None:
+    message = r"phi0 = 60 is taken as radians, 9.549 turns: .* math.radians\(60\); .* many_turns=True"
+    with pytest.warns(AngleWarning, match=message) as caught:
+        call()
+    assert [each.filename for each in caught] == [__file__]
+
+
+@pytest.mark.parametrize("phi0", [2 * math.pi, -2 * math.pi, 0.0])
+def test_a_start_within_a_turn_and_one_that_is_meant_are_no_warning(phi0: float) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", AngleWarning)
+        simulate(sliding(), 0.1, phi0)
+        simulate(sliding(), 0.1, 60.0, many_turns=True)
+        exact(sliding(), [0.1], 60.0, many_turns=True)
+
+
+@pytest.mark.parametrize(
+    ("run", "reason"),
+    [
+        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "energy or momentum drift"),
+        (lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02), "the can slips by"),
+        (lambda: simulate(hoop(), 0.5, 3.0, rolling="contact", timestep=1e-4, friction=1e3), "parts from the incline"),
+        (lambda: simulate(frozen(), 2, math.pi), "N < 0"),
+    ],
+)
+def test_a_run_that_is_not_to_be_relied_on_warns_when_it_is_made(run: Callable[[], Trajectory], reason: str) -> None:
+    with pytest.warns(UntrustedWarning, match=f"this run is not to be relied on: .*{reason}") as caught:
+        run()
+    assert [each.filename for each in caught] == [__file__]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UntrustedWarning)
+        with pytest.raises(UntrustedWarning):
+            run()
+        warnings.simplefilter("ignore", UntrustedWarning)
+        assert not run().trusted
+
+
+def test_a_good_run_warns_of_nothing_and_is_run_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mjbeer.simulation.run.Second.of", lambda _: pytest.fail("a second run"))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UntrustedWarning)
+        simulate(frozen(), 1.0, 1.0)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import files
 from mjbeer.theory.exact import exact
@@ -59,7 +60,7 @@ def write_csv(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
     Raises:
       OutputError: if the file cannot be written; an older one of that name then stays as it was.
     """
-    with files.whole(pathlib.Path(path)) as temporary:
+    with files.whole(require.path(path)) as temporary:
         temporary.write_text(csv(trajectory), encoding="utf-8")
 
 
@@ -83,10 +84,12 @@ def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
     """
     from matplotlib import pyplot as plt
 
+    require.boolean("theory", theory)
     figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 5), layout="constrained")
     if theory:
         time = np.union1d(trajectory.time, np.linspace(0, trajectory.time[-1], _SMOOTH))
-        truth = exact(trajectory.scene, time, phi0=trajectory.phi0, phi_dot0=trajectory.phi_dot0)
+        start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
+        truth = exact(trajectory.scene, time, **start, many_turns=True)
         above.plot(time, np.degrees(truth.phi), color="0.75", linewidth=5, label="exact theory")
         below.plot(time, truth.u, color="0.75", linewidth=5, label="exact theory")
     name = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
@@ -119,7 +122,7 @@ class Video:
         Raises:
           OutputError: if the file cannot be written.
         """
-        with files.whole(pathlib.Path(path)) as temporary:
+        with files.whole(require.path(path)) as temporary:
             temporary.write_bytes(self.data)
 
     def _repr_html_(self) -> str:
@@ -129,8 +132,10 @@ class Video:
         return mediapy.html_from_compressed_video(self.data, self.width, self.height, loop=True, autoplay=False)
 
 
-def video(trajectory: Trajectory, **how: Any) -> Video:
-    """Return a video of a trajectory; the named arguments are those of `mjbeer.render`, 640 by 360 pixels by default.
+def video(
+    trajectory: Trajectory, width: int, height: int, fps: float, speed: float, camera: str, progress: bool
+) -> Video:
+    """Return a video of a trajectory; the arguments are those of `mjbeer.render`.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -140,11 +145,10 @@ def video(trajectory: Trajectory, **how: Any) -> Video:
 
     from mjbeer.drawing.video import render
 
-    how = {"width": 640, "height": 360} | how
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "trajectory.mp4"
-        render(trajectory, path, **how)
-        return Video(path.read_bytes(), how["width"], how["height"])
+        render(trajectory, path, width, height, fps=fps, speed=speed, camera=camera, progress=progress)
+        return Video(path.read_bytes(), int(width), int(height))
 
 
 def trajectory_html(trajectory: Trajectory) -> str:

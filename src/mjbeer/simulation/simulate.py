@@ -1,16 +1,18 @@
 """The function `simulate`, which checks its arguments and runs MuJoCo."""
 
 import math
+import warnings
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError
+from mjbeer.exceptions import ParameterError, UntrustedWarning
 from mjbeer.model.setting import DOP853, FRICTION, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trust import doubts
 
 _ON_A_STEP = 1e-10
 """Largest distance of a requested time from a multiple of the timestep h, over the time itself: it allows for rounding.
@@ -34,6 +36,7 @@ def simulate(
     times: ArrayLike | None = None,
     friction: float = FRICTION,
     softness: Softness = TUNED,
+    many_turns: bool = False,
 ) -> Run:
     """Return the motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
 
@@ -49,6 +52,10 @@ def simulate(
     tolerance bounds the error of integrating the model. The model itself is exact for "reduced" and "equality", but
     not for a soft contact. Without a tolerance the trajectory estimates its error when it is asked for it.
 
+    A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
+    `UntrustedWarning`. A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless
+    `many_turns` says that it is meant.
+
     Raises:
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model.
@@ -59,6 +66,7 @@ def simulate(
     require.instance("scene", scene, Scene)
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
+    require.radians(phi0, many_turns)
     _check_start(scene, phi0, phi_dot0)
     setting = Setting(
         rolling=rolling,
@@ -72,7 +80,10 @@ def simulate(
         sample_times = _every_step(duration, setting.timestep)
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
-    return integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
+    run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
+    if found := doubts(run.record, can_part=run.rolling == "contact"):
+        warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
+    return run
 
 
 def _check_start(scene: Scene, phi0: float, phi_dot0: float) -> None:

@@ -16,12 +16,15 @@ _LARGE = 1e4
 """Start angle [rad] from which whole turns are subtracted."""
 
 
-def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
+def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, many_turns: bool = False) -> Trajectory:
     """Return the exact motion of a scene that starts with `phi0` [rad] and `phi_dot0` [rad/s] at time 0.
 
     `time` [s] has the times of the samples, in any order, none before 0. For a sliding load the axis starts at
     u = b sin(phi0) with u_dot = b cos(phi0) phi_dot0, so that the load's centre of mass is at s = 0 and at rest
     along the incline; for a frozen load it starts at u = a phi0 with u_dot = a phi_dot0.
+
+    A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless `many_turns` says that it
+    is meant.
 
     Raises:
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e10 and 1e10
@@ -30,6 +33,7 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
+    require.radians(phi0, many_turns)
     time = require.times("time", time)
     reach.check_turns(scene.oscillator, float(time.max()), phi0=phi0, phi_dot0=phi_dot0)
     # Whole turns change phi and nothing else, and the rounding of a large angle would make the quadrature slow.
@@ -69,7 +73,8 @@ def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
     If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
     error that a tolerance bounds.
     """
-    truth = exact(trajectory.scene, trajectory.time, phi0=trajectory.phi0, phi_dot0=trajectory.phi_dot0)
+    start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
+    truth = exact(trajectory.scene, trajectory.time, **start, many_turns=True)
     return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
 
 

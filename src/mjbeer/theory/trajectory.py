@@ -137,14 +137,22 @@ class Trajectory(Coordinates):
         """
         _views().write_csv(self, path)
 
-    def video(self, **how: Any) -> Any:
-        """Return a video of the motion, which a notebook shows; `how` are the named arguments of `mjbeer.render`.
+    def video(
+        self,
+        width: int = 640,
+        height: int = 360,
+        fps: float = 60,
+        speed: float = 1.0,
+        camera: str = "side",
+        progress: bool = True,
+    ) -> Any:
+        """Return a video of the motion, which a notebook shows; the arguments are those of `mjbeer.render`.
 
         Raises:
           ParameterError: if an argument is not allowed.
           RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
         """
-        return _views().video(self, **how)
+        return _views().video(self, width, height, fps, speed, camera, progress)
 
     def __repr__(self) -> str:
         """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""
