@@ -5,6 +5,7 @@ import pathlib
 import re
 import subprocess
 import sys
+from importlib.metadata import packages_distributions
 
 import pytest
 
@@ -25,13 +26,31 @@ THEORY = [
 ]
 IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.letters", "mjbeer.paper.audit.claim"))
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
-LOADED = "import sys; print(sorted({'mujoco', 'numba', 'llvmlite', 'mediapy', 'OpenGL'} & set(sys.modules)))"
+HEAVY = {"mujoco", "numba", "llvmlite", "matplotlib", "mediapy", "OpenGL"}
+"""What takes most of the time to import: the simulator, the compiler, and what draws."""
 
 
-@pytest.mark.parametrize("code", ["import mjbeer", IMPORTS, USE])
-def test_theory_imports_no_simulator(code: str) -> None:
-    ran = subprocess.run([sys.executable, "-c", f"{code}; {LOADED}"], capture_output=True, text=True, check=False)
-    assert (ran.stdout.strip(), ran.stderr) == ("[]", "")
+def loaded(code: str) -> set[str]:
+    """Which of the installed packages `code` loads in a new process; mjbeer is left out."""
+    program = f"import sys; started = {{*sys.modules}}; {code}; print(*{{*sys.modules}} - started)"
+    command = [sys.executable, "-c", program]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ran.stderr == ""
+    return set(ran.stdout.split()) & set(packages_distributions()) - {"mjbeer"}
+
+
+def test_importing_the_package_loads_numpy_alone() -> None:
+    assert loaded("import mjbeer") == {"numpy"}
+
+
+@pytest.mark.parametrize("code", [IMPORTS, USE])
+def test_theory_needs_numpy_and_scipy_alone(code: str) -> None:
+    assert loaded(code) <= {"numpy", "scipy"}
+
+
+def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
+    """Without this, a misspelt name or a blind test would pass the two above."""
+    assert loaded("import mjbeer.simulation.simulate, matplotlib, mediapy, OpenGL") >= HEAVY
 
 
 def imported(folder: str) -> set[str]:

@@ -3,22 +3,29 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
 from email import message_from_string
+from email.message import Message
 
 import numpy as np
 import pytest
 
+from hatch_build import long_description
 from mjbeer import frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli import trajectory
 
 pytestmark = pytest.mark.slow
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
-SOURCES = ("pyproject.toml", "README.md", "LICENSE", "src", "mjcf")
+README = (CHECKOUT / "README.md").read_text()
+SOURCES = ("pyproject.toml", "hatch_build.py", "Makefile", "README.md", "LICENSE", "src", "mjcf", "docs", "renders")
+TARGET = re.compile(r"\]\(([^)]*)\)")
+"""Where a link leads, or a picture comes from."""
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
 SIMULATE = """
 import json, pathlib, sys
@@ -39,18 +46,24 @@ print(json.dumps(found))
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """A wheel of a copy of the checkout, built without a network."""
+def built(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """The folder of a wheel and a source distribution of a copy of the checkout, built without a network."""
     copy = tmp_path_factory.mktemp("checkout")
     for name in SOURCES:
         if (CHECKOUT / name).is_dir():
             shutil.copytree(CHECKOUT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy(CHECKOUT / name, copy / name)
-    command = [sys.executable, "-m", "hatchling", "build", "--target", "wheel", "--directory", "out"]
+    command = [sys.executable, "-m", "hatchling", "build", "--directory", "out"]
     subprocess.run(command, cwd=copy, check=True, capture_output=True)
-    (built,) = (copy / "out").glob("*.whl")
-    return built
+    return copy / "out"
+
+
+@pytest.fixture(scope="module")
+def wheel(built: pathlib.Path) -> pathlib.Path:
+    """The wheel."""
+    (found,) = built.glob("*.whl")
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -81,15 +94,49 @@ def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> N
     assert packaged == expected | {"mjbeer/py.typed", "mjbeer/studies/benchmark/study.json"}
 
 
-def test_the_wheel_has_license_readme_and_entry_point(wheel: pathlib.Path) -> None:
+def metadata(wheel: pathlib.Path) -> Message:
+    """The metadata in a wheel; the payload is the long description."""
+    with zipfile.ZipFile(wheel) as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        return message_from_string(archive.read(name).decode())
+
+
+def test_the_wheel_has_license_and_entry_point(wheel: pathlib.Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         (folder,) = {name.split("/")[0] for name in archive.namelist()} - {"mjbeer"}
-        metadata = message_from_string(archive.read(f"{folder}/METADATA").decode())
         assert archive.read(f"{folder}/licenses/LICENSE") == (CHECKOUT / "LICENSE").read_bytes()
         assert "mjbeer = mjbeer.cli.app:main" in archive.read(f"{folder}/entry_points.txt").decode()
-    assert metadata["Name"] == "mjbeer"
-    assert metadata["License-Expression"] == "Apache-2.0"
-    assert metadata.get_payload() == (CHECKOUT / "README.md").read_text()
+    assert metadata(wheel)["Name"] == "mjbeer"
+    assert metadata(wheel)["License-Expression"] == "Apache-2.0"
+
+
+def test_the_long_description_needs_no_checkout(wheel: pathlib.Path) -> None:
+    text = metadata(wheel).get_payload()
+    assert isinstance(text, str)
+    assert metadata(wheel)["Description-Content-Type"] == "text/markdown"
+    assert all(target.startswith(("http://", "https://")) for target in TARGET.findall(text))
+    lost = [line for line in README.splitlines() if line not in text.splitlines()]
+    assert all(TARGET.search(line) for line in lost)
+
+
+def test_the_source_distribution_has_what_the_long_description_names(built: pathlib.Path, wheel: pathlib.Path) -> None:
+    (source,) = built.glob("*.tar.gz")
+    with tarfile.open(source) as archive:
+        inside = {name.partition("/")[2] for name in archive.getnames()}
+    text = str(metadata(wheel).get_payload())
+    named = re.findall(r"\[`([^`]*)`\]", text)
+    assert set(named) == {target for target in TARGET.findall(README) if "://" not in target}
+    assert {"Makefile", *named} <= inside
+
+
+def test_with_an_address_the_long_description_links_to_the_repository() -> None:
+    text = long_description(
+        "![A can](renders/can.png)\n[how](docs/how.md) [MuJoCo](https://mujoco.org)", "https://a.b/c"
+    )
+    assert text.splitlines() == [
+        "![A can](https://a.b/c/raw/HEAD/renders/can.png)",
+        "[how](https://a.b/c/blob/HEAD/docs/how.md) [MuJoCo](https://mujoco.org)",
+    ]
 
 
 def test_the_installed_wheel_builds_and_simulates(installed: pathlib.Path, tmp_path: pathlib.Path) -> None:
