@@ -23,8 +23,8 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, man
     u = b sin(phi0) with u_dot = b cos(phi0) phi_dot0, so that the load's centre of mass is at s = 0 and at rest
     along the incline; for a frozen load it starts at u = a phi0 with u_dot = a phi_dot0.
 
-    A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless `many_turns` says that it
-    is meant.
+    A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless `many_turns` says that
+    it is meant.
 
     Raises:
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e10 and 1e10
