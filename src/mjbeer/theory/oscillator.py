@@ -11,24 +11,19 @@ V is a cosine on a ramp: `slope` is the steepness of the ramp, a torque, `depth`
 (the barrier). A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope (eq. 16,
 and eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
 
-Heights of V are needed only as differences, each in a form in which nothing cancels:
-
-    drop(phi, start) = V(start) - V(phi),
-    surplus(phi, start, kinetic) = E - V(phi) = kinetic + drop(phi, start), the kinetic energy at phi,
-    _below_barrier(past) = V(barrier) - V(barrier + past).
+V is needed only as differences: `drop`, and those that `crest` has in forms in which nothing cancels.
 """
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
 from mjbeer.theory.can import Can
+from mjbeer.theory.crest import Crest, root
 from mjbeer.theory.load import Load
-
-_NO_SLOPE = 1e-30
-"""Slope over depth below which a slope counts as none: the rounding of the weight hides it over 1e14 rad of rolling."""
 
 
 @dataclass(frozen=True)
@@ -70,15 +65,13 @@ class Oscillator:
     def frozen(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
         """Return the oscillator of a load that is rigidly attached to the can (appendix A of the paper)."""
         radius, offset = can.radius, load.offset
-        slope = (load.mass + can.mass) * gravity * radius * math.sin(incline)
-        depth = load.mass * gravity * offset
         inertia = load.inertia + load.mass * (radius - offset) ** 2
         return cls(
             base=inertia + can.inertia + can.mass * radius**2,
             chord=4 * load.mass * radius * offset,
             swing=0.0,
-            slope=slope if abs(slope) > _NO_SLOPE * depth else 0.0,
-            depth=depth,
+            slope=(load.mass + can.mass) * gravity * radius * math.sin(incline),
+            depth=load.mass * gravity * offset,
             bottom=-incline,
         )
 
@@ -90,6 +83,11 @@ class Oscillator:
         """Return J [kg m^2] at `phi` [rad]."""
         return self.base + self.chord * np.sin(phi / 2) ** 2 + self.swing * np.sin(phi) ** 2
 
+    def inertia_past_crest(self, x: np.ndarray | float) -> np.ndarray:
+        """Return J [kg m^2] at a distance `x` [rad] past the crest, where pi need not be added, for slope >= 0."""
+        past_pi = self.crest.offset + x
+        return self.base + self.chord * np.cos(past_pi / 2) ** 2 + self.swing * np.sin(past_pi) ** 2
+
     def potential(self, phi: np.ndarray | float) -> np.ndarray:
         """Return V [J] at `phi` [rad]."""
         return -self.slope * phi - self.depth * np.cos(phi - self.bottom)
@@ -100,34 +98,9 @@ class Oscillator:
         middle = (phi + start) / 2 - self.bottom
         return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
 
-    def surplus(self, phi: np.ndarray | float, start: float, kinetic: float) -> np.ndarray:
-        """Return E - V(phi) [J] of the motion that passes `start` [rad] with `kinetic` energy [J], for slope >= 0.
-
-        Near a barrier both terms are measured from the barrier's top, so that a small surplus keeps its digits.
-        """
-        from_start = kinetic + self.drop(phi, start)
-        if self.slope >= self.depth:
-            return from_start
-        top = self.barrier()
-        from_barrier = kinetic - self._below_barrier(start - top) + self._below_barrier(phi - top)
-        return np.where(np.cos(phi - top) < 0.5, from_start, from_barrier)
-
-    def _below_barrier(self, past: np.ndarray | float) -> np.ndarray:
-        """Return V(barrier) - V(barrier + past) [J], with `past` [rad] of either sign."""
-        return self.slope * past * sinc_gap(past) + 2 * self.stiffness() * np.sin(past / 2) ** 2
-
     def stiffness(self) -> float:
         """Return V'' at the equilibrium, which is also -V'' at the barrier [N m/rad]."""
-        return math.sqrt((self.depth - self.slope) * (self.depth + self.slope))
-
-    def force(self, phi: float) -> float:
-        """Return the torque -V' [N m] at `phi` [rad], for slope >= 0.
-
-        It is a product of sines of the distances to equilibrium and barrier, which keeps its digits near both.
-        """
-        if self.slope >= self.depth:
-            return self.slope - self.depth * math.sin(phi - self.bottom)
-        return 2 * self.depth * math.sin((phi - self.barrier()) / 2) * math.sin((phi - self.equilibrium()) / 2)
+        return math.sqrt(self.depth - abs(self.slope)) * math.sqrt(self.depth + abs(self.slope))
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
         """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
@@ -170,38 +143,31 @@ class Oscillator:
             )
         if abs(self.slope) > self.depth:
             raise NoEquilibriumError("the incline is steeper than the load can hold")
-        return self.bottom + math.asin(self.slope / self.depth)
+        return self.bottom + math.atan2(self.slope, self.stiffness())
 
     def frequency(self) -> float:
         """Return the angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
         return math.sqrt(self.stiffness() / float(self.inertia(self.equilibrium())))
 
+    @cached_property
+    def crest(self) -> Crest:
+        """Return the crest of V, for slope >= 0."""
+        return Crest.of(slope=self.slope, depth=self.depth, bottom=self.bottom)
+
     def barrier(self) -> float:
         """Return the unstable equilibrium that bounds libration on the downhill side [rad], for slope >= 0."""
-        return self.bottom + math.pi - (self.equilibrium() - self.bottom)
+        return math.pi + self.crest.offset
 
     def separatrix(self) -> tuple[float, float]:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
         if self.slope < 0:
             low, high = self.mirror().separatrix()
             return -high, -low
-        top = self.barrier()
-        if self.slope == 0:
-            return top - 2 * math.pi, top
-        uphill = self.turning_point(top, 0.0, forbidden=top - 2 * math.pi, allowed=self.equilibrium())
-        return uphill, top
-
-    def turning_point(self, start: float, kinetic: float, forbidden: float, allowed: float) -> float:
-        """Return where the motion that passes `start` [rad] with `kinetic` energy [J] turns [rad].
-
-        The point is sought between an angle that the energy forbids and one that it allows [rad].
-        """
-        from scipy.optimize import brentq
-
-        def kinetic_left(phi: float) -> float:
-            return float(self.surplus(phi, start, kinetic))
-
-        return float(brentq(kinetic_left, forbidden, allowed, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))
+        crest = self.crest
+        behind = 2 * math.pi - crest.well
+        # As high as the barrier, on the downhill side of the one before it, which is a step higher.
+        past = root(lambda x: float(crest.below(x)) - crest.step, behind)
+        return crest.rest - behind + past, self.barrier()
 
     def require_libration(self, phi: float) -> None:
         """Check that a release from rest at `phi` [rad] swings about the equilibrium.
@@ -216,17 +182,3 @@ class Oscillator:
                 f"amplitude {phi - rest:.6g} rad is not inside the separatrix: released from rest, the load "
                 f"swings about its equilibrium only for amplitudes between {low - rest:.6g} and {high - rest:.6g} rad"
             )
-
-
-def sinc(x: np.ndarray | float) -> np.ndarray:
-    """Return sin(x)/x to full relative precision, at its zeros too, unlike np.sinc."""
-    x = np.where(x == 0, 1e-300, x)
-    return np.sin(x) / x
-
-
-def sinc_gap(x: np.ndarray | float) -> np.ndarray:
-    """Return 1 - sin(x)/x, by its series where the difference would cancel."""
-    square, series = np.square(np.minimum(np.abs(x), 1)), np.ones_like(x)
-    for k in range(17, 1, -2):
-        series = 1 - square / ((k + 1) * (k + 2)) * series
-    return np.where(np.abs(x) < 1, square / 6 * series, 1 - sinc(x))
