@@ -7,16 +7,8 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, exact, frozen, sliding
-from mjbeer.exceptions import ParameterError
-from mjbeer.theory.trust import ERROR
-
-
-@pytest.mark.parametrize(
-    ("incline", "time", "phi_dot0"), [(1.0, 1e6, 0.0), (-1.0, 1e6, 0.0), (0.1, 1.0, 1e50), (0.1, 1.0, -1e9)]
-)
-def test_too_many_turns_are_refused(incline: float, time: float, phi_dot0: float) -> None:
-    with pytest.raises(ParameterError, match=r"on a slope .* at most 1e\+06 rad, got .* turns by about"):
-        exact(frozen(incline), time, 0.0, phi_dot0)
+from mjbeer.exceptions import ParameterError, ToleranceError
+from mjbeer.theory.certainty import UNCERTAIN
 
 
 def test_all_turns_on_the_level_and_all_swings_are_alike() -> None:
@@ -29,15 +21,15 @@ def test_all_turns_on_the_level_and_all_swings_are_alike() -> None:
 @pytest.mark.parametrize("scene", [frozen(), sliding()])
 def test_swings_of_two_gravities_agree_as_long_as_the_phase_has_digits(scene: Scene) -> None:
     """In units of sqrt(a/g) they are the same motion, and rounding alone tells them apart."""
-    times = 1e12 * np.linspace(0.9, 1, 50)
+    times = 1e9 * np.linspace(0.9, 1, 50)
     other = exact(replace(scene, gravity=3 * scene.gravity), times / math.sqrt(3), 1.0)
-    assert 1e-4 < np.abs(exact(scene, times, 1.0).phi - other.phi).max() < ERROR
+    assert 1e-8 < np.abs(exact(scene, times, 1.0).phi - other.phi).max() < UNCERTAIN
 
 
 @pytest.mark.parametrize("scene", [frozen(), sliding()])
 def test_a_time_at_which_the_phase_has_no_digits_is_refused(scene: Scene) -> None:
     with pytest.raises(
-        ParameterError, match=r"time must be so short .* 0\.01 rad at most, got 10000000000000\.0 s, after"
+        ToleranceError, match=r"phi is not known until 1e\+13 s: rounding of the scene"
     ):
         exact(scene, 1e13 * np.linspace(0.9, 1, 50), 1.0)
 

@@ -7,13 +7,10 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory import motion, reach
+from mjbeer.theory import motion
 from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
-
-_LARGE = 1e4
-"""Start angle [rad] from which whole turns are subtracted."""
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, many_turns: bool = False) -> Trajectory:
@@ -28,20 +25,17 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, man
 
     Raises:
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e10 and 1e10
-        rad or -1e50 and 1e50 rad/s, or the motion is too long or too extreme for double precision.
-      NoLibrationError: if the start lies exactly on the separatrix.
+        rad or -1e50 and 1e50 rad/s, or the motion is too extreme for double precision.
+      NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
+      ToleranceError: if the times are so late that the rounding of the scene changes phi by more than 1e-4 rad.
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0, many_turns)
     time = require.times("time", time)
-    reach.check_turns(scene.oscillator, float(time.max()), phi0=phi0, phi_dot0=phi_dot0)
-    # Whole turns change phi and nothing else, and the rounding of a large angle would make the quadrature slow.
-    within = phi0 if abs(phi0) < _LARGE else math.remainder(phi0, 2 * math.pi)
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            phi, phi_dot = motion.solve(scene.oscillator, time, phi0=within, phi_dot0=phi_dot0)
-            phi = phi + (phi0 - within)
+            phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
             u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
             roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
     except (ArithmeticError, ValueError) as error:
@@ -49,7 +43,6 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, man
             f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
             f"until {float(time.max())!r} s in {scene!r}"
         ) from error
-    reach.check_phase(time, phi, phi_dot)
     zeros = np.zeros_like(time)
     return Trajectory(
         scene=scene,

@@ -110,19 +110,6 @@ class Oscillator:
         kinetic = float(self.inertia(phi0)) * phi_dot0**2 / 2
         return (self.chord + self.swing) / (2 * self.base) + (self.depth / kinetic if kinetic > 0 else math.inf)
 
-    def to_barrier(self, phi0: float, phi_dot0: float) -> float:
-        """Return how far the energy of a start [rad, rad/s] is from that of the next barrier downhill of it [J].
-
-        It is infinite if there is no barrier.
-        """
-        if self.slope < 0:
-            return self.mirror().to_barrier(-phi0, -phi_dot0)
-        if self.slope >= self.depth:
-            return math.inf
-        top = self.barrier()
-        top += 2 * math.pi * math.ceil((phi0 - top) / (2 * math.pi))
-        return abs(float(self.surplus(top, phi0, float(self.inertia(phi0)) * phi_dot0**2 / 2)))
-
     def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
         """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""
         inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)

@@ -8,6 +8,7 @@ from mjbeer.theory.conserved import energy, kinetic_energy
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import rolling_forces
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.start import Start
 
 _SMALL_SWING = 1e-2
 """Smallest energy with which a drift is compared, relative to the depth m g b of the potential well: that of a swing
@@ -140,9 +141,13 @@ class Record:
 
     @property
     def to_barrier(self) -> float:
-        """Return how far the energy of the motion is from that of the barrier between swings and turns [J]."""
+        """Return how far the energy of the motion is from that of the next barrier [J]; infinite if there is none."""
         assert self._first is not None, "a record without a motion"
-        return self.scene.oscillator.to_barrier(float(self._first.phi[0]), float(self._first.phi_dot[0]))
+        oscillator, sign = self.scene.oscillator, 1
+        if oscillator.slope < 0:
+            oscillator, sign = oscillator.mirror(), -1
+        start = Start.at(oscillator, sign * float(self._first.phi[0]), sign * float(self._first.phi_dot[0]))
+        return abs(start.level_ahead) if oscillator.crest.well > 0 else math.inf
 
     @property
     def axis_error(self) -> float:
