@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console, RenderableType
 
-from mjbeer import Scene, exact, frozen, hoop, simulate
+from mjbeer import Scene, simulate
 from mjbeer.cli import trajectory
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
 from mjbeer.studies.check import Result
@@ -54,32 +54,6 @@ def test_csv_gives_every_number_back_to_the_last_bit(scene: Scene) -> None:
     assert rows.shape == (51, len(columns))
     for column, values in zip(rows.T, columns.values(), strict=True):
         assert np.array_equal(column, values)
-
-
-def test_the_summary_says_what_a_run_says_about_itself() -> None:
-    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
-    text = " ".join(shown(trajectory.summary(run)).split())
-    assert "rolling, integrator contact, RK4" in text
-    assert "samples 501 to t = 0.5 s" in text
-    assert f"phi at the end {math.degrees(run.phi[-1]):.9g} degrees" in text
-    assert f"u at the end {run.u[-1]:.9g} m" in text
-    assert f"energy drift {run.energy_drift:.2e}" in text
-    assert f"{run.lift.min() / 0.033:.2e}, {run.lift.max() / 0.033:.2e} radii" in text
-    assert f"friction coefficient needed {run.forces.needed.max():.4g}" in text
-    assert "can roll without slipping to the end" in text
-    assert f"estimated error of phi and u/a {run.error_estimate:.2e} rad" in text
-
-
-def test_the_summary_has_the_estimated_error_of_a_tolerance() -> None:
-    run = simulate(frozen(), 0.5, 1.0, tolerance=1e-9)
-    assert f"estimated error of phi and u/a {run.error_estimate:.2e} rad" in " ".join(
-        shown(trajectory.summary(run)).split()
-    )
-
-
-def test_the_summary_says_when_the_incline_would_have_to_pull() -> None:
-    fall = exact(hoop(), np.linspace(0, 0.5, 1001), 3.0)
-    assert f"until t = {fall.rolls_until():.6g} s (then N < 0)" in shown(trajectory.summary(fall))
 
 
 def test_the_terminal_table_has_a_verdict_for_every_row() -> None:
