@@ -5,6 +5,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -18,6 +19,8 @@ from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli import trajectory
 from mjbeer.cli.app import main
 from mjbeer.cli.figures import Figures
+from mjbeer.studies.benchmark import advice
+from mjbeer.studies.benchmark.points import Benchmark
 
 pytestmark = pytest.mark.slow
 
@@ -177,6 +180,13 @@ def test_a_tolerance_has_the_integrator_that_keeps_it(capsys: pytest.CaptureFixt
         assert "reduced, DOP853" in capsys.readouterr().out
     assert main(["simulate", "frozen", "--duration", "0.1"]) == 0
     assert "reduced, RK4" in capsys.readouterr().out
+
+
+def test_advise_offers_what_its_study_has(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["advise", "--help"])
+    offered = re.findall(r"\{(sliding[^}]*)\}", capsys.readouterr().out)
+    assert set(offered) == {",".join(Benchmark.load(advice.SHIPPED).cases)}
 
 
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
