@@ -4,14 +4,17 @@ import json
 import math
 import os
 import pathlib
+import re
 
 import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import MjbeerError
+from mjbeer.output import terminal
 from tests.support import stubs
 
+SENTENCE = r"{} of {} checks and {} of {} rows of the audit passed, in \d+ s\n"
 FILMS = ("sliding", "frozen", "pendulum", "hoop")
 FILES = {"validation.json", "summary.md", "paper", *(f"{film}.{kind}" for film in FILMS for kind in ("mp4", "png"))}
 
@@ -22,11 +25,46 @@ def test_the_exit_status_of_validate(
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
     assert main(["validate"]) == status
-    lines = capsys.readouterr().out.splitlines()
-    (first,) = (line for line in lines if "first" in line)
-    (second,) = (line for line in lines if "second" in line)
-    assert "pass" in first
-    assert ("FAIL" in second) == (status == 1)
+    out, err = capsys.readouterr()
+    heading, *lines = (line.split("\t") for line in out.splitlines())
+    rows = [dict(zip(heading, line, strict=True)) for line in lines]
+    assert [(row["quantity"], row["row"]) for row in rows] == [
+        ("first", "pass"),
+        ("second", "FAIL" if status else "pass"),
+    ]
+    assert [float(row["error"]) for row in rows] == pytest.approx([1e-5, error], rel=0, nan_ok=True)
+    failure = f"FAILED: second (a stub): error {error:.1e}, at most 1.0e-03 rad\n" if status else ""
+    assert re.fullmatch(re.escape(failure) + SENTENCE.format(2 - status, 2, 0, 0), err)
+
+
+@pytest.mark.parametrize("options", [[], ["--verbose"], ["--json"]])
+@pytest.mark.parametrize("eye", [True, False])
+def test_a_failure_is_told_whatever_is_asked_for(
+    options: list[str], eye: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.validate(monkeypatch, first=1e-5, second=2e-3)
+    stubs.audited(monkeypatch, good=1e-6, other=math.nan)
+    monkeypatch.setattr(terminal, "is_read_by_eye", lambda: eye)
+    assert main(["validate", *options]) == 1
+    out, err = capsys.readouterr()
+    *failures, last = err.splitlines()
+    assert failures == [
+        "FAILED: second (a stub): error 2.0e-03, at most 1.0e-03 rad",
+        "FAILED: other a stub (none): error nan, at most 1.0e-03",
+    ]
+    assert re.fullmatch(SENTENCE.format(1, 2, 1, 2), last + "\n")
+    assert ("│ first" in out) == (eye and options == ["--verbose"])
+    assert (out == "") == (eye and not options)
+    assert ("\tfirst\t" in out) == (not eye and options != ["--json"])
+
+
+def test_a_terminal_has_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    stubs.validate(monkeypatch, first=1e-5, second=1e-5)
+    monkeypatch.setattr(terminal, "is_read_by_eye", lambda: True)
+    assert main(["validate"]) == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert re.fullmatch(SENTENCE.format(2, 2, 0, 0), err)
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-4, 0), (math.nan, 1)])
@@ -51,9 +89,9 @@ def test_an_equation_that_fails_is_in_the_exit_status(
     stubs.validate(monkeypatch, first=1e-5)
     stubs.audited(monkeypatch, good=1e-6, other=error)
     assert main(["validate"]) == status
-    lines = capsys.readouterr().out.splitlines()
-    (other,) = (line for line in lines if "other" in line)
-    assert ("FAIL" in other) == (status == 1)
+    out, err = capsys.readouterr()
+    (other,) = (line for line in out.splitlines() if "other" in line)
+    assert ("\tFAIL\t" in other) == ("FAILED: other" in err) == (status == 1)
     assert main(["validate", "--json"]) == status
     content = json.loads(capsys.readouterr().out)
     assert [row["equation"] for row in content["audit"]] == ["good", "other"]
@@ -72,12 +110,13 @@ def test_a_report_has_the_table_and_four_scenes(
     content = json.loads((folder / "validation.json").read_text())
     assert [row["quantity"] for row in content["checks"]] == ["first", "second"]
     summary = (folder / "summary.md").read_text()
-    assert "2 of 2 checks passed." in summary
+    assert "2 of 2 checks and 0 of 0 rows of the audit passed." in summary
     assert "| first | a stub | 1.0e-05 | 1.0e-03 rad | none |" in summary
     assert all(f"[![{film}]({film}.png)]({film}.mp4)" in summary for film in FILMS)
     out, err = capsys.readouterr()
-    assert "second" in out
-    assert err.endswith(f"the report is in {folder / 'summary.md'}\n")
+    assert out == ""
+    last = err.partition(f"the report is in {folder / 'summary.md'}\n")[2]
+    assert re.fullmatch(SENTENCE.format(2, 2, 0, 0), last)
     assert set(os.listdir(folder / "paper")) == {
         *("letters.svg", "letters.png", "stories.md", "told.svg"),
         *([] if quick else ["told.mp4"]),
@@ -122,7 +161,7 @@ def test_without_opengl_a_report_has_all_but_films_and_says_so(
     assert set(os.listdir(tmp_path)) == {"validation.json", "summary.md", "paper"}
     assert set(os.listdir(tmp_path / "paper")) == {"letters.svg", "letters.png", "told.svg", "stories.md"}
     line = opengl.missing([*(f"{film}.mp4" for film in FILMS), "paper/told.mp4"])
-    assert capsys.readouterr().err.endswith(f"{line}\n")
+    assert f"\n{line}\nthe report is in " in capsys.readouterr().err
     summary = (tmp_path / "summary.md").read_text()
     assert f"Films: {line}\n" in summary
     assert "| first | a stub |" in summary
@@ -130,14 +169,19 @@ def test_without_opengl_a_report_has_all_but_films_and_says_so(
 
 
 def test_a_failed_check_is_in_the_report_and_in_its_exit_status(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=2e-3)
     stubs.draw(monkeypatch)
-    assert main(["report", "--output", str(tmp_path)]) == 1
+    assert main(["report", "--output", str(tmp_path), "--verbose"]) == 1
     summary = (tmp_path / "summary.md").read_text()
-    assert "1 of 2 checks passed." in summary
+    assert "1 of 2 checks and 0 of 0 rows of the audit passed." in summary
     assert "| second | a stub | 2.0e-03 **FAIL** |" in summary
+    out, err = capsys.readouterr()
+    assert "second\ta stub\t2.0e-03\t1.0e-03 rad\tFAIL" in out
+    *_, failure, last = err.splitlines()
+    assert failure == "FAILED: second (a stub): error 2.0e-03, at most 1.0e-03 rad"
+    assert re.fullmatch(SENTENCE.format(1, 2, 0, 0), last + "\n")
 
 
 def test_what_was_written_before_a_failure_is_whole_and_has_no_summary(

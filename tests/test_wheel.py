@@ -17,7 +17,7 @@ import pytest
 
 from hatch_build import long_description
 from mjbeer import frozen, hoop, pendulum, simulate, sliding
-from mjbeer.cli import trajectory
+from mjbeer.drawing import views
 
 pytestmark = pytest.mark.slow
 
@@ -147,7 +147,7 @@ def test_the_installed_wheel_builds_and_simulates(installed: pathlib.Path, tmp_p
 
 def test_the_installed_command_runs(installed: pathlib.Path, tmp_path: pathlib.Path) -> None:
     words = ("simulate", "frozen", "--phi0", "0", "--duration", "0.1", "--output", "-")
-    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == trajectory.csv(
+    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == views.csv(
         simulate(frozen(), 0.1, 0.0)
     )
     assert not os.listdir(tmp_path)

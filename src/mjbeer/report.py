@@ -85,8 +85,7 @@ def _summary(validation: Validation, missing: list[str]) -> str:
 
     results, findings = validation.results, validation.findings
     lines = ["# mjbeer: report", ""]
-    lines += [f"{sum(result.passed for result in results)} of {len(results)} checks passed.", ""]
-    lines += [f"{sum(finding.passed for finding in findings)} of {len(findings)} rows of the paper's audit passed.", ""]
+    lines += [f"{tables.sentence(validation)}.", ""]
     lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
     for name, film in _FILMS.items():
         if f"{name}.mp4" in missing:

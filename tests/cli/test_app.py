@@ -1,19 +1,26 @@
 """The command line: what goes to which stream, and with which exit status it ends."""
 
 import io
+import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import subprocess
+import sys
 import sysconfig
+from importlib.metadata import version
 
 import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
-from mjbeer.cli import trajectory
 from mjbeer.cli.app import main
+from mjbeer.cli.figures import Figures
+from mjbeer.drawing import views
+from mjbeer.studies.benchmark import advice
+from mjbeer.studies.benchmark.points import Benchmark
 
 pytestmark = pytest.mark.slow
 
@@ -34,10 +41,10 @@ def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsy
     target = tmp_path / "new" / "motion.csv"
     assert main(["simulate", name, "--phi0", "57", "--phi-dot0", "-20", "--duration", "0.1", f"--output={target}"]) == 0
     run = simulate(SCENES[name], 0.1, math.radians(57), math.radians(-20))
-    assert target.read_text() == trajectory.csv(run)
+    assert target.read_text() == views.csv(run)
     out, err = capsys.readouterr()
-    assert "phi at the end" in out
-    assert err == f"wrote {target}\n"
+    assert out == Figures(run).text()
+    assert err == f"wrote {target}\n" + "".join(f"note: {note}\n" for note in Figures(run).notes)
     time, u, phi = np.loadtxt(target, delimiter=",", skiprows=1, usecols=(0, 1, 2)).T
     truth = exact(SCENES[name], time, math.radians(57), math.radians(-20))
     assert np.abs(phi - truth.phi).max() < RK4
@@ -47,7 +54,7 @@ def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsy
 def test_standard_output_has_the_csv_alone(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "--duration", "0.05", "--output", "-", "frozen"]) == 0
     out, err = capsys.readouterr()
-    assert out == trajectory.csv(simulate(frozen(), 0.05, math.radians(60)))
+    assert out == views.csv(simulate(frozen(), 0.05, math.radians(60)))
     assert "phi at the end" in err
 
 
@@ -80,6 +87,21 @@ def test_without_output_no_file_is_written(
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
         ("render frozen --camera top", "camera must be one of 'side', 'quarter', 'overview'; got 'top'"),
         ("simulate frozen --output .", "cannot write .: it is a folder"),
+        ("simulate frozen --tolerance 1e-6 --integrator Euler", "give a tolerance or an integrator: only DOP853 keeps"),
+        ("render frozen --integrator RK4 --tolerance 1e-6", "give a tolerance or an integrator: only DOP853 keeps a"),
+        ("export frozen --output x.urdf", "MJCF is written: the file's name must end in .xml, got 'x.urdf'"),
+        ("export frozen --output x.mjcf", "MJCF is written: the file's name must end in .xml, got 'x.mjcf'"),
+        ("export frozen --output x", "MJCF is written: the file's name must end in .xml, got 'x'"),
+        ("simulate frozen --json --output -", "standard output takes one of them: the JSON, or the CSV of --output -"),
+        ("simulate sliding --integrator rk4", "invalid choice 'rk4' for argument '--integrator'. Expected one of ('Eu"),
+        ("export sliding --output x.xml --integrator DOP853", "invalid choice 'DOP853' for argument '--integrator'."),
+        ("simulate sliding --rolling gears", "invalid choice 'gears' for argument '--rolling'. Expected one of ('red"),
+        ("simulate sliding --phi0 half", "Error parsing --phi0: could not convert string to float: 'half'"),
+        ("simulate sliding --tolerance None", "Error parsing --tolerance: could not convert string to float: 'None'"),
+        ("simulate sliding --phi0", "Missing value for argument '--phi0'."),
+        ("simulate sliding more", "Unrecognized options: more"),
+        ("export sliding", "Missing from mjbeer export: --output PATH"),
+        ("benchmark slding", "invalid choice 'slding' for argument 'scenes'. Expected one of ('sliding', "),
     ],
 )
 def test_what_is_not_allowed_is_one_line_and_exit_status_2(
@@ -98,30 +120,20 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
     assert not os.listdir(tmp_path)
 
 
-@pytest.mark.parametrize(
-    ("words", "named"),
-    [
-        ("simulate rolling", "rolling"),
-        ("simulate sliding --integrator rk4", "'rk4'"),
-        ("export sliding --output x.xml --integrator DOP853", "'DOP853'"),
-        ("simulate sliding --rolling gears", "'gears'"),
-        ("simulate sliding --phi0 half", "half"),
-        ("simulate sliding --wheel-mass 1", "--wheel-mass"),
-        ("export sliding", "--output"),
-        ("simulate", "sliding, frozen, pendulum, hoop"),
-        ("", "simulate, render, export, validate, benchmark, advise, stability, report, paper"),
-    ],
-)
-def test_what_is_not_understood_ends_with_exit_status_2(
-    words: str, named: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "120")
-    with pytest.raises(SystemExit) as ended:
-        main(words.split())
-    out, err = capsys.readouterr()
-    assert ended.value.code == 2
-    assert named in err
-    assert out == ""
+def test_an_error_is_one_line_however_it_is_drawn() -> None:
+    """In boxes or, where standard output has no such letters, in dashes; in a narrow or a wide terminal."""
+    for encoding in ("utf-8", "ascii"):
+        for columns in ("40", "200"):
+            done = subprocess.run(
+                [sys.executable, "-m", "mjbeer", "simulate", "frozen", "--rolling", "gears"],
+                env=os.environ | {"PYTHONIOENCODING": encoding, "COLUMNS": columns},
+                capture_output=True, text=True, check=False,
+            )  # fmt: skip
+            assert (done.returncode, done.stdout) == (2, "")
+            assert done.stderr == (
+                "mjbeer: invalid choice 'gears' for argument '--rolling'. "
+                "Expected one of ('reduced', 'equality', 'contact').\n"
+            )
 
 
 @pytest.mark.parametrize(
@@ -137,6 +149,75 @@ def test_a_run_that_is_not_to_be_trusted_says_so(words: str, reason: str, capsys
     out, err = capsys.readouterr()
     assert any(line.startswith("not to be trusted: ") and reason in line for line in err.splitlines())
     assert "not to be trusted" not in out
+
+
+def test_a_real_can_that_would_slip_is_a_note(capsys: pytest.CaptureFixture[str]) -> None:
+    """The motion is right, and yet no can moves like that."""
+    words = "simulate frozen --phi0 180 --duration 0.8 --friction 0.6"
+    assert main([*words.split(), "--output", "-"]) == 0
+    out, err = capsys.readouterr()
+    (note,) = Figures(simulate(frozen(), 0.8, math.pi), 0.6).notes
+    assert err.splitlines()[-1] == f"note: {note}"
+    assert "note" not in out
+
+
+def test_standard_output_has_the_json_alone(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "motion.csv"
+    words = f"simulate frozen --phi0 180 --duration 1 --friction 0.6 --json --output {target}"
+    assert main(words.split()) == 0
+    out, err = capsys.readouterr()
+    run = simulate(frozen(), 1.0, math.pi)
+    content = json.loads(out, parse_constant=pytest.fail)
+    assert content == json.loads(Figures(run, 0.6).json())
+    assert (content["trusted"], content["warnings"]) == (False, list(run.warnings))
+    assert err.splitlines()[0] == f"wrote {target}"
+    assert target.read_text() == views.csv(run)
+
+
+def test_a_tolerance_has_the_integrator_that_keeps_it(capsys: pytest.CaptureFixture[str]) -> None:
+    for more in ("", " --integrator DOP853"):
+        assert main(f"simulate frozen --duration 0.1 --tolerance 1e-6{more}".split()) == 0
+        assert "reduced, DOP853" in capsys.readouterr().out
+    assert main(["simulate", "frozen", "--duration", "0.1"]) == 0
+    assert "reduced, RK4" in capsys.readouterr().out
+
+
+def test_advise_offers_what_its_study_has(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["advise", "--help"])
+    offered = re.findall(r"\{(sliding[^}]*)\}", capsys.readouterr().out)
+    assert set(offered) == {",".join(Benchmark.load(advice.SHIPPED).cases)}
+
+
+def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
+@pytest.mark.parametrize(
+    ("typed", "offered"),
+    [
+        ("mjbeer sim", "simulate"),
+        ("mjbeer simulate sl", "sliding"),
+        ("mjbeer simulate --tol", "--tolerance"),
+        ("mjbeer simulate --rolling con", "contact"),
+        ("mjbeer simulate sliding --fi", "--fill"),
+    ],
+)
+def test_the_shell_completes(
+    typed: str, offered: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(["--tyro-print-completion", "bash"])
+    assert not ended.value.code
+    script = tmp_path / "completion.bash"
+    script.write_text(
+        capsys.readouterr().out + f"COMP_WORDS=({typed})\nCOMP_CWORD={len(typed.split()) - 1}\n"
+        "$(complete -p mjbeer | sed 's/.*-F \\([^ ]*\\).*/\\1/')\n" + 'echo "${COMPREPLY[@]}"\n'
+    )
+    done = subprocess.run(["bash", str(script)], capture_output=True, text=True, check=True)
+    assert done.stdout == f"{offered}\n"
 
 
 def test_names_of_files_are_shown_as_they_are(

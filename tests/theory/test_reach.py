@@ -28,9 +28,7 @@ def test_swings_of_two_gravities_agree_as_long_as_the_phase_has_digits(scene: Sc
 
 @pytest.mark.parametrize("scene", [frozen(), sliding()])
 def test_a_time_at_which_the_phase_has_no_digits_is_refused(scene: Scene) -> None:
-    with pytest.raises(
-        ToleranceError, match=r"phi is not known until 1e\+13 s: rounding of the scene"
-    ):
+    with pytest.raises(ToleranceError, match=r"phi is not known until 1e\+13 s: rounding of the scene"):
         exact(scene, 1e13 * np.linspace(0.9, 1, 50), 1.0)
 
 

@@ -175,8 +175,6 @@ def test_a_swing_outlasts_what_is_known_of_its_period() -> None:
         ToleranceError, match=r"phi is not known until 1e\+13 s: rounding of the scene changes its speed"
     ):
         exact(frozen(), [1e13], 1.0)
-    with pytest.raises(ToleranceError, match=r"later than at 1e\+100 s, got 1e\+200 s"):
-        exact(frozen(), [1e200], math.pi)
 
 
 @pytest.mark.parametrize("gap", [1e-15, 1e-13])

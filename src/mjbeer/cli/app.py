@@ -1,33 +1,40 @@
 """The entry point of `mjbeer`: parse the command line, run the command, and turn errors into exit statuses."""
 
+import contextlib
+import io
 import signal
+import sys
+import warnings
 from collections.abc import Sequence
+from itertools import dropwhile, takewhile
 from types import FrameType
-from typing import Annotated, NoReturn
+from typing import Any, NoReturn, get_args
 
 import tyro
+from rich.text import Text
 
+import mjbeer
+from mjbeer.cli import spelling
 from mjbeer.cli.motions import Export, Render, Simulate
+from mjbeer.cli.scenes import Scenes
 from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Validate
 from mjbeer.drawing import opengl
-from mjbeer.exceptions import MjbeerError
+from mjbeer.exceptions import MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _ERROR = 2
-Command = Simulate | Render | Export | Validate | Benchmark | Advise | Stability | Report | Paper
-_COMMAND = (
-    Annotated[Simulate, tyro.conf.subcommand("simulate")]
-    | Annotated[Render, tyro.conf.subcommand("render")]
-    | Annotated[Export, tyro.conf.subcommand("export")]
-    | Annotated[Validate, tyro.conf.subcommand("validate")]
-    | Annotated[Benchmark, tyro.conf.subcommand("benchmark")]
-    | Annotated[Advise, tyro.conf.subcommand("advise")]
-    | Annotated[Stability, tyro.conf.subcommand("stability")]
-    | Annotated[Report, tyro.conf.subcommand("report")]
-    | Annotated[Paper, tyro.conf.subcommand("paper")]
+Command = Simulate | Render | Export | Scenes | Validate | Benchmark | Advise | Stability | Report | Paper
+COMMANDS: dict[str, type[Any]] = {command.__name__.lower(): command for command in get_args(Command)}
+"""The classes of the commands, by the names that they have on the command line."""
+_DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
+`mjbeer COMMAND --help` shows the options, `mjbeer --version` the version."""
+_STYLE = (
+    tyro.conf.OmitSubcommandPrefixes,
+    tyro.conf.OmitArgPrefixes,
+    tyro.conf.CascadeSubcommandArgs,
+    tyro.conf.FlagCreatePairsOff,
 )
-_STYLE = (tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes, tyro.conf.CascadeSubcommandArgs)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -36,16 +43,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
     The status is 0, 1 if a check failed, 2 on an error, or 128 plus the number of the signal that interrupted it.
 
     Raises:
-      SystemExit: after --help, and with status 2 if the arguments are not understood.
+      SystemExit: after --help.
     """
+    words = sys.argv[1:] if arguments is None else list(arguments)
     for number in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(number) == signal.SIG_DFL:  # a signal that is ignored, as under nohup, stays ignored
             signal.signal(number, _interrupt)
     try:
+        if words[:1] == ["--version"]:
+            terminal.write(f"mjbeer {mjbeer.__version__}\n")
+            return 0
         with terminal.printing():
-            command = parse(arguments)
+            command = parse(words)
         opengl.keep_out()
-        return command.run()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
+            return command.run()
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")
         return _ERROR
@@ -64,16 +77,29 @@ def _interrupt(number: int, _: FrameType | None) -> NoReturn:
     raise KeyboardInterrupt(number)
 
 
-def parse(arguments: Sequence[str] | None = None) -> Command:
-    """Return the command that `arguments` ask for, by default those of the process.
+def parse(words: Sequence[str]) -> Command:
+    """Return the command that the words of a command line ask for.
 
     Raises:
-      SystemExit: after --help, and with status 2 if the arguments are not understood.
+      ParameterError: if the words are not understood.
+      SystemExit: after --help.
     """
-    return tyro.cli(
-        _COMMAND,
-        prog="mjbeer",
-        description="The rolling half-full beer can as a MuJoCo model that can be trusted.",
-        args=arguments,
-        config=(*_STYLE, tyro.conf.FlagCreatePairsOff),
-    )
+    spelling.check(words, COMMANDS)
+    told = io.StringIO()
+    try:
+        with contextlib.redirect_stderr(told):
+            return tyro.cli(Command, prog="mjbeer", description=_DESCRIPTION, args=words, config=_STYLE)
+    except SystemExit as ended:
+        if ended.code:
+            raise ParameterError(_sentence(told.getvalue())) from None
+        raise
+
+
+def _sentence(box: str) -> str:
+    """Return the first part of an error that tyro drew: the rows between the title and the next ruled or empty line."""
+    _, *rows = (row.strip("│ ") for row in Text.from_ansi(box).plain.splitlines())
+    return " ".join(takewhile(_has_words, dropwhile(lambda row: not _has_words(row), rows)))
+
+
+def _has_words(row: str) -> bool:
+    return bool(row.strip("─-╰╯"))

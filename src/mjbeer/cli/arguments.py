@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
 
 import tyro
 
@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop"]
 
 
+def if_given(kind: Any, otherwise: str) -> object:
+    """Return how tyro reads an option that may be left out: as a value of some kind, with a word for what is then."""
+    return tyro.conf.arg(constructor=kind, help_behavior_hint=f"(default: {otherwise})")
+
+
 def radians(name: str, value: float, unit: str = "degrees") -> float:
     """Convert an angle from degrees to radians, or a rate from degrees/s to radians/s, and return it.
 
@@ -33,7 +38,7 @@ class Common:
     """The options of every scene."""
 
     incline: float = 10.0
-    """Angle of the incline to the horizontal [degrees]; positive if it descends in the direction of positive u."""
+    """Angle of the incline to the horizontal [degrees]; if positive, u grows downhill."""
     radius: float = RADIUS
     """Radius of the can [m]."""
     length: float = LENGTH
@@ -62,7 +67,7 @@ class Filled(Common):
     density: float = BEER
     """Density of the beer [kg/m^3]."""
     can: Literal["massless", "metal"] = "massless"
-    """The can: without mass (section 2 of the paper), or of aluminium sheet 0.1 mm thick (section 3)."""
+    """The can: massless (section 2 of the paper), or metal, of aluminium sheet 0.1 mm thick (section 3)."""
 
     def build_can(self) -> Can:
         """Return the can of these options."""
@@ -121,7 +126,7 @@ class Hoop(Common):
     """A hoop with a point load on its rim, which can hop (appendix A.4 of the paper)."""
 
     incline: float = 0.0
-    """Angle of the incline to the horizontal [degrees]; positive if it descends in the direction of positive u."""
+    """Angle of the incline to the horizontal [degrees]; if positive, u grows downhill."""
     hoop_mass: float = 0.01
     """Mass of the hoop [kg]."""
     load_mass: float = 0.2
@@ -139,12 +144,9 @@ class Hoop(Common):
         )
 
 
-AnyScene = (
-    Annotated[Sliding, tyro.conf.subcommand("sliding")]
-    | Annotated[Frozen, tyro.conf.subcommand("frozen")]
-    | Annotated[Pendulum, tyro.conf.subcommand("pendulum")]
-    | Annotated[Hoop, tyro.conf.subcommand("hoop")]
-)
+AnyScene = Sliding | Frozen | Pendulum | Hoop
+SCENES: dict[str, type[Common]] = {scene.__name__.lower(): scene for scene in get_args(AnyScene)}
+"""The classes of the scenes, by the names that they have on the command line."""
 
 
 @dataclass(frozen=True)
@@ -160,14 +162,14 @@ class Motion:
     """Duration of the motion [s]."""
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
-    integrator: Integrator = "RK4"
+    integrator: Annotated[Integrator | None, if_given(Integrator, "RK4, or DOP853 with a tolerance")] = None
     """Integrator: one of MuJoCo's, by its name in MJCF, or DOP853, a Runge-Kutta method of order 8."""
     timestep: float = 1e-3
     """Timestep; if a tolerance is given, the interval between samples [s]."""
-    tolerance: float | None = None
+    tolerance: Annotated[float | None, if_given(float, "none")] = None
     """Largest error allowed in phi and u/radius [rad]. If given, DOP853 is used and chooses its own timesteps."""
     friction: float = 1.0
-    """Coefficient of friction, used only with rolling by contact."""
+    """Coefficient of friction. A contact slips beyond it; other ways of rolling only say when a real can would."""
 
     def simulate(self) -> "Trajectory":
         """Simulate the scene and return its trajectory.
@@ -187,4 +189,5 @@ class Motion:
             timestep=self.timestep,
             tolerance=self.tolerance,
             friction=self.friction,
+            many_turns=True,
         )

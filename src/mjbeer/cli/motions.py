@@ -1,39 +1,49 @@
 """The commands about one motion: simulate, render and export."""
 
 import pathlib
+from contextlib import nullcontext
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
-from mjbeer.cli.arguments import AnyScene, Motion, radians
+from mjbeer.cli.arguments import AnyScene, Motion, if_given, radians
+from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal
-from mjbeer.output.terminal import STDERR, say, show
+from mjbeer.output.terminal import say
+
+if TYPE_CHECKING:
+    from mjbeer.cli.figures import Figures
 
 
 @dataclass(frozen=True)
 class Simulate(Motion):
-    """Simulate a scene, print its key figures with an estimate of the error, and write the motion as CSV."""
+    """Simulate a scene and print its key figures, with an estimate of the error."""
 
-    output: pathlib.Path | None = None
-    """CSV file to write; "-" is standard output. If not given, no CSV is written."""
+    output: Annotated[pathlib.Path | None, if_given(pathlib.Path, "no CSV")] = None
+    """CSV file to write; "-" is standard output."""
+    json: bool = False
+    """Print the key figures and the warnings as JSON."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
-        from mjbeer.cli.trajectory import csv, summary
+        from mjbeer.cli.figures import Figures
+        from mjbeer.drawing.views import csv
 
-        if self.output is None:
-            trajectory = self.simulate()
-            show(summary(trajectory))
-        elif str(self.output) == "-":
-            trajectory = self.simulate()
-            terminal.write(csv(trajectory))
-            STDERR.print(summary(trajectory))
-        else:
-            with files.whole(self.output) as temporary:
-                trajectory = self.simulate()
-                temporary.write_text(csv(trajectory), encoding="utf-8")
+        to_output = str(self.output) == "-"
+        if to_output and self.json:
+            raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
+        with files.whole(self.output) if self.output and not to_output else nullcontext() as temporary:
+            figures = Figures(self.simulate(), self.friction)
+            if temporary:
+                temporary.write_text(csv(figures.trajectory), encoding="utf-8")
+        if temporary:
             say(f"wrote {self.output}")
-            show(summary(trajectory))
-        _warn(trajectory.warnings)
+        if to_output:
+            terminal.write(csv(figures.trajectory))
+            say(figures.text().rstrip())
+        else:
+            terminal.write(figures.json() if self.json else figures.text())
+        _warn(figures)
         return 0
 
 
@@ -54,10 +64,11 @@ class Render(Motion):
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
+        from mjbeer.cli.figures import Figures
         from mjbeer.drawing.video import render
 
         trajectory = self.simulate()
-        _warn(trajectory.warnings)
+        _warn(Figures(trajectory, self.friction))
         render(
             trajectory,
             self.output,
@@ -72,11 +83,11 @@ class Render(Motion):
 
 @dataclass(frozen=True)
 class Export:
-    """Write a scene as one MJCF file that MuJoCo loads without mjbeer, with the initial state as a keyframe."""
+    """Write a scene with its start as one MJCF file that MuJoCo loads without mjbeer."""
 
     scene: AnyScene
     output: pathlib.Path
-    """MJCF file to write."""
+    """MJCF file to write, whose name ends in .xml; its keyframe "start" is the initial state."""
     phi0: float = 60.0
     """Initial phi: the angle of the beer's surface to the incline, as in the paper's Fig. 3 [degrees]."""
     phi_dot0: float = 0.0
@@ -95,6 +106,8 @@ class Export:
         """Run the command and return its exit status, 0."""
         from mjbeer.model.export import export
 
+        if self.output.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
+            raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {self.output.name!r}")
         export(
             self.scene.scene(),
             self.output,
@@ -109,6 +122,8 @@ class Export:
         return 0
 
 
-def _warn(warnings: tuple[str, ...]) -> None:
-    for warning in warnings:
+def _warn(figures: "Figures") -> None:
+    for warning in figures.trajectory.warnings:
         say(f"not to be trusted: {warning}", "yellow")
+    for note in figures.notes:
+        say(f"note: {note}", "yellow")

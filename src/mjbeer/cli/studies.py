@@ -1,24 +1,30 @@
 """The commands that check and measure: validate, report, benchmark, advise, stability and paper."""
 
 import pathlib
+import time
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from mjbeer.cli.arguments import CaseName
+from mjbeer.cli.arguments import CaseName, if_given
 from mjbeer.model.setting import Rolling
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.cases import DEFAULT
+
+if TYPE_CHECKING:
+    from mjbeer.studies.validation.run import Validation
 
 _FAILED = 1
 
 
 @dataclass(frozen=True)
 class Validate:
-    """Check the models against exact theory, and the paper's equations against both; exit status 1 if a check fails."""
+    """Check models and paper against exact theory; exit status 1 if a check fails."""
 
+    verbose: bool = False
+    """Print a table of every row, not only a line for each that failed."""
     json: bool = False
     """Print the results as JSON."""
 
@@ -27,41 +33,48 @@ class Validate:
         from mjbeer.studies.validation import tables
         from mjbeer.studies.validation.run import validate
 
+        began = time.perf_counter()
         validation = validate(STDERR)
         if self.json:
             terminal.write(tables.to_json(validation))
-        else:
+        elif not terminal.is_read_by_eye():
+            show(tables.rows(validation))
+        elif self.verbose:
             show(tables.validation(validation.results), tables.audit(validation.findings))
-        return 0 if validation.passed else _FAILED
+        return _conclude(validation, began)
 
 
 @dataclass(frozen=True)
 class Report:
-    """Validate, draw the four scenes, and write a folder with a summary; exit status 1 if a check fails.
+    """Validate, draw the four scenes and the paper's stories, and write a summary.
 
-    Without OpenGL there are no films, and the summary says so.
+    The exit status is 1 if a check fails. Without OpenGL there are no films.
     """
 
     output: pathlib.Path = pathlib.Path("report")
     """Folder to write to."""
     quick: bool = False
     """Draw smaller videos with fewer frames, and no films for the paper's scenarios."""
+    verbose: bool = False
+    """Also print the tables of the validation, which are in the summary."""
 
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer import report
         from mjbeer.studies.validation import tables
 
+        began = time.perf_counter()
         validation, missing = report.write(self.output, self.quick, STDERR)
-        show(tables.validation(validation.results), tables.audit(validation.findings))
-        say(f"the report is in {self.output / 'summary.md'}")
+        if self.verbose:
+            show(tables.validation(validation.results), tables.audit(validation.findings))
         _tell(missing)
-        return 0 if validation.passed else _FAILED
+        say(f"the report is in {self.output / 'summary.md'}")
+        return _conclude(validation, began)
 
 
 @dataclass(frozen=True)
 class Benchmark:
-    """Measure error against run time for integrators, ways of rolling and other tools; takes six minutes."""
+    """Measure error against run time of integrators and other tools, in six minutes."""
 
     scenes: Annotated[tuple[CaseName, ...], tyro.conf.Positional] = DEFAULT
     """Scenes to measure."""
@@ -87,14 +100,14 @@ class Benchmark:
 class Advise:
     """Print the fastest setting that met a tolerance in a stored benchmark."""
 
-    scene: Annotated[CaseName, tyro.conf.Positional]
-    """Scene of the benchmark that is most like yours."""
+    scene: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar=f"{{{','.join(DEFAULT)}}}")]
+    """Scene of the benchmark that is most like yours; a study of your own may have others."""
     tolerance: float = 1e-6
     """Largest error allowed in phi and u/radius [rad]."""
-    rolling: Rolling | None = None
-    """What makes the can roll; if not given, the fastest way is taken."""
-    study: pathlib.Path | None = None
-    """A study.json that `mjbeer benchmark` wrote; if not given, the one that comes with mjbeer."""
+    rolling: Annotated[Rolling | None, if_given(Rolling, "the fastest way")] = None
+    """What makes the can roll."""
+    study: Annotated[pathlib.Path | None, if_given(pathlib.Path, "the study that comes with mjbeer")] = None
+    """A study.json that `mjbeer benchmark` wrote."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
@@ -150,6 +163,17 @@ class Paper:
         say(f"the stories are in {self.output / 'stories.md'}")
         _tell(missing)
         return 0
+
+
+def _conclude(validation: "Validation", began: float) -> int:
+    """Print what failed and, on the last line, what passed since the moment `began`; return the exit status."""
+    from mjbeer.studies.validation import tables
+
+    for failure in tables.failures(validation):
+        say(f"FAILED: {failure}", "red")
+    style = "green" if validation.passed else "red"
+    say(f"{tables.sentence(validation)}, in {time.perf_counter() - began:.0f} s", style)
+    return 0 if validation.passed else _FAILED
 
 
 def _tell(missing: list[str]) -> None:

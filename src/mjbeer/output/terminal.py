@@ -7,10 +7,10 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 import rich.console
-from rich.console import RenderableType
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from mjbeer.exceptions import OutputError
+from mjbeer.output.table import Table
 
 
 class Console(rich.console.Console):
@@ -20,16 +20,31 @@ class Console(rich.console.Console):
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
 
+_BAR = 20
+"""Columns of a progress bar itself."""
+_COUNTED = 20
+"""Columns for the count and the time beside the bar, with the gaps between."""
 STDOUT = Console()
 STDERR = Console(stderr=True)
 
 
-def show(*tables: RenderableType) -> None:
-    """Print tables to standard output.
+def is_read_by_eye() -> bool:
+    """Return whether standard output is a terminal, not a file or a pipe to another program."""
+    return sys.stdout.isatty()
+
+
+def show(*tables: Table) -> None:
+    """Print tables to standard output; where a program reads it, as lines with tabs between the columns.
+
+    Several tables then have an empty line between them, and each its title above it, after a #.
 
     Raises:
       OutputError: if standard output cannot be written to.
     """
+    if not is_read_by_eye():
+        titled = [f"# {table.title}\n" if len(tables) > 1 else "" for table in tables]
+        write("\n".join(title + table.tabbed() for title, table in zip(titled, tables, strict=True)))
+        return
     with printing():
         STDOUT.print(*tables)
 
@@ -46,11 +61,13 @@ def progress_bar(console: rich.console.Console | None, total: int) -> Generator[
     The bar shows the name, how many pieces have been started, and the time since the block began. No bar is shown if
     `console` is None or not a terminal.
     """
-    columns = TextColumn("{task.description}", markup=False), BarColumn(), TextColumn("{task.completed}/{task.total}")
+    counted = TextColumn("{task.completed}/{task.total}")
+    columns = TextColumn("{task.description}", markup=False), BarColumn(bar_width=_BAR), counted
     hidden = console is None or not console.is_terminal
+    longest = 0 if console is None else max(0, console.width - _BAR - _COUNTED)
     with Progress(*columns, TimeElapsedColumn(), console=console, transient=True, disable=hidden) as progress:
         task = progress.add_task("", total=total)
-        yield lambda name: progress.update(task, description=name[:72], advance=1)
+        yield lambda name: progress.update(task, description=name[:longest], advance=1)
 
 
 @contextmanager

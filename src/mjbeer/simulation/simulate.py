@@ -30,7 +30,7 @@ def simulate(
     phi0: float,
     phi_dot0: float = 0.0,
     rolling: Rolling = "reduced",
-    integrator: Integrator = "RK4",
+    integrator: Integrator | None = None,
     timestep: float = 1e-3,
     tolerance: float | None = None,
     times: ArrayLike | None = None,
@@ -41,10 +41,10 @@ def simulate(
     """Return the motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
 
     The motion starts at `phi0` [rad] with `phi_dot0` [rad/s], and the axis as in `exact`. `rolling`, `friction` and
-    `softness` are those of `build`. `integrator` is one of MuJoCo's five, or "DOP853", a method of eighth order
-    around MuJoCo's forward dynamics; `timestep` [s] is fixed. Samples are at every timestep, or at `times` [s] from 0
-    on, which must be multiples of the timestep unless the integrator is DOP853. Samples at every timestep end with the
-    first multiple of the timestep at or after `duration`.
+    `softness` are those of `build`. `integrator` is one of MuJoCo's five, RK4 if it is not given, or "DOP853", a method
+    of eighth order around MuJoCo's forward dynamics; `timestep` [s] is fixed. Samples are at every timestep, or at
+    `times` [s] from 0 on, which must be multiples of the timestep unless the integrator is DOP853. Samples at every
+    timestep end with the first multiple of the timestep at or after `duration`.
 
     With a `tolerance` [rad] the integrator is DOP853, which chooses its own steps. The run is repeated until the
     error of phi and u/a over the whole motion is below the tolerance, relative to the angle where that exceeds 1 rad;
@@ -68,9 +68,13 @@ def simulate(
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0, many_turns)
     _check_start(scene, phi0, phi_dot0)
+    if tolerance is not None and integrator not in (None, DOP853):
+        raise ParameterError(
+            f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
+        )
     setting = Setting(
         rolling=rolling,
-        integrator=integrator,
+        integrator=Setting.integrator if integrator is None else integrator,
         timestep=timestep,
         tolerance=tolerance,
         friction=friction,
