@@ -84,6 +84,7 @@ def test_without_output_no_file_is_written(
         ("simulate hoop --friction 0 --rolling contact", "friction must be greater than 0, got 0.0"),
         ("simulate sliding --rolling equality", "a massless can with a sliding load exists only in rolling="),
         ("simulate frozen --timestep 0.5 --integrator Euler --phi0 3e9 --duration 900", "the run diverged at t ="),
+        ("stability --long --quick", "--long and --quick exclude each other"),
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
         ("render frozen --camera top", "camera must be one of 'side', 'quarter', 'overview'; got 'top'"),
         ("simulate frozen --output .", "cannot write .: it is a folder"),

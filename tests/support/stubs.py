@@ -54,10 +54,10 @@ def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make the stability study one of the first task of each group, but for the maps, which take longer."""
     first: dict[str, Task] = {}
-    for each in tasks(quick=True):
+    for each in tasks("quick"):
         first.setdefault(each.group, each)
     del first["maps"]
-    monkeypatch.setattr(stability_run, "tasks", lambda quick: list(first.values()))
+    monkeypatch.setattr(stability_run, "tasks", lambda extent: list(first.values()))
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:

@@ -28,7 +28,7 @@ def case(*runs: dict) -> dict:
 
 
 def study(**results: dict) -> run.Stability:
-    return run.Stability({"quick": True}, {}, {group: {"a": each} for group, each in results.items()})
+    return run.Stability({"extent": "quick"}, {}, {group: {"a": each} for group, each in results.items()})
 
 
 @pytest.fixture
@@ -44,15 +44,15 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         return {"as_expected": True, "of": name}
 
     three = [Task("laws", name, lambda name=name: measure(name)) for name in "abc"]
-    monkeypatch.setattr(run, "tasks", lambda quick: three)
+    monkeypatch.setattr(run, "tasks", lambda extent: three)
     return done
 
 
 def test_an_interrupted_study_goes_on(counted: list[str], tmp_path: pathlib.Path) -> None:
     with pytest.raises(KeyboardInterrupt):
-        run.conduct(tmp_path, True, QUIET)
+        run.conduct(tmp_path, "quick", QUIET)
     assert list(run.Stability.load(tmp_path / "stability.json").results["laws"]) == ["a"]
-    found = run.conduct(tmp_path, True, QUIET)
+    found = run.conduct(tmp_path, "quick", QUIET)
     assert counted == ["a", "b", "b", "c"]
     assert [each["of"] for each in found.of("laws")] == ["a", "b", "c"]
     assert run.Stability.load(tmp_path / "stability.json") == found
@@ -60,11 +60,11 @@ def test_an_interrupted_study_goes_on(counted: list[str], tmp_path: pathlib.Path
 
 def test_another_study_does_not_go_on_with_it(counted: list[str], tmp_path: pathlib.Path) -> None:
     counted.append("b")
-    run.conduct(tmp_path, True, QUIET)
+    run.conduct(tmp_path, "quick", QUIET)
     before = len(counted)
-    run.conduct(tmp_path, False, QUIET)
+    run.conduct(tmp_path, "long", QUIET)
     assert len(counted) == 2 * before - 1
-    run.conduct(tmp_path, False, QUIET)
+    run.conduct(tmp_path, "long", QUIET)
     assert len(counted) == 2 * before - 1
 
 
@@ -72,7 +72,7 @@ def test_another_study_does_not_go_on_with_it(counted: list[str], tmp_path: path
 def test_what_is_no_study_is_refused(text: str, tmp_path: pathlib.Path) -> None:
     (tmp_path / "stability.json").write_text(text)
     with pytest.raises(ParameterError, match=r"stability\.json was not written by `mjbeer stability`"):
-        run.conduct(tmp_path, True, QUIET)
+        run.conduct(tmp_path, "quick", QUIET)
 
 
 @pytest.mark.parametrize(
@@ -85,8 +85,8 @@ def test_what_is_no_study_is_refused(text: str, tmp_path: pathlib.Path) -> None:
         ),
         (study(laws={"as_expected": False}), ["laws: a"]),
         (study(limits={"agrees": False}), ["limits: a"]),
-        (study(search={"silent": [{"trial": "one"}]}), ["search: a"]),
-        (study(search={"silent": []}, endurance={"as_expected": True}, maps={"agrees": True}), []),
+        (study(search={"never": [{"call": "one"}]}), ["search: a"]),
+        (study(search={"never": []}, endurance={"as_expected": True}, maps={"agrees": True}), []),
     ],
 )
 def test_what_is_unexpected_is_named(found: run.Stability, unexpected: list[str]) -> None:
@@ -109,16 +109,16 @@ def test_tables_say_what_happened() -> None:
             "1 refused",
         )
     ]
-    assert tables.verdicts(found).rows == [("stiff", "1", "1", "1", "1", "0")]
+    assert tables.verdicts(found).rows == [("stiff", "1", "1", "1", "1", "0", "0", "0")]
     lines = tables.runs(found).splitlines()
     assert lines[0] == "kind,case,setting,verdict,error,admitted,says,expected,as_expected"
     assert lines[1] == 'stiff,a case,"reduced, RK4",stable and accurate,1e-09,1e-09,,stable and accurate,True'
     assert len(lines) == 5
 
 
-@pytest.mark.parametrize("quick", [True, False])
-def test_tasks_have_names_of_their_own(quick: bool) -> None:
-    names = [(each.group, each.name) for each in run.tasks(quick)]
+@pytest.mark.parametrize("extent", run.EXTENTS)
+def test_tasks_have_names_of_their_own(extent: str) -> None:
+    names = [(each.group, each.name) for each in run.tasks(extent)]
     assert len(set(names)) == len(names)
     assert {group for group, _ in names} == {"laws", "limits", "maps", "catalogue", "search", "endurance"}
 
@@ -126,12 +126,12 @@ def test_tasks_have_names_of_their_own(quick: bool) -> None:
 def test_the_report_is_written(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One task of each group, for real; the maps have a test of their own."""
     stubs.stability(monkeypatch)
-    found = run.conduct(tmp_path, True, QUIET)
+    found = run.conduct(tmp_path, "quick", QUIET)
     report.write(found, tmp_path)
     summary = (tmp_path / "summary.md").read_text()
     assert "All came out as theory expects." in summary
     for each in tmp_path.glob("*.svg"):
         assert f"]({each.name})" in summary
         assert each.with_suffix(".png").stat().st_size > 5000
-    assert json.loads((tmp_path / "stability.json").read_text())["settings"] == {"quick": True}
+    assert json.loads((tmp_path / "stability.json").read_text())["settings"] == {"extent": "quick"}
     assert len((tmp_path / "runs.csv").read_text().splitlines()) > 3

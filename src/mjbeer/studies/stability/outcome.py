@@ -1,14 +1,13 @@
-"""How a run ended: whether exact theory finds it accurate, and whether its own diagnostics warned if it is not."""
+"""How a run ended: whether two theories find it accurate, and whether its own diagnostics warned if it is not."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from mjbeer.exceptions import DivergenceError, MjbeerError
+from mjbeer.simulation.run import Run
+from mjbeer.studies.stability.truth import Truth, truth
 from mjbeer.theory.conserved import kinetic_energy
-from mjbeer.theory.exact import exact
-from mjbeer.theory.measure import distance
-from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.trust import ERROR
 
 ACCURATE = "stable and accurate"
@@ -16,8 +15,13 @@ INACCURATE = "stable, inaccurate"
 UNSTABLE = "unstable, detected"
 REFUSED = "refused"
 SILENT = "wrong and silent"
-VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT)
-"""Every way in which a run can end. The last one must not occur: a run that is trusted although it is wrong."""
+MISSED = "tolerance missed"
+THEORIES = "theories differ"
+VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT, MISSED, THEORIES)
+"""Every way in which a run can end."""
+NEVER = (SILENT, MISSED, THEORIES)
+"""The verdicts that must not occur: a run that is trusted although it is wrong, a run whose error is above its
+tolerance, and a motion of which two theories say different things that no rounding explains."""
 _GAIN = 10.0
 """A run is unstable if its kinetic energy exceeds the largest that the motion can have by this factor."""
 
@@ -29,20 +33,21 @@ class Outcome:
     verdict: str
     """One of `VERDICTS`."""
     error: float | None
-    """Largest error of phi and u/a against exact theory [rad], relative beyond 1 rad; None if there is no run."""
+    """Largest error of phi and u/a against the nearer theory [rad], relative beyond 1 rad; None if there is no run."""
     admitted: float | None
     """Largest error that the run's own diagnostics allow for [rad]: its error estimate, plus slip and lift in radii."""
     says: str
     """The run's warnings, or the text of the error that ended it; empty if the run is trusted."""
+    apart: float | None = None
+    """Distance of the two theories [rad], relative beyond 1 rad; None if there is no run, or only one theory."""
+    alarms: tuple[str, ...] = ()
+    """The beginnings of its warnings, up to the first number."""
 
 
-def judge(simulate: Callable[[], Trajectory]) -> Outcome:
+def judge(simulate: Callable[[], Run]) -> Outcome:
     """Simulate a motion, and return how that ended.
 
     A run is accurate if the error of phi and u/a is at most `trajectory.ERROR`, the limit for trusted runs as well.
-
-    Raises:
-      NoLibrationError: if the start lies on the separatrix, where there is no exact motion to judge by.
     """
     try:
         run = simulate()
@@ -50,23 +55,47 @@ def judge(simulate: Callable[[], Trajectory]) -> Outcome:
         return Outcome(UNSTABLE, None, None, str(error))
     except MjbeerError as error:
         return Outcome(REFUSED, None, None, str(error))
-    truth = exact(run.scene, run.time, run.phi0, run.phi_dot0)
     radius = run.scene.can.radius
-    error = distance(run, truth, radius, start=(run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]))
-    if run.trusted:
-        verdict = ACCURATE if error <= ERROR else SILENT
-    elif _explodes(run, truth):
-        verdict = UNSTABLE
-    else:
-        verdict = ACCURATE if error <= ERROR else INACCURATE
-    admitted = (run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius
-    return Outcome(verdict, _finite(error), _finite(admitted), "; ".join(run.warnings))
+    motion = truth(run.scene, run.time, run.phi0, run.phi_dot0)
+    error = motion.off(run.phi, run.u / radius)
+    return Outcome(
+        verdict=_verdict(run, motion, error),
+        error=_finite(error),
+        admitted=_finite((run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius),
+        says="; ".join(run.warnings),
+        apart=_finite(motion.apart) if len(motion.motions) > 1 else None,
+        alarms=tuple(_beginning(warning) for warning in run.warnings),
+    )
 
 
-def _explodes(run: Trajectory, truth: Trajectory) -> bool:
+def _verdict(run: Run, motion: Truth, error: float) -> str:
+    """Return how a run ended whose error is known."""
+    if not motion.explained:
+        return THEORIES
+    if run.trusted and not error <= ERROR:
+        return SILENT
+    tolerance = run.setting.tolerance
+    if tolerance is not None and run.rolling != "contact" and not error - motion.apart <= tolerance:
+        return MISSED
+    if not run.trusted and _explodes(run, motion):
+        return UNSTABLE
+    return ACCURATE if error <= ERROR else INACCURATE
+
+
+def _explodes(run: Run, motion: Truth) -> bool:
     """Return whether a run has so much more kinetic energy than the motion can have that it is unstable."""
-    most = float(kinetic_energy(run.scene, truth).max()) + 2 * run.scene.oscillator.depth
+    most = motion.kinetic + 2 * run.scene.oscillator.depth
     return not float(kinetic_energy(run.scene, run).max()) <= _GAIN * most
+
+
+def _beginning(text: str) -> str:
+    """Return a sentence up to its first number."""
+    words = []
+    for word in text.split():
+        if any(letter.isdigit() for letter in word):
+            break
+        words.append(word)
+    return " ".join(words)
 
 
 def _finite(value: float) -> float | None:

@@ -10,9 +10,16 @@ _READ = """
 A run is **stable and accurate** if phi and u/a stay within 0.01 rad of exact theory (relative beyond 1 rad). It is
 **stable, inaccurate** if they do not and the run carries a warning, **unstable, detected** if it blows up and ends in
 an error or carries a warning, **refused** if it ends in an error that states the reason, and **wrong and silent** if it
-is trusted although its error is larger: there must be none of those.
+is trusted although its error is larger. A **tolerance** is **missed** if the error is above it, and **theories differ**
+if the exact motion and one that is integrated from the Lagrangian are farther apart than rounding explains. There must
+be none of the last three.
+
+Among the accurate random runs there are **false alarms**: runs that are right from the start to the last sample, and
+warn of more than a can that would leave the incline. They do not count as such if the can **slips or lifts** by more
+than is trusted, if the run is right at its samples and wrong on the **way**, or if the start is so **sensitive** that
+another one, nearer than models are made, moves the exact motion by more than is trusted.
 """
-"""How to read the first table of the summary."""
+"""How to read the first table of the summary, and that of the random runs."""
 _ENDURANCE = (
     "stability-endurance: energy drifts with the number of swings by laws that theory gives. It stays within bounds "
     "where semi-implicit Euler is symplectic. Where each step loses a share of it, even if only because coefficients "

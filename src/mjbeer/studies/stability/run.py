@@ -7,8 +7,10 @@ from typing import Any
 from rich.console import Console
 
 from mjbeer.output.terminal import progress_bar
-from mjbeer.studies.stability import endurance, laws, limits, maps, search
+from mjbeer.studies.stability import endurance, laws, limits, maps
 from mjbeer.studies.stability.catalogue import cases
+from mjbeer.studies.stability.crew import crew
+from mjbeer.studies.stability.search import batches
 from mjbeer.studies.study import Study, Task
 
 
@@ -31,41 +33,51 @@ class Stability(Study):
             for name, result in tasks.items():
                 runs = result.get("runs", [])
                 names += [f"{group}: {name}: {run['setting']}" for run in runs if not run["as_expected"]]
-                if not (result.get("as_expected", True) and result.get("agrees", True)) or result.get("silent"):
+                if not (result.get("as_expected", True) and result.get("agrees", True)) or result.get("never"):
                     names.append(f"{group}: {name}")
         return names
 
 
-def tasks(quick: bool) -> list[Task]:
-    """Return all tasks, or a sample of them."""
+EXTENTS = ("quick", "usual", "long")
+"""How much a study measures: only the last one runs everything; the first two differ in the number of random runs."""
+
+
+def tasks(extent: str) -> list[Task]:
+    """Return all tasks of a study of this extent."""
+    sample = extent != "long"
     return [
         *laws.tasks(),
-        *limits.tasks(quick),
-        *maps.tasks(quick),
-        *cases.tasks(quick),
-        *search.tasks(quick),
-        *endurance.tasks(quick),
+        *limits.tasks(sample),
+        *maps.tasks(sample),
+        *cases.tasks(sample),
+        *batches.tasks(extent),
+        *endurance.tasks(sample),
     ]
 
 
-def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Stability:
+def conduct(folder: pathlib.Path, extent: str, console: Console) -> Stability:
     """Run the tasks whose results the study in `folder` lacks, and return the study.
 
-    It is saved as stability.json after each task. The summary of an earlier study is removed first.
+    It is saved as stability.json after each task. The random runs are made on all cores, the other tasks one by one.
+    The summary of an earlier study is removed first.
 
     Raises:
       OutputError: if the folder cannot be written to.
+      OSError: if the system ends one of the processes that make the random runs.
       ParameterError: if stability.json is there but is not such a study.
     """
     path = folder / "stability.json"
-    study = Stability.begin(path, {"quick": quick}, console)
+    study = Stability.begin(path, {"extent": extent}, console)
     (folder / "summary.md").unlink(missing_ok=True)
-    todo = tasks(quick)
-    with progress_bar(console, len(todo)) as begin:
+    todo = tasks(extent)
+    random = [
+        task for task in todo if task.group == batches.GROUP and task.name not in study.results.get(task.group, {})
+    ]
+    with progress_bar(console, len(todo)) as begin, crew(random) as measure:
         for task in todo:
             begin(f"{task.group}: {task.name}")
             group = study.results.setdefault(task.group, {})
             if task.name not in group:
-                group[task.name] = task.measure()
+                group[task.name] = measure(task)
                 study.save(path)
     return study

@@ -8,8 +8,9 @@ from typing import Any
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.output.table import Table
 from mjbeer.studies.stability import limits, maps
-from mjbeer.studies.stability.outcome import ACCURATE, SILENT, VERDICTS
+from mjbeer.studies.stability.outcome import ACCURATE, VERDICTS
 from mjbeer.studies.stability.run import Stability
+from mjbeer.studies.stability.search import tables as search
 
 _RUN = ("kind", "case", "setting", "verdict", "error", "admitted", "says", "expected", "as_expected")
 """Columns of the CSV file."""
@@ -22,7 +23,7 @@ def tables(study: Stability) -> list[Table]:
         laws(study),
         limits.table(study.of("limits")),
         maps.table(study.of("maps")),
-        search(study),
+        *search.tables(study.of("search")),
         endurance(study),
     ]
 
@@ -33,7 +34,8 @@ def verdicts(study: Stability) -> Table:
     for case in study.of("catalogue"):
         counts.setdefault(case["kind"], Counter()).update(run["verdict"] for run in case["runs"])
     for batch in study.of("search"):
-        counts.setdefault("random", Counter()).update(batch["verdicts"])
+        for region in batch["regions"].values():
+            counts.setdefault("random", Counter()).update(region)
     rows = [(kind, *(str(count[verdict]) for verdict in VERDICTS)) for kind, count in counts.items()]
     return Table("How runs ended", ("cases", *VERDICTS), rows)
 
@@ -66,27 +68,6 @@ def _summary(runs: list[dict[str, Any]]) -> str:
     return ", ".join(parts) + (f"; {unexpected} UNEXPECTED" if unexpected else "")
 
 
-def search(study: Stability) -> Table:
-    """Return a table of how the runs of the random search ended."""
-    batches = study.of("search")
-    total = Counter[str]()
-    for batch in batches:
-        total.update(batch["verdicts"])
-    overconfident = [run for batch in batches for run in batch["overconfident"]]
-    worst = max((run["error"] for run in overconfident), default=0.0)
-    rows = [
-        ("runs", str(sum(total[verdict] for verdict in VERDICTS))),
-        *((verdict, str(total[verdict])) for verdict in VERDICTS),
-        ("accurate, but flagged by their own diagnostics", str(sum(batch["flagged"] for batch in batches))),
-        (
-            "trusted, but with a larger error than their own diagnostics allow for",
-            f"{len(overconfident)} (largest error {worst:.0e} rad)",
-        ),
-    ]
-    rows += [(f"{SILENT}: seed {batch['seed']}", run["trial"]) for batch in batches for run in batch["silent"]]
-    return Table("Random search", ("", "runs"), rows)
-
-
 def endurance(study: Stability) -> Table:
     """Return a table of how energy drifts over many swings."""
     rows = []
@@ -115,7 +96,7 @@ def laws(study: Stability) -> Table:
 def runs(study: Stability) -> str:
     """Return every run of the catalogue as CSV."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, _RUN, lineterminator="\n")
+    writer = csv.DictWriter(text, _RUN, extrasaction="ignore", lineterminator="\n")
     writer.writeheader()
     for case in study.of("catalogue"):
         for run in case["runs"]:

@@ -10,11 +10,11 @@ from typing import Any
 
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, supported
+from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.stability.outcome import ACCURATE, REFUSED, SILENT, judge
+from mjbeer.studies.stability.outcome import ACCURATE, NEVER, REFUSED, judge
 from mjbeer.studies.study import Task
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory
 
 SWINGS = 5.0
 """Length of a run, in natural periods."""
@@ -32,9 +32,9 @@ class Attempt:
 
     setting: str
     """Name of the way: of rolling, integrator, and timestep or tolerance."""
-    simulate: Callable[[], Trajectory]
+    simulate: Callable[[], Run]
     expected: tuple[str, ...] = ()
-    """Outcomes that theory allows. If empty, every outcome but "wrong and silent" is allowed."""
+    """Outcomes that theory allows. If empty, every outcome is allowed that is not in `outcome.NEVER`."""
     within: float = math.inf
     """Largest error that a run may have to be as expected [rad]."""
     sample: bool = True
@@ -67,7 +67,7 @@ class CatalogueCase:
 def _check(attempt: Attempt) -> dict[str, Any]:
     """Return the outcome of a run, and whether it is among those that theory allows."""
     outcome = judge(attempt.simulate)
-    allowed = outcome.verdict in attempt.expected if attempt.expected else outcome.verdict != SILENT
+    allowed = outcome.verdict in attempt.expected if attempt.expected else outcome.verdict not in NEVER
     allowed = allowed and (outcome.error is None or outcome.error <= attempt.within)
     about = dataclasses.asdict(outcome)
     return {"setting": attempt.setting, **about, "expected": list(attempt.expected), "as_expected": allowed}
@@ -97,8 +97,8 @@ def attempts(
 
     `expected` gives the allowed outcomes by way of rolling, or for "tolerance". Where it does not, a reduced model must
     be accurate with RK4, with DOP853 and to a tolerance, and an equality with RK4 and to a tolerance. A model that
-    MuJoCo cannot have must be refused. A contact, which may part, and methods of first order may end in any way but
-    "wrong and silent".
+    MuJoCo cannot have must be refused. A contact, which may part, and methods of first order may end in any way that
+    is not in `outcome.NEVER`.
     """
     period = natural_period(scene, phi_dot0)
     start = partial(simulate, scene, swings * period, phi0, phi_dot0)

@@ -1,0 +1,1 @@
+"""A search, with seeded random numbers, for runs that are trusted although they are wrong."""

@@ -1,0 +1,54 @@
+"""Random starts: an angle phi [rad] and its rate [rad/s]."""
+
+import math
+
+from mjbeer.exceptions import NoEquilibriumError
+from mjbeer.studies.stability.search.pick import Pick
+from mjbeer.theory.scene import Scene
+
+Start = tuple[float, float]
+
+
+def slow(scene: Scene) -> float:
+    """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
+    return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
+
+
+def ordinary(pick: Pick, scene: Scene) -> Start:
+    """Return a start such as one makes by hand: let go, pushed or spun."""
+    phi0 = pick.one(0.0, 1.0, math.pi, pick.between(-math.pi, math.pi), pick.decades(1e-9, 1))
+    return phi0, pick.one(0.0, 0.0, pick.between(-3, 3)) / slow(scene)
+
+
+def fast(pick: Pick, scene: Scene) -> Start:
+    """Return a start with a spin much faster than any swing."""
+    spin = pick.one(pick.decades(2, 500), pick.decades(2, 500), pick.decades(1e2, 1e6))
+    return pick.between(-4, 4), pick.sign() * spin / slow(scene)
+
+
+def far(pick: Pick, scene: Scene) -> Start:
+    """Return a start many turns away, at rest, slow, or so fast that seconds take it many turns away."""
+    phi0 = pick.sign() * pick.decades(1e2, 1e9)
+    rate = pick.one(0.0, pick.between(-3, 3) / slow(scene), pick.sign() * pick.decades(1e2, 1e9))
+    return phi0, rate
+
+
+def beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
+    """Return a start at rest beside a barrier's top, or anywhere with nearly the energy of that top."""
+    form = scene.oscillator
+    try:
+        low, high = scene.separatrix()
+    except NoEquilibriumError:
+        return ordinary(pick, scene)
+    beside = pick.sign() * pick.decades(1e-15, 0.1)
+    if pick.chance(0.5):
+        return pick.one(low, high) + beside, 0.0
+    phi0 = pick.between(low, high)
+    missing = max(0.0, float(form.potential(high) - form.potential(phi0)))
+    rate = math.sqrt(2 * missing / float(form.inertia(phi0)))
+    return phi0, pick.sign() * rate * (1 + beside)
+
+
+def anything(pick: Pick, scene: Scene) -> Start:
+    """Return any of these starts."""
+    return pick.one(ordinary, ordinary, fast, far, beside_the_separatrix)(pick, scene)

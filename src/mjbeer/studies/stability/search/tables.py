@@ -1,0 +1,78 @@
+"""The results of the search as tables: by region, by warning, and the runs that must not be."""
+
+from collections import Counter
+from typing import Any
+
+from mjbeer.output.table import Table
+from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, MISSED, REFUSED, SILENT, THEORIES, UNSTABLE, VERDICTS
+from mjbeer.studies.stability.search.batches import ALONE, SMALL_FALSE
+from mjbeer.studies.stability.search.check import FALSE, PARTS, SENSITIVE, SMALL, WAY
+
+_COLUMNS = {
+    REFUSED: "refused",
+    UNSTABLE: "unstable",
+    ACCURATE: "accurate",
+    INACCURATE: "inaccurate",
+    SILENT: "silent",
+    MISSED: "missed",
+    THEORIES: "theories",
+    FALSE: "false alarms",
+    SMALL_FALSE: f"below {SMALL:g}",
+    PARTS: "slip or lift",
+    WAY: "way",
+    SENSITIVE: "sensitive",
+    ALONE: "one theory",
+}
+"""What is counted, and the heading of its column. From the false alarms on, the runs are among the accurate ones."""
+
+
+def tables(batches: list[dict[str, Any]]) -> list[Table]:
+    """Return the tables; those of false alarms and of runs that must not be are left out where there are none."""
+    return [by_region(batches), *by_warning(batches), *overconfident(batches), *never(batches)]
+
+
+def by_region(batches: list[dict[str, Any]]) -> Table:
+    """Return a table of how the runs of each region ended."""
+    regions: dict[str, Counter[str]] = {}
+    for batch in batches:
+        for name, counts in batch["regions"].items():
+            regions.setdefault(name, Counter()).update(counts)
+    if regions:
+        regions["all"] = sum(regions.values(), Counter[str]())
+    rows = [
+        (name, str(sum(counts[verdict] for verdict in VERDICTS)), *(str(counts[key]) for key in _COLUMNS))
+        for name, counts in regions.items()
+    ]
+    return Table("Random runs, by region", ("region", "runs", *_COLUMNS.values()), rows)
+
+
+def by_warning(batches: list[dict[str, Any]]) -> list[Table]:
+    """Return a table of the warnings that were false alarms, if there are any."""
+    total = Counter[str]()
+    for batch in batches:
+        total.update(batch["false alarms"])
+    rows = [(beginning, str(count)) for beginning, count in total.most_common()]
+    return [Table("False alarms, by the beginning of the warning", ("warning", "runs"), rows)] if rows else []
+
+
+def overconfident(batches: list[dict[str, Any]]) -> list[Table]:
+    """Return a table of how many trusted runs have a larger error than they admit, if there are any."""
+    runs = [run for batch in batches for run in batch["overconfident"]]
+    if not runs:
+        return []
+    worst = max(run["error"] for run in runs)
+    rows = [
+        ("trusted, accurate, but with a larger error than their diagnostics allow for", str(len(runs)), f"{worst:.0e}")
+    ]
+    return [Table("Overconfident runs", ("", "runs", "largest error [rad]"), rows)]
+
+
+def never(batches: list[dict[str, Any]]) -> list[Table]:
+    """Return a table of the runs that must not be, each with the call that repeats it, if there are any."""
+    rows = [
+        (run["verdict"], run["region"], str(run["number"]), f"{run['error'] or float('nan'):.1e}", run["call"])
+        for batch in batches
+        for run in batch["never"]
+    ]
+    columns = ("verdict", "region", "number", "error [rad]", "call")
+    return [Table("Runs that must not be", columns, rows, left=(0, 1, 4))] if rows else []

@@ -1,0 +1,109 @@
+"""The reference against Lagrange's equations in forty digits, against heyoka, and against what a motion conserves."""
+
+import math
+
+import numpy as np
+import pytest
+
+from mjbeer import Can, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.studies.benchmark.peers import with_heyoka
+from mjbeer.studies.stability.reference import lagrangian
+from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
+from mjbeer.theory.conserved import energy
+from mjbeer.theory.load import Load
+from tests.support import lagrange
+
+pytestmark = pytest.mark.slow
+
+METAL = Can.sheet_metal()
+BESIDE = 1e-6
+FEW = 3e-15
+"""A few roundings of an angle of some radians."""
+LIGHT_HOOP = Scene(Can.hoop(mass=0.2e-9), Load.point(0.2, 0.033), 0.0, "frozen")
+LIGHT_CAN = Scene(Can(0.033, 0.1, 1e-21, 1e-24), Load.point(0.1, 0.02), 0.1)
+HEAVY_CAN = Scene(Can(0.033, 0.1, 1e20, 1e17), Load.point(0.1, 0.02), 0.1)
+CASES: dict[str, tuple[Scene, float, float, float, float]] = {
+    "sliding": (sliding(), 0.4, 1.0, 0.0, FEW),
+    "sliding, metal, spun": (sliding(can=METAL), 0.4, 2.0, 3.0, FEW),
+    "frozen": (frozen(), 0.4, 1.0, 0.0, FEW),
+    "frozen, steep, rolling up": (frozen(-1.57), 0.2, 1.0, 30.0, FEW),
+    "pendulum": (pendulum(), 0.4, 1.0, -2.0, FEW),
+    "hoop": (hoop(), 0.3, 1.0, 0.0, FEW),
+    "hoop of 1e-9 of its load": (LIGHT_HOOP, 0.09, 1.5, 0.0, FEW),
+    "can of 1e-20 of its load": (LIGHT_CAN, 3e-11, 3e-10, -20.0, 1e-23),  # through the bottom
+    "can of 1e21 of its load": (HEAVY_CAN, 0.3, 1.0, 0.0, FEW),
+    # The spacing of doubles there is 1.5e-8.
+    "1e8 rad away": (frozen(), 0.3, 1e8, 3.0, 1.5e-8),
+    "1e5 rad/s": (sliding(can=METAL), 1e-4, 0.3, 1e5, FEW),
+    # A rounding of the start, 4e-16 rad, grows with the swing from there: as the angle itself, from 1e-6 to 3 rad.
+    "beside the separatrix": (pendulum(), 1.0, pendulum().separatrix()[1] - BESIDE, 0.0, 4e-16 * 3 / BESIDE),
+    "weak gravity": (frozen(gravity=1e-6), 1e3, 1.0, 0.0, FEW),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_solves_lagranges_equations(name: str) -> None:
+    scene, duration, phi0, phi_dot0, bound = CASES[name]
+    times = np.array([0.0, 0.37, 1.0]) * duration
+    phi, roll = lagrange.motion(scene, times, phi0, phi_dot0)
+    found = reference(scene, times, phi0, phi_dot0)
+    assert np.abs(found.phi - phi).max() <= bound
+    assert np.abs(found.u / scene.can.radius - roll).max() <= bound
+
+
+@pytest.mark.parametrize(
+    ("scene", "phi0", "phi_dot0"),
+    [(sliding(), 1.0, 0.0), (sliding(can=METAL), 2.0, 3.0), (frozen(), 1.0, 0.0), (pendulum(), 1.0, 20.0)],
+)
+def test_heyoka_agrees_over_a_hundred_swings(scene: Scene, phi0: float, phi_dot0: float) -> None:
+    """Its tolerance is the rounding of doubles; its own rounding grows to some 1e-12 of a radian."""
+    pytest.importorskip("heyoka")
+    times = np.linspace(0, 100 * scene.period(1.0), 301)
+    found = reference(scene, times, phi0, phi_dot0)
+    with np.errstate(all="ignore"):
+        phi, u = with_heyoka.PEER.set_up(scene, phi0, phi_dot0, times, 1e-16)()
+    assert np.abs(found.phi - phi).max() < 1e-10
+    assert np.abs(found.u - u).max() / scene.can.radius < 1e-10 * max(1, np.abs(u).max() / scene.can.radius)
+
+
+def test_energy_is_kept_over_a_hundred_swings() -> None:
+    """Its rounding: that of twenty steps a swing, which add up like a random walk."""
+    scene = sliding(incline=0.0, can=METAL)
+    found = reference(scene, np.linspace(0, 100 * scene.period(1.0), 1001), 1.0)
+    total, depth = energy(scene, found), scene.oscillator.depth
+    assert np.abs(total - total[0]).max() / depth < 2e-14
+
+
+def test_samples_do_not_change_the_motion() -> None:
+    scene, times = frozen(), np.linspace(0, 3, 301)
+    many = reference(scene, times, 1.0)
+    for place in (0, 17, 300):
+        alone = reference(scene, times[place : place + 1], 1.0)
+        assert alone.phi[0] == pytest.approx(many.phi[place], abs=1e-13)
+        assert alone.phi_dot[0] == pytest.approx(many.phi_dot[place], abs=1e-12)
+
+
+def test_rates_are_those_of_the_angles() -> None:
+    scene, step = sliding(can=METAL), 1e-4
+    found = reference(scene, 0.3 + step * np.arange(-1, 2), 1.0, 3.0)
+    for values, rates in ((found.phi, found.phi_dot), (found.u, found.u_dot)):
+        slope = (values[2] - values[0]) / (2 * step)
+        assert slope == pytest.approx(rates[1], rel=1e-4)
+
+
+def test_a_balanced_load_turns_evenly() -> None:
+    scene = Scene(Can(0.033, 0.1), Load(0.1, 0.0, 1e-5), 0.0, "frozen")
+    found = reference(scene, np.array([0.0, 1.0, 1e3]), 1.0, 2.0)
+    assert found.phi.tolist() == [1.0, 3.0, 2001.0]
+
+
+def test_without_gravity_and_rate_nothing_moves() -> None:
+    found = reference(sliding(gravity=0.0), np.array([0.0, 1e6]), 1.0)
+    assert found.phi.tolist() == [1.0, 1.0]
+    assert found.u.tolist() == [sliding().load.offset * math.sin(1.0)] * 2
+
+
+def test_a_motion_that_is_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lagrangian, "MOST_STEPS", 100)
+    with pytest.raises(LongMotionError, match="more than 100 steps"):
+        reference(sliding(), np.array([100.0]), 1.0)
