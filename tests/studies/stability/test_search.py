@@ -85,7 +85,14 @@ def test_every_region_has_all_rollings_and_tolerances() -> None:
         runs = of(region.name)
         wanted = {"contact"} if region.name == "contact friction" else {"reduced", "equality", "contact"}
         assert {run.rolling for run in runs} == wanted
-        assert {run.integrator for run in runs if run.integrator} == {"Euler", "implicit", "implicitfast", "discrete", "RK4", "DOP853"}
+        assert {run.integrator for run in runs if run.integrator} == {
+            "Euler",
+            "implicit",
+            "implicitfast",
+            "discrete",
+            "RK4",
+            "DOP853",
+        }
         assert {run.rolling for run in runs if run.tolerance} == wanted - {"contact"}
 
 
