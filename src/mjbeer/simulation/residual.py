@@ -23,8 +23,8 @@ _SMALL_SWING = 0.1
 motion that hardly swings would otherwise divide rounding by nearly nothing."""
 
 
-def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> float:
-    """Return the largest difference of phi_ddot from theory's at `states`, over the largest phi_ddot among them.
+def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> tuple[float, float]:
+    """Return the largest difference of phi_ddot from theory's at `states` [rad/s^2], and relative to phi_ddot.
 
     `states` has shape (states, nq + nv). Softness is no loss, and shows as slip: the slip of the states is taken away,
     and a constraint that is not exact is replaced by that of rolling.
@@ -37,21 +37,21 @@ def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_cons
     found, right = read(model, scene, slopes, times).phi_dot, scene.oscillator.acceleration(motion.phi, motion.phi_dot)
     oscillator = scene.oscillator
     small = float((_SMALL_SWING * oscillator.depth / oscillator.inertia(motion.phi)).min())
-    largest = max(float(np.abs(right).max()), small)
-    return float(np.abs(found - right).max()) / largest if largest > 0 else 0.0
+    largest, difference = max(float(np.abs(right).max()), small), float(np.abs(found - right).max())
+    return difference, difference / largest if largest > 0 else 0.0
 
 
 def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, exact_constraint: bool) -> float:
     """Return the error of phi [rad], relative beyond 1 rad, that a model's residual along the way of a run implies.
 
-    Like a relative error of the energy it is a relative error of the rate, and so of the path of phi. A motion that
-    ought to begin, but does not, has the path that the largest acceleration gives it from rest.
+    Like a relative error of the energy it is a relative error of the rate, and so of the path of phi. It is no more
+    than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
     """
     chosen = np.linspace(0, len(way.time) - 1, min(STATES, len(way.time))).astype(int)
     some = Coordinates(**{name: array[chosen] for name, array in vars(way).items()})
-    acceleration = float(np.abs(scene.oscillator.acceleration(some.phi, some.phi_dot)).max())
-    path = max(record.path, min(acceleration * float(way.time[-1]) ** 2 / 2, 1.0))
-    return residual(model, scene, write(model, some), exact_constraint) * path / max(1.0, record.turned)
+    difference, relative = residual(model, scene, write(model, some), exact_constraint)
+    missing = min(relative * max(record.path, 1.0), difference * float(way.time[-1]) ** 2 / 2)
+    return missing / max(1.0, record.turned)
 
 
 def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> np.ndarray:

@@ -31,9 +31,10 @@ _KEPT = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
 _CHECKED = 32
 """Number of times for a run with a tolerance, which has to interpolate there: three evaluations each, of thousands."""
-_TURN = 1.0
-"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: forces that
-are taken at the same phase of every turn give a rotation that looks even, and is not."""
+_TURN = 2.0
+"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle. J goes with
+the sine of twice the angle, so that it looks the same at every step of pi; forces that are taken at the same phase of
+every turn give a rotation that looks even, and is not."""
 _GOLDEN = (math.sqrt(5) - 1) / 2
 """The fractions of its multiples are spread evenly, and no period is a multiple of the gaps between them."""
 

@@ -171,7 +171,7 @@ class Solver:
         if not self._model.neq:
             return 0.0
         chosen = np.linspace(0, len(fine) - 1, min(residual.STATES, len(fine))).astype(int)
-        loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
+        _, loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
         if loss <= _NO_LOSS * tolerance:
             return 0.0
         aside, _ = self._run(start + min(loss, 1.0) * self._scale, times, local=local, tolerance=tolerance)

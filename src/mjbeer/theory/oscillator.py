@@ -105,10 +105,12 @@ class Oscillator:
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
         """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
 
-        It is large where the energy is not much more than a rotation needs.
+        It is large where neither the energy of the start nor that which a turn downhill adds is much more than the
+        depth of the well.
         """
-        kinetic = float(self.inertia(phi0)) * phi_dot0**2 / 2
-        return (self.chord + self.swing) / (2 * self.base) + (self.depth / kinetic if kinetic > 0 else math.inf)
+        drive = float(self.inertia(phi0)) * phi_dot0**2 / 2 + abs(self.slope)
+        by_weight = self.depth / drive if drive > 0 else (math.inf if self.depth > 0 else 0.0)
+        return (self.chord + self.swing) / (2 * self.base) + by_weight
 
     def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
         """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.exceptions import NoLibrationError, ParameterError
+from mjbeer.exceptions import NoLibrationError, ParameterError, ToleranceError
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.coordinates import Coordinates
@@ -17,9 +17,9 @@ from mjbeer.theory.scene import Scene
 _ROUNDING = float(np.finfo(float).eps)
 _NUDGES = 30.0
 """Largest distance of the two theories over the effect of nudging the start and the scene by a rounding each."""
-_FLOOR = 1e-11
+_FLOOR = 3e-11
 """Distance of the two theories that needs no explanation [rad], relative beyond 1 rad: the rounding of some hundred
-swings, each of which the reference makes in twenty steps."""
+swings, each of which the reference makes in twenty steps, or more where the load passes the bottom in no time."""
 _LAST_DIGITS = 4.0
 """The same in roundings of the angle itself, which has few digits left after many turns."""
 
@@ -62,7 +62,9 @@ class Truth:
 def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Truth:
     """Return the motion at increasing `times` [s] that starts at `phi0` [rad] with `phi_dot0` [rad/s] at time 0."""
     motions: list[Coordinates] = []
-    with suppress(NoLibrationError, ParameterError):  # on the separatrix, and beyond what rounding leaves to it
+    with suppress(
+        NoLibrationError, ParameterError, ToleranceError
+    ):  # on the separatrix, and beyond what rounding leaves to it
         motions.append(exact(scene, times, phi0, phi_dot0, many_turns=True))
     try:
         motions.append(reference(scene, times, phi0, phi_dot0))

@@ -19,7 +19,8 @@ SENSITIVE = "sensitive start"
 ALARMS = (FALSE, PARTS, WAY, SENSITIVE)
 """What the warnings of an accurate run can be. All but the first are facts: the can slips or lifts by more than is
 trusted; the run is right at its samples and wrong between them; a start that is closer than models are made moves the
-exact motion by more than is trusted."""
+exact motion by more than is trusted, or the run itself: one that rests where its timestep is far too long, say, is
+right only as long as nothing disturbs it."""
 SMALL = 1e-4
 """Error [rad] below which there should be no false alarm at all: a hundredth of what is trusted."""
 PULL = "from t ="
@@ -60,11 +61,17 @@ def check(run: RandomRun) -> Finding:
 
 
 def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
-    """Return whether a start beside that of a run moves the exact motion by more than is trusted."""
+    """Return whether a start beside that of a run moves the exact motion, or the run, by more than is trusted."""
     aside = START_DEPTH if run.rolling == "contact" else _ASIDE * max(1.0, abs(run.phi0))
     motion = angles(run.scene, reference(run.scene, times, run.phi0, run.phi_dot0), run.phi0, run.phi_dot0)
     for side in (aside, -aside):
         beside = reference(run.scene, times, run.phi0 + side, run.phi_dot0)
         if _SAFETY * motion.off(beside.phi, beside.u / run.scene.can.radius) > ERROR:
+            return True
+        try:
+            other = replace(run, phi0=run.phi0 + side, every=1, moments=None).simulate()
+        except MjbeerError:
+            return True
+        if not _SAFETY * motion.off(other.phi, other.u / run.scene.can.radius) <= ERROR:
             return True
     return False
