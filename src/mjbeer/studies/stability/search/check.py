@@ -7,7 +7,7 @@ import numpy as np
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.state import START_DEPTH
 from mjbeer.studies.stability.outcome import ACCURATE, Outcome, judge
-from mjbeer.studies.stability.reference.lagrangian import reference
+from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
 from mjbeer.theory.trust import ERROR, LIFT, SLIP
@@ -62,9 +62,9 @@ def check(run: RandomRun) -> Finding:
 def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
     """Return whether a start beside that of a run moves the exact motion by more than is trusted."""
     aside = START_DEPTH if run.rolling == "contact" else _ASIDE * max(1.0, abs(run.phi0))
-    motion = angles(run.scene, reference(run.scene, times, run.phi0, run.phi_dot0), run.phi0, run.phi_dot0)
-    for side in (aside, -aside):
-        beside = reference(run.scene, times, run.phi0 + side, run.phi_dot0)
-        if _SAFETY * motion.off(beside.phi, beside.u / run.scene.can.radius) > ERROR:
-            return True
-    return False
+    try:
+        motions = [reference(run.scene, times, run.phi0 + side, run.phi_dot0) for side in (0.0, aside, -aside)]
+    except LongMotionError:
+        return False
+    motion, *beside = (angles(run.scene, motion, run.phi0, run.phi_dot0) for motion in motions)
+    return max(motion.off(other.phi, other.roll) for other in beside) * _SAFETY > ERROR
