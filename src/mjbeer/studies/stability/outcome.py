@@ -63,7 +63,7 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
         error=_finite(error),
         admitted=_finite((run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius),
         says="; ".join(run.warnings),
-        apart=_finite(motion.apart) if len(motion.motions) > 1 else None,
+        apart=motion.apart,
         alarms=tuple(_beginning(warning) for warning in run.warnings),
     )
 
@@ -75,7 +75,7 @@ def _verdict(run: Run, motion: Truth, error: float) -> str:
     if run.trusted and not error <= ERROR:
         return SILENT
     tolerance = run.setting.tolerance
-    if tolerance is not None and run.rolling != "contact" and not error - motion.apart <= tolerance:
+    if tolerance is not None and run.rolling != "contact" and not error - (motion.apart or 0.0) <= tolerance:
         return MISSED
     if not run.trusted and _explodes(run, motion):
         return UNSTABLE

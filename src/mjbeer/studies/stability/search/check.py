@@ -7,7 +7,7 @@ import numpy as np
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.state import START_DEPTH
 from mjbeer.studies.stability.outcome import ACCURATE, Outcome, judge
-from mjbeer.studies.stability.reference.lagrangian import reference
+from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
 from mjbeer.theory.trust import ERROR, LIFT, SLIP
@@ -63,15 +63,13 @@ def check(run: RandomRun) -> Finding:
 def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
     """Return whether a start beside that of a run moves the exact motion, or the run, by more than is trusted."""
     aside = START_DEPTH if run.rolling == "contact" else _ASIDE * max(1.0, abs(run.phi0))
-    motion = angles(run.scene, reference(run.scene, times, run.phi0, run.phi_dot0), run.phi0, run.phi_dot0)
-    for side in (aside, -aside):
-        beside = reference(run.scene, times, run.phi0 + side, run.phi_dot0)
-        if _SAFETY * motion.off(beside.phi, beside.u / run.scene.can.radius) > ERROR:
-            return True
-        try:
-            other = replace(run, phi0=run.phi0 + side, every=1, moments=None).simulate()
-        except MjbeerError:
-            return True
-        if not _SAFETY * motion.off(other.phi, other.u / run.scene.can.radius) <= ERROR:
-            return True
-    return False
+    sides = aside, -aside
+    try:
+        motions = [reference(run.scene, times, run.phi0 + side, run.phi_dot0) for side in (0.0, *sides)]
+        others = [replace(run, phi0=run.phi0 + side, every=1, moments=None).simulate() for side in sides]
+    except LongMotionError:
+        return False
+    except MjbeerError:
+        return True
+    motion, *beside = (angles(run.scene, motion, run.phi0, run.phi_dot0) for motion in (*motions, *others))
+    return not max(motion.off(other.phi, other.roll) for other in beside) * _SAFETY <= ERROR

@@ -22,7 +22,7 @@ class Region:
     name: str
     scene: Callable[[Pick], Scene] = scenes.ordinary
     start: Callable[[Pick, Scene], Start] = starts.ordinary
-    pace: Callable[[Pick, Scene, float], Pace] = paces.ordinary
+    pace: Callable[[Pick, Scene, Start], Pace] = paces.ordinary
     setting: Callable[[Pick, Scene], Choice] = settings.ordinary
     samples: Callable[[Pick, int, bool], Samples] = samples.regular
 
@@ -33,16 +33,16 @@ class Region:
           ParameterError: if the choices make a scene that cannot be.
         """
         scene = self.scene(pick)
-        phi0, phi_dot0 = self.start(pick, scene)
-        timestep, steps = self.pace(pick, scene, phi_dot0)
+        start = self.start(pick, scene)
+        timestep, steps = self.pace(pick, scene, start)
         choice = self.setting(pick, scene)
         anywhere = choice.tolerance is not None or choice.integrator == DOP853
         every, moments = self.samples(pick, steps, anywhere)
         return RandomRun(
             region=self.name,
             scene=scene,
-            phi0=phi0,
-            phi_dot0=phi_dot0,
+            phi0=start[0],
+            phi_dot0=start[1],
             rolling=choice.rolling,
             integrator=choice.integrator if choice.tolerance is None else None,
             timestep=timestep,
@@ -59,9 +59,9 @@ def _any_scene(pick: Pick) -> Scene:
     return pick.one(*kinds)(pick)
 
 
-def _any_pace(pick: Pick, scene: Scene, rate: float) -> Pace:
+def _any_pace(pick: Pick, scene: Scene, start: Start) -> Pace:
     kinds = paces.ordinary, paces.swinging, paces.anything, paces.fast, paces.resonant, paces.few, paces.long
-    return pick.one(*kinds)(pick, scene, rate)
+    return pick.one(*kinds)(pick, scene, start)
 
 
 REGIONS = (
