@@ -109,7 +109,7 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
         ("simulate sliding --wheel-mass 1", "--wheel-mass"),
         ("export sliding", "--output"),
         ("simulate", "sliding, frozen, pendulum, hoop"),
-        ("", "simulate, render, export, validate, benchmark, advise, stability, report, paper"),
+        ("", "simulate, render, view, export, validate, benchmark, advise, stability, report, paper"),
     ],
 )
 def test_what_is_not_understood_ends_with_exit_status_2(

@@ -9,16 +9,18 @@ import tyro
 
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Validate
+from mjbeer.cli.view import View
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _ERROR = 2
-Command = Simulate | Render | Export | Validate | Benchmark | Advise | Stability | Report | Paper
+Command = Simulate | Render | View | Export | Validate | Benchmark | Advise | Stability | Report | Paper
 _COMMAND = (
     Annotated[Simulate, tyro.conf.subcommand("simulate")]
     | Annotated[Render, tyro.conf.subcommand("render")]
+    | Annotated[View, tyro.conf.subcommand("view")]
     | Annotated[Export, tyro.conf.subcommand("export")]
     | Annotated[Validate, tyro.conf.subcommand("validate")]
     | Annotated[Benchmark, tyro.conf.subcommand("benchmark")]
