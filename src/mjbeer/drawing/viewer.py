@@ -10,7 +10,7 @@ from mjbeer.drawing.window import require_window
 from mjbeer.exceptions import RenderingError, UnsupportedError
 from mjbeer.model.build import finish
 from mjbeer.model.present import CAMERA, START, present
-from mjbeer.model.setting import DOP853, FRICTION, INTEGRATORS, Setting, supported
+from mjbeer.model.setting import DOP853, FRICTION, INTEGRATORS, Integrator, Rolling, Setting, supported
 from mjbeer.theory.scene import Scene
 
 _SPACE = 32
@@ -70,8 +70,8 @@ def view(
     scene: Scene,
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
-    rolling: str | None = None,
-    integrator: str = "RK4",
+    rolling: Rolling | None = None,
+    integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
     speed: float = 1.0,

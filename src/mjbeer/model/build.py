@@ -7,7 +7,7 @@ import mujoco
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import appearance, constrained, reduced, templates
 from mjbeer.model.inertia import mass_unit
-from mjbeer.model.setting import DOP853, FRICTION, TUNED, Setting, Softness
+from mjbeer.model.setting import DOP853, FRICTION, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.theory.scene import Scene
 
 _INTEGRATORS = {
@@ -93,9 +93,9 @@ def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
 
 def specify(
     scene: Scene,
-    rolling: str = "reduced",
+    rolling: Rolling = "reduced",
     visuals: bool = False,
-    integrator: str = "RK4",
+    integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
     softness: Softness = TUNED,
