@@ -18,7 +18,7 @@ from tests.support import stubs
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 README = CHECKOUT / "README.md"
-DOCUMENTS = sorted([*CHECKOUT.glob("*.md"), *CHECKOUT.glob("docs/*.md")])
+DOCUMENTS = sorted([*CHECKOUT.glob("*.md"), *CHECKOUT.glob("docs/*.md"), *CHECKOUT.glob("mjcf/*.md")])
 SHELLS = ("console", "bash", "sh", "shell")
 FENCE = re.compile(r"^```(?P<language>\w*)[^\n]*\n(?P<text>.*?)^```", re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"\]\((?P<target>[^)#\s]+)[^)]*\)")
@@ -114,7 +114,7 @@ def test_links_and_paths_lead_somewhere() -> None:
     for path in DOCUMENTS:
         text = path.read_text()
         targets = [each["target"] for each in LINK.finditer(text) if "://" not in each["target"]]
-        paths = re.findall(r"(?<![\w/])(?:mjcf|src|tests|renders)/[\w/]*(?:\.\w+)?", text)
+        paths = re.findall(r"(?<![\w/])(?:mjcf|src|tests|renders|examples)/[\w/]*(?:\.\w+)?", text)
         assert not [target for target in targets if not (path.parent / target).exists()], path
         assert not [named for named in paths if not (CHECKOUT / named).exists()], path
 

@@ -87,7 +87,7 @@ def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> N
     names = set(zipfile.ZipFile(wheel).namelist())
     templates = {each.relative_to(CHECKOUT) for each in (CHECKOUT / "mjcf").rglob("*") if each.is_file()}
     modules = {each.relative_to(CHECKOUT / "src") for each in (CHECKOUT / "src" / "mjbeer").rglob("*.py")}
-    assert {each.suffix for each in templates} == {".xml", ".obj"}
+    assert {each.suffix or each.name for each in templates} == {".xml", ".obj", ".md", "LICENSE"}
     assert len(modules) > 10
     expected = {f"mjbeer/{each.as_posix()}" for each in templates} | {each.as_posix() for each in modules}
     packaged = {name for name in names if name.startswith("mjbeer/")}

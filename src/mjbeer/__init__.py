@@ -16,7 +16,8 @@ from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from mjbeer.drawing.video import render
-    from mjbeer.model.build import build
+    from mjbeer.model.build import build, specify
+    from mjbeer.model.export import export
     from mjbeer.simulation.simulate import simulate
 
 __all__ = [
@@ -29,17 +30,21 @@ __all__ = [
     "UntrustedWarning",
     "build",
     "exact",
+    "export",
     "frozen",
     "hoop",
     "pendulum",
     "render",
     "simulate",
     "sliding",
+    "specify",
 ]
 
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
     "build": "mjbeer.model.build",
+    "specify": "mjbeer.model.build",
+    "export": "mjbeer.model.export",
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
 }

@@ -8,7 +8,7 @@ import pytest
 
 from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.model import appearance, mesh, templates
-from mjbeer.model.build import build, specify
+from mjbeer.model.build import build, compose
 from mjbeer.model.setting import Setting
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.segment import segment
@@ -162,7 +162,7 @@ def test_the_load_is_the_true_segment(fill: float) -> None:
 @pytest.mark.parametrize(("low", "high"), [(0.0, 0.0), (-50.0, 3.0), (0.0, 300.0)])
 def test_the_board_outlasts_the_motion(low: float, high: float) -> None:
     scene = frozen(can=METAL)
-    spec = specify(scene, Setting(), visuals=True)
+    spec = compose(scene, Setting(), visuals=True)
     appearance.extend(spec, scene, low, high, 16 / 9)
     model = spec.compile()
     for each in ("board", "board_side"):
@@ -175,7 +175,7 @@ def test_the_board_outlasts_the_motion(low: float, high: float) -> None:
 def test_a_stripe_is_a_quarter_turn(high: float) -> None:
     """And one begins at u = 0: so the can's mark comes round every four stripes."""
     scene = frozen(can=METAL)
-    spec = specify(scene, Setting(), visuals=True)
+    spec = compose(scene, Setting(), visuals=True)
     appearance.extend(spec, scene, 0.0, high, 16 / 9)
     model = spec.compile()
     board = model.geom("board")

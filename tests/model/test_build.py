@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model.build import specify
+from mjbeer.model.build import compose
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting
 from mjbeer.model.state import read, start
 from mjbeer.theory.forces import accelerations
@@ -107,7 +107,7 @@ def test_contact_has_two_geoms_and_one_pair() -> None:
 @pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
 def test_constraints_are_as_stiff_as_asked_for(rolling: str, integrator: str) -> None:
     """MuJoCo clamps a time constant under two timesteps unless refsafe is off."""
-    model = specify(frozen(), Setting(rolling, integrator, timestep=2e-3)).compile()
+    model = compose(frozen(), Setting(rolling, integrator, timestep=2e-3)).compile()
     solref = model.eq_solref[0] if rolling == "equality" else model.pair_solref[0]
     stiff = 1e-3 if rolling == "equality" else 2e-3
     assert solref[0] == (stiff if integrator in ("RK4", "discrete", "DOP853") else 4e-3)
@@ -128,7 +128,7 @@ def test_the_equality_as_compiled_is_soft() -> None:
     """What the test above would say of solimp 0.9999: off by 1e-4 of the force."""
     scene = frozen()
     expected = accelerations(scene, np.float64(0.7), np.float64(2.0))[1]
-    soft = forward(specify(scene, Setting("equality")).compile(), scene, 0.7, 2.0)[1]
+    soft = forward(compose(scene, Setting("equality")).compile(), scene, 0.7, 2.0)[1]
     assert 1e-5 < abs(soft / expected - 1) < 1e-3
 
 

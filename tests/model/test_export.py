@@ -14,7 +14,7 @@ from mjbeer import Can, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError, UnsupportedError
 from mjbeer.model import state
-from mjbeer.model.build import specify
+from mjbeer.model.build import compose
 from mjbeer.model.engine import library
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, Setting
@@ -41,12 +41,13 @@ CASES = [
 ]
 PHYSICAL = (
     "body_mass", "body_inertia", "body_ipos", "body_pos", "body_parentid", "jnt_type", "jnt_axis", "jnt_bodyid",
-    "dof_armature", "dof_damping", "dof_frictionloss", "tendon_armature", "tendon_stiffness", "tendon_damping",
-    "actuator_gainprm", "actuator_biasprm", "actuator_biastype", "eq_type", "eq_data", "eq_obj1id", "eq_obj2id",
-    "eq_solref", "eq_solimp", "pair_dim", "pair_geom1", "pair_geom2", "pair_friction", "pair_solref", "pair_solimp",
-    "pair_margin", "geom_contype", "geom_conaffinity",
+    "dof_armature", "dof_damping", "dof_frictionloss", "actuator_gainprm", "actuator_biasprm", "actuator_biastype",
+    "eq_type", "eq_data", "eq_obj1id", "eq_obj2id", "eq_solref", "eq_solimp", "pair_dim", "pair_geom1", "pair_geom2",
+    "pair_friction", "pair_solref", "pair_solimp", "pair_margin", "geom_contype", "geom_conaffinity",
 )  # fmt: skip
-OPTIONS = ("timestep", "integrator", "gravity", "cone", "solver", "impratio", "enableflags", "disableflags")
+OPTIONS = ("timestep", "integrator", "gravity", "cone", "solver", "impratio", "disableflags")
+TENDONS = ("tendon_armature", "tendon_stiffness", "tendon_damping", "tendon_frictionloss")
+ENERGY = int(mujoco.mjtEnableBit.mjENBL_ENERGY)
 # MuJoCo normalizes quaternions whenever it compiles, which rounds once more.
 QUATERNION = 2 * np.finfo(float).eps
 
@@ -82,6 +83,11 @@ def assert_same_physics(model: mujoco.MjModel, built: mujoco.MjModel) -> None:
         assert np.array_equal(getattr(model, name), getattr(built, name)), name
     for name in OPTIONS:
         assert np.array_equal(getattr(model.opt, name), getattr(built.opt, name)), name
+    assert model.opt.enableflags & ~ENERGY == built.opt.enableflags
+    # The tendons of the built model come first; the others only measure.
+    for name in TENDONS:
+        assert np.array_equal(getattr(model, name)[: built.ntendon], getattr(built, name)), name
+        assert not getattr(model, name)[built.ntendon :].any(), name
     for name in ("body_quat", "body_iquat"):
         assert getattr(model, name) == pytest.approx(getattr(built, name), rel=0, abs=QUATERNION), name
     for i in range(built.npair):
@@ -98,7 +104,7 @@ def test_an_export_is_the_model_and_moves_exactly(
     export(scene, path, *START, rolling, timestep=TIMESTEP, friction=FRICTION)
     assert not re.search(r"\b(file|\w+dir)=|<include", path.read_text())
     model = load(path, monkeypatch)
-    built = specify(scene, Setting(rolling, timestep=TIMESTEP, friction=FRICTION), visuals=True).compile()
+    built = compose(scene, Setting(rolling, timestep=TIMESTEP, friction=FRICTION), visuals=True).compile()
     assert_same_physics(model, built)
     assert [model.key(i).name for i in range(model.nkey)] == ["start"]
     start = state.start(built, scene, *START)
@@ -118,7 +124,7 @@ def test_cans_of_every_size(
     path = tmp_path / "model.xml"
     export(scene, path, *START, rolling, timestep=TIMESTEP * pace, friction=FRICTION)
     model = load(path, monkeypatch)
-    built = specify(scene, Setting(rolling, timestep=TIMESTEP * pace, friction=FRICTION), visuals=True).compile()
+    built = compose(scene, Setting(rolling, timestep=TIMESTEP * pace, friction=FRICTION), visuals=True).compile()
     assert_same_physics(model, built)
     assert_moves_exactly(scene, model, TOLERANCE[rolling], 0.3 * pace)
 

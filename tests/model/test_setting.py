@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import Can, Load, Scene, build, frozen, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model.build import compile_model, specify
+from mjbeer.model.build import compile_model, compose
 from mjbeer.model.setting import USUAL, Setting, Softness
 from mjbeer.model.softness import effective_softness
 from mjbeer.model.state import start
@@ -85,7 +85,7 @@ def test_tuned_models_get_what_they_ask_for() -> None:
 
 
 def test_in_the_air_there_is_no_softness() -> None:
-    model = specify(frozen(), Setting("contact")).compile()
+    model = compose(frozen(), Setting("contact")).compile()
     at = start(model, frozen(), 0.3, 0.0)
     at[model.joint("lift").qposadr[0]] = 1.0
     assert effective_softness(model, at) is None

@@ -382,9 +382,12 @@ def test_an_export_of_an_edited_template_moves_alike(copy: pathlib.Path, tmp_pat
         model = mujoco.MjModel.from_xml_path(str(tmp_path / "exported.xml"))
         built = build(SCENES["frozen"], rolling, visuals=True, timestep=TIMESTEP)
         for array in ("dof_damping", "dof_armature", "jnt_stiffness", "jnt_axis", "qpos0", "body_mass", "geom_contype",
-                      "pair_margin", "pair_gap", "pair_dim", "eq_active0", "tendon_damping", "tendon_stiffness",
-                      "tendon_limited", "actuator_gear", "actuator_dyntype", "site_pos"):  # fmt: skip
+                      "pair_margin", "pair_gap", "pair_dim", "eq_active0", "actuator_gear", "actuator_dyntype",
+                      "site_pos"):  # fmt: skip
             assert np.array_equal(getattr(model, array), getattr(built, array)), array
+        for array in ("tendon_damping", "tendon_stiffness", "tendon_armature", "tendon_limited"):
+            assert np.array_equal(getattr(model, array)[: built.ntendon], getattr(built, array)), array
+            assert not getattr(model, array)[built.ntendon :].any(), array  # those of the sensors
 
 
 def test_the_command_line_says_it_in_one_line(copy: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:

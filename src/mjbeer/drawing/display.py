@@ -9,7 +9,7 @@ import dataclasses
 import mujoco
 
 from mjbeer.model import appearance
-from mjbeer.model.build import compile_spec, specify
+from mjbeer.model.build import compile_spec, compose
 from mjbeer.model.setting import Setting
 from mjbeer.model.state import places
 from mjbeer.theory.can import RADIUS
@@ -27,7 +27,7 @@ def display_model(scene: Scene, reach: tuple[float, float] = (0.0, 0.0), aspect:
       UnsupportedError: if MuJoCo cannot compile the geoms of a template.
     """
     resized = _resize(scene)
-    spec = specify(resized, Setting("contact"), visuals=True)
+    spec = compose(resized, Setting("contact"), visuals=True)
     appearance.extend(spec, resized, reach[0] * scale(scene), reach[1] * scale(scene), aspect)
     return compile_spec(spec)
 

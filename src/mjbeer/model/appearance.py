@@ -11,7 +11,7 @@ from mjbeer.theory.scene import Scene
 
 WALL = 0.04
 """Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
-_HALF_TURNS = (-20, 96)
+_HALF_TURNS = (-20, 980)
 """Where the templates' board begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
 _SPARE = 20
 """Half turns of board beyond either end of a motion: more than a camera at the can sees."""
@@ -61,11 +61,8 @@ def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
     _fit_load(spec, scene)
 
 
-def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: float) -> None:
-    """Make the board long enough for a motion from u = `low` to `high` [m], and fit the overview camera to all of it.
-
-    `aspect` is the width of the picture over its height.
-    """
+def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:
+    """Make the board long enough for a motion from u = `low` to `high` [m]."""
     turn = math.pi * scene.can.radius
     first = min(_HALF_TURNS[0], math.floor(low / turn) - _SPARE)
     last = max(_HALF_TURNS[1], math.ceil(high / turn) + _SPARE)
@@ -74,6 +71,14 @@ def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: f
         geom.size = [(last - first) / 2 * turn, *geom.size[1:]]
     planks = spec.material("planks")
     planks.texrepeat = [last - first, planks.texrepeat[1]]
+
+
+def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: float) -> None:
+    """Make the board long enough for a motion from u = `low` to `high` [m], and fit the overview camera to all of it.
+
+    `aspect` is the width of the picture over its height.
+    """
+    lengthen(spec, scene, low, high)
     overview, downhill = spec.camera("overview"), np.array([math.cos(scene.incline), 0, -math.sin(scene.incline)])
     extent = np.abs((high - low) * downhill) + 10 * scene.can.radius
     distance = _MARGIN * max(extent[0] / aspect, extent[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))

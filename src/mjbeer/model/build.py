@@ -77,7 +77,12 @@ def build(
 
 def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjModel:
     """Return the compiled model of a scene in a setting, with the same errors as `build`."""
-    model = compile_spec(specify(scene, setting, visuals))
+    return finish(compose(scene, setting, visuals), setting)
+
+
+def finish(spec: mujoco.MjSpec, setting: Setting) -> mujoco.MjModel:
+    """Return the model that a specification in a setting compiles to, with its joint equality made rigid."""
+    model = compile_spec(spec)
     if setting.rolling == "equality" and setting.softness == TUNED:
         constrained.make_rigid(model)
     return model
@@ -103,11 +108,28 @@ def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
     return model
 
 
-def specify(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
-    """Return the editable specification that `compile_model` compiles, with the same errors as `build`.
+def specify(
+    scene: Scene,
+    rolling: Rolling = "reduced",
+    visuals: bool = False,
+    integrator: Integrator = "RK4",
+    timestep: float = 1e-3,
+    friction: float = FRICTION,
+    softness: Softness = TUNED,
+) -> mujoco.MjSpec:
+    """Return the specification of the model that `build` compiles, to be edited or attached to another one.
 
-    Its joint equality is as stiff as MJCF can express; `compile_model` makes that of the compiled model rigid.
+    The parameters and the errors are those of `build`. The can is the body "can", in the body "incline". A joint
+    equality is as stiff as MJCF can express, which `build` makes rigid in the compiled model. Attached to another
+    specification, bodies keep their joints, masses and geoms, and lose all options: `mjcf/README.md` lists those that
+    the parent needs.
     """
+    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
+    return compose(scene, setting, visuals)
+
+
+def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
+    """Return the specification that `compile_model` compiles, with the same errors as `build`."""
     rolling = setting.rolling
     spec = templates.read(templates.name(scene))
     if visuals:

@@ -8,8 +8,9 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, UnsupportedError
-from mjbeer.model import build, setting, state
+from mjbeer.model import setting
 from mjbeer.model.engine import library
+from mjbeer.model.present import present
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 
@@ -38,7 +39,7 @@ def export(
     timestep: float = 1e-3,
     friction: float = setting.FRICTION,
 ) -> None:
-    """Write a scene as one MJCF file, with its start as the keyframe "start".
+    """Write a scene as one MJCF file, with everything drawn, with sensors, and with its start as the keyframe "start".
 
     The parameters are those of `simulate`, but the integrator must be one of MuJoCo's. The text is read back before
     it is written, and must give the same model. A reduced model of a frozen load turns on the spot, because its one
@@ -57,15 +58,12 @@ def export(
         raise UnsupportedError(
             f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
         )
-    spec = build.specify(scene, wanted, visuals=True)
+    spec = present(scene, wanted, phi0=phi0, phi_dot0=phi_dot0)
     spec.comment = f" Written by mjbeer: rolling={wanted.rolling!r}, {scene!r} "  # replaces the template's
     folder = pathlib.Path(spec.modelfiledir).resolve()
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
     spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
-    built = build.compile_spec(spec)
-    start = state.start(built, scene, phi0=phi0, phi_dot0=phi_dot0)
-    spec.add_key(name="start", qpos=start[: built.nq], qvel=start[built.nq :])
     built = spec.compile()
     text = _text(spec)
     _compare(built, mujoco.MjModel.from_xml_string(text))

@@ -10,8 +10,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-_MADE_ANEW = ("joints", "equalities", "pairs")
-"""Kinds of elements that mjbeer makes anew."""
+_MADE_ANEW = ("sensors", "tendons", "joints", "equalities", "pairs")
+"""Kinds of elements that mjbeer makes anew; what refers to others comes before them."""
 _COLLISION = ("surface", "can")
 """The geoms that collide where rolling is by contact. They are made anew as well."""
 _ADDED = ("joint", "geom", "site", "equality", "pair", "tendon", "actuator")
@@ -26,7 +26,7 @@ _IDENTITY = ("name", "classname", "childclass", "info", "userdata", "plugin")
 
 
 def neutralize(spec: mujoco.MjSpec) -> None:
-    """Remove joints, constraints and colliding geoms, and set what can act on the motion to MuJoCo's defaults.
+    """Remove joints, constraints, sensors and colliding geoms, and set what can act on the motion to MuJoCo's defaults.
 
     The specification must not contain elements that act on the motion and that mjbeer does not know.
     """

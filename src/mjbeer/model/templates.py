@@ -5,7 +5,7 @@ import pathlib
 import mujoco
 
 from mjbeer.exceptions import TemplateError
-from mjbeer.model import neutral
+from mjbeer.model import neutral, sensors
 from mjbeer.theory.scene import Scene
 
 _FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
@@ -33,10 +33,11 @@ _MECHANISM = {
     "excludes": (),
     "flexes": (),
     "plugins": (),
-    "sensors": (),
-    "tendons": (),
+    "sensors": sensors.NAMES,
+    "tendons": sensors.NAMES,
 }
-"""The names that elements which act on the motion may have, by kind. mjbeer replaces such elements by its own."""
+"""The names that elements which act on the motion may have, by kind. mjbeer replaces such elements by its own, or
+leaves them out: sensors are only in models that are shown."""
 _SINGULAR = {"bodies": "body", "equalities": "equality", "flexes": "flex"}
 """Names of kinds whose plural does not just add an s."""
 
@@ -63,8 +64,9 @@ def name(scene: Scene) -> str:
 def read(template: str) -> mujoco.MjSpec:
     """Return a template without its mechanics, as an editable specification to which those of a model can be added.
 
-    It has the bodies "incline", "can" and "load", and everything that is drawn. It has no joints, no masses and no
-    constraints; its options, and the defaults of elements that are added, are MuJoCo's own, as `neutral` explains.
+    It has the bodies "incline", "can" and "load", and everything that is drawn. It has no joints, no masses, no
+    constraints and no sensors; its options, and the defaults of elements that are added, are MuJoCo's own, as
+    `neutral` explains.
 
     Raises:
       TemplateError: if it cannot be read, lacks an element that mjbeer addresses by name, or has an unknown element

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from mjbeer import frozen
-from mjbeer.model.build import specify
+from mjbeer.model.build import compose
 from mjbeer.model.setting import Setting
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import accurate_limit
@@ -93,7 +93,7 @@ def test_rows_are_those_that_mujoco_solves(integrator: str, timeconst: float) ->
     """Reference acceleration and regularizer, in motion."""
     timestep, impedance = 1e-3, 0.9
     scene = frozen(incline=0.0)
-    spec = specify(scene, Setting("equality", integrator, timestep))
+    spec = compose(scene, Setting("equality", integrator, timestep))
     rolling = spec.equality("rolling")
     rolling.solref, rolling.solimp = [timeconst, 0.7], [impedance, impedance, 0.001, 0.5, 2]
     model = spec.compile()
@@ -117,7 +117,7 @@ def test_refsafe_resolves_contacts_under_discrete(impedance: float, dampratio: f
     """On either side of its threshold."""
     timestep = 1e-3
     timeconst = share * timestep / (dampratio * math.sqrt(impedance))
-    spec = specify(frozen(incline=0.0), Setting("contact", "discrete", timestep))
+    spec = compose(frozen(incline=0.0), Setting("contact", "discrete", timestep))
     rolling = spec.pair("rolling")
     rolling.solref, rolling.solimp = [timeconst, dampratio], [impedance, impedance, 0.001, 0.5, 2]
     spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

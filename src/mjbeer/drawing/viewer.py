@@ -1,0 +1,130 @@
+"""A scene in MuJoCo's own viewer: at its start and paused, to be run, paused and started anew by keys."""
+
+import threading
+import time
+
+import mujoco
+
+from mjbeer import require
+from mjbeer.drawing.window import require_window
+from mjbeer.exceptions import RenderingError, UnsupportedError
+from mjbeer.model.build import finish
+from mjbeer.model.present import CAMERA, START, present
+from mjbeer.model.setting import DOP853, FRICTION, INTEGRATORS, Integrator, Rolling, Setting, supported
+from mjbeer.theory.scene import Scene
+
+_SPACE = 32
+"""The code of the space bar in GLFW."""
+_FRAME = 1 / 60
+"""Time between two pictures [s]."""
+_PATIENCE = 10
+"""How long a window may take to close [s]."""
+_HELP = "space\nbackspace\nF4", "run or pause\nstart anew\nplot the sensors"
+"""The text in the window, in two columns."""
+
+
+class Player:
+    """The motion of a model in real time: paused at its start, until the space bar is pressed."""
+
+    def __init__(self, model: mujoco.MjModel, speed: float = 1.0) -> None:
+        self.model, self.data = model, mujoco.MjData(model)
+        self.paused = True
+        self._speed = speed
+        self._due = 0.0
+        self._reached = 0.0
+        self.restart()
+
+    def restart(self) -> None:
+        """Go back to the start, and pause."""
+        self.paused = True
+        mujoco.mj_resetDataKeyframe(self.model, self.data, self.model.key(START).id)
+        mujoco.mj_forward(self.model, self.data)
+        self._due = self._reached = 0.0
+
+    def press(self, key: int) -> None:
+        """Run or pause, if the `key` is the space bar."""
+        if key == _SPACE:
+            self.paused = not self.paused
+
+    def advance(self, elapsed: float) -> None:
+        """Step the motion through `elapsed` [s] of real time.
+
+        If the viewer has reset the time, as it does when backspace is pressed, the motion restarts. What a slow machine
+        cannot step within a frame is left out, so that the window stays alive.
+        """
+        if self.data.time < self._reached:
+            self.restart()
+        if self.paused:
+            mujoco.mj_forward(self.model, self.data)  # a joint may have been moved by hand
+            return
+        self._due += self._speed * elapsed
+        end = time.monotonic() + _FRAME
+        while self._due >= self.model.opt.timestep and time.monotonic() < end:
+            mujoco.mj_step(self.model, self.data)
+            self._due -= self.model.opt.timestep
+        self._due = min(self._due, self._speed * _FRAME)
+        self._reached = self.data.time
+
+
+def view(
+    scene: Scene,
+    phi0: float = 0.0,
+    phi_dot0: float = 0.0,
+    rolling: Rolling | None = None,
+    integrator: Integrator = "RK4",
+    timestep: float = 1e-3,
+    friction: float = FRICTION,
+    speed: float = 1.0,
+) -> None:
+    """Open MuJoCo's viewer on a scene at its start, paused, and return when its window is closed.
+
+    The parameters are those of `export`. If `rolling` is None, it is "equality", or "reduced" where MuJoCo can have no
+    equality. A `speed` of 0.1 shows the motion ten times slower than in reality.
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
+      UnsupportedError: if MuJoCo cannot have such a model.
+      RenderingError: if no window can be opened.
+    """
+    if integrator == DOP853:
+        raise UnsupportedError(
+            f"DOP853 is mjbeer's integrator, not MuJoCo's; view with one of {', '.join(INTEGRATORS)}"
+        )
+    rolling = rolling or ("equality" if supported(scene, "equality") else "reduced")
+    setting = Setting(rolling, integrator, timestep, friction=friction)
+    require.positive("speed", speed)
+    model = finish(present(scene, setting, *require.start(phi0, phi_dot0)), setting)
+    require_window()
+    _play(Player(model, speed))
+
+
+def _play(player: Player) -> None:
+    """Show a player in a window until the window is closed."""
+    import mujoco.viewer
+
+    others = threading.enumerate()
+    try:
+        opened = mujoco.viewer.launch_passive(player.model, player.data, key_callback=player.press)
+    except RuntimeError as error:  # on macOS, where a window needs MuJoCo's own launcher
+        raise RenderingError(f"MuJoCo's viewer does not open: {error}") from error
+    try:
+        _run(player, opened)
+    finally:
+        opened.close()
+        for thread in threading.enumerate():  # the window's thread would crash if the process ended before it
+            if thread not in others:
+                thread.join(_PATIENCE)
+
+
+def _run(player: Player, window: "mujoco.viewer.Handle") -> None:
+    """Show a player in a window that is open, until it is closed."""
+    with window.lock():
+        window.cam.type, window.cam.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, player.model.camera(CAMERA).id
+    window.set_texts((None, None, *_HELP))
+    before = time.monotonic()
+    while window.is_running():
+        now = time.monotonic()
+        player.advance(now - before)
+        before = now
+        window.sync()
+        time.sleep(_FRAME)
