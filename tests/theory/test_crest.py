@@ -83,6 +83,12 @@ def test_place(slope: float, angle: float) -> None:
         for distance, origin in ((place.past, mp.pi + crest.offset), (place.from_rest, mp.mpf(crest.rest))):
             turns = (mp.mpf(angle) - origin - distance) / (2 * mp.pi)
             assert abs(turns - mp.nint(turns)) < ROUNDING
+    with mp.workdps(60):  # the crests on both sides, and V(crest) - V(place) by the torque
+        ahead = below(crest, place.past if place.past < 0 else mp.mpf(place.from_rest) - crest.well)
+        behind_it = below(crest, mp.mpf(place.past) + (2 * mp.pi if place.past < 0 else 0))
+    if slope < 1:
+        assert abs(place.below_ahead(crest) - ahead) < 4 * ROUNDING
+        assert abs(place.below_behind(crest) - behind_it) < 4 * ROUNDING
     assert -crest.well <= place.past <= behind
     assert -behind <= place.from_rest <= crest.well
     assert (place.past < 0) == (place.from_rest > 0)

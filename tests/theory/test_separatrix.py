@@ -156,6 +156,20 @@ def test_on_the_top_of_a_slope() -> None:
                 assert (exact(scene, [0.0, 100.0], top).phi == top).all()
 
 
+@pytest.mark.parametrize("beside", [-1e-9, -1e-12, 1e-12, 1e-9])
+@pytest.mark.parametrize(("past", "phi_dot0"), [(1e-9, -3e-8), (-1e-9, 3e-8), (1e-9, 0.0), (0.0, -1e-9)])
+def test_where_hardly_a_torque_acts(beside: float, past: float, phi_dot0: float) -> None:
+    """Beside the steepest incline the torque at the crest all but vanishes, and for a while only speed counts."""
+    scene = frozen(frozen().largest_incline() * (1 + beside))
+    form, time = scene.oscillator, np.array([0.0, 0.1, 1.0])
+    phi0 = math.pi + form.crest.offset + past
+    motion = exact(scene, time, phi0, phi_dot0)
+    # It moves by its acceleration, which is at most that of the torque where it may get to.
+    farthest = abs(past) + 2 * abs(phi_dot0) + 1e-7
+    fall = max(abs(form.crest.torque(x)) for x in (-farthest, farthest)) / float(form.inertia(phi0)) * time**2 / 2
+    assert (np.abs(motion.phi - phi0 - phi_dot0 * time) <= fall + 1e-15).all()
+
+
 def test_thrown_onto_the_top_of_another_turn() -> None:
     """Uphill so fast that it all but stops on the barrier three turns further up."""
     scene, form = frozen(), frozen().oscillator

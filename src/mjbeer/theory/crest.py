@@ -15,6 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+_SHALLOW = 0.5
+"""Width of a well [rad] below which it is shallow: 1 % of a step in height, where rounding does not matter yet."""
+
 
 @dataclass(frozen=True)
 class Crest:
@@ -65,6 +68,25 @@ class Crest:
         """Return the angle from the equilibrium to the crest [rad]; 0 if there is no equilibrium."""
         return 2 * math.atan2(self.curvature, self.ramp) if self.curvature > 0 else 0.0
 
+    @property
+    def shallow(self) -> bool:
+        """Return whether the well is so shallow, if there is one, that a load rolls on through it without a turn."""
+        return self.well < _SHALLOW
+
+    @property
+    def turn_begins(self) -> float:
+        """Return where a turn begins, past its crest [rad]: not where a load may be slow.
+
+        That is at the equilibrium, with the crest in the middle of a turn. Where the well is shallow or there is none,
+        it is at the crest, and the motion turns at most half a turn behind the crest, or ahead of it.
+        """
+        return 0.0 if self.shallow else -self.well
+
+    @property
+    def rise(self) -> float:
+        """Return how much more than to be at the crest it takes to come from the turn behind [J]."""
+        return max(0.0, -float(self.below(-math.pi))) if self.shallow else 0.0
+
     def below(self, x: np.ndarray | float) -> np.ndarray:
         """Return V(crest) - V(crest + x) [J], for `x` [rad] of either sign: the integral of the torque."""
         return self.excess * x + self.ramp * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
@@ -83,7 +105,7 @@ class Crest:
     def chord(self, turn: float, length: np.ndarray | float) -> np.ndarray:
         """Return (V(turn) - V(turn + length)) / length [N m], which is smooth through length 0.
 
-        `turn` is a distance past the crest [rad]. Neither it nor `length` [rad] may be negative, beyond rounding.
+        `turn` is a distance past the crest [rad]. It may be negative if the well is shallow; `length` [rad] is not.
         """
         middle, half = turn + length / 2, length / 2
         flattened = 2 * np.sin(middle / 2) ** 2 + np.cos(middle) * sinc_gap(half)
@@ -117,8 +139,8 @@ def sinc_gap(x: np.ndarray | float) -> np.ndarray:
     return np.where(np.abs(x) < 1, square / 6 * series, 1 - sinc(x))
 
 
-def root(function: Callable[[float], float], upper: float) -> float:
-    """Return where a function is 0 between 0, where it is negative, and `upper`, to full relative precision.
+def root(function: Callable[[float], float], lower: float, upper: float) -> float:
+    """Return where a function is 0 between `lower`, where it is not positive, and `upper`, to full relative precision.
 
     If it is not positive at `upper` it should be 0 there, and is only rounded.
     """
@@ -126,4 +148,4 @@ def root(function: Callable[[float], float], upper: float) -> float:
 
     if function(upper) <= 0:
         return upper
-    return float(brentq(function, 0, upper, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))
+    return float(brentq(function, lower, upper, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))

@@ -25,14 +25,13 @@ class End:
 
 def ends(crest: Crest, place: Place, kinetic: float) -> tuple[End, End]:
     """Return the lower and the upper turning point of the swing that passes a `place` with `kinetic` energy [J]."""
-    energy, missing = kinetic + float(crest.above(place.from_rest)), float(crest.below(place.past)) - kinetic
+    energy = kinetic + float(crest.above(place.from_rest))
     low = high = End(place.from_rest, place.past)
-    # What a place misses of the crest of its turn, it misses of the next one less a step.
     if kinetic > 0 or place.from_rest < 0:
-        ahead = missing if place.past < 0 else missing - crest.step
+        ahead = place.below_ahead(crest) - kinetic
         high = _end(crest, sign=1, well=crest.well, energy=energy, missing=ahead)
     if kinetic > 0 or place.from_rest > 0:
-        behind = missing if place.past >= 0 else missing + crest.step
+        behind = place.below_behind(crest) - kinetic
         low = _end(crest, sign=-1, well=2 * math.pi - crest.well, energy=energy, missing=behind)
     return low, high
 
@@ -50,7 +49,7 @@ def _end(crest: Crest, sign: int, well: float, energy: float, missing: float) ->
     from_rest = height(well / 2) >= energy
     wanted = energy if from_rest else missing
     scale = 2 * math.asin(math.sqrt(min(1.0, wanted / crest.curvature / 2)))  # of the order of the distance
-    distance = scale * root(lambda share: height(scale * share) - wanted, well / 2 / scale)
+    distance = scale * root(lambda share: height(scale * share) - wanted, 0, well / 2 / scale)
     if from_rest:
         return End(sign * distance, sign * (distance - well))
     return End(sign * (well - distance), -sign * distance)

@@ -13,7 +13,8 @@ from mjbeer.theory.quadrature import Clock
 from mjbeer.theory.turns import Lap, State
 
 ABOVE = 30
-"""Least number of steps from 0 to a level. The first correction that is left out is 1e-16 of a term there."""
+"""Least number of steps from 0 to a level. The first correction that is left out is 1e-16 of a term there, and a step
+below, where turns uphill end."""
 _CORRECTIONS = (1 / 24, -1 / 384, 1 / 1024, -143 / 163840)
 """B_2k / (2k)! times the derivative of order 2k - 1 of -x^(-1/2) at x = 1, for k = 1, 2, 3 and 4."""
 _MOST_STEPS = 100
@@ -26,24 +27,22 @@ _MOST_NUMBERS = 2**18
 
 
 class ManyTurns:
-    """Turns without end downhill, or any number of them uphill."""
+    """Turns without end, downhill or uphill, or a number of them uphill."""
 
     def __init__(self, lap: Lap, first: float, step: float, count: float = math.inf) -> None:
         """Set up `count` turns, the first at the level `first` [J], and each `step` [J] above the one before it.
 
-        If `step` is negative, the motion is uphill, and `lap` need not resolve turns that are not reached.
+        If `step` is negative, the motion is uphill, and `lap` must resolve the level after the last turn. It may be
+        without end if no time is asked for at which it is below the lowest level of `lap`.
         """
         self._lap, self._first, self._step, self._count = lap, first, step, count
-        self._levels = first + lap.below.ravel()
         self._weights = (lap.panels.weights * lap.mass).ravel()
         self._turn = Clock(lap.panels, lap.rates(np.array([first]))[0])
 
     @property
     def duration(self) -> float:
-        """Return the time of all turns [s]; it is infinite if the last of them has a level that is not resolved."""
-        if not self._lap.lowest <= self._first + self._step * (self._count - 1) < math.inf:
-            return math.inf
-        return float(self.elapsed(np.array([self._count]))[0])
+        """Return the time of all turns [s]."""
+        return float(self.elapsed(np.array([self._count]))[0]) if self._count < math.inf else math.inf
 
     def begin(self, x: float, _: float) -> float:
         """Return the time [s] at which the motion is in the first turn at `x` [rad] past its crest."""
@@ -52,18 +51,24 @@ class ManyTurns:
 
     def elapsed(self, turns: np.ndarray) -> np.ndarray:
         """Return the time that so many turns take [s], smooth between whole numbers."""
-        return _sum_of_roots(self._levels, self._step, turns[:, None]) @ self._weights
+        below, levels = self._lap.below.ravel(), self._level(turns)[:, None]
+        return _sum_of_roots(self._first + below, levels + below, self._step, turns[:, None]) @ self._weights
+
+    def _level(self, turns: np.ndarray) -> np.ndarray:
+        """Return the level after so many turns [J]."""
+        # Beside more than 1e16 steps a step is below rounding, and the difference might even be negative.
+        return np.maximum(self._first + self._step * turns, self._lap.lowest)
 
     def state(self, time: np.ndarray) -> State:
         """Return the state at the times `time` [s]."""
-        portions = np.array_split(time, math.ceil(len(time) * len(self._levels) / _MOST_NUMBERS) or 1)
+        portions = np.array_split(time, math.ceil(len(time) * len(self._weights) / _MOST_NUMBERS) or 1)
         states = [self._state(portion) for portion in portions]
         turn, x, phi_dot = (np.concatenate(each) for each in zip(*states, strict=True))
         return turn, x, phi_dot
 
     def _state(self, time: np.ndarray) -> State:
         turn, since = self._turns(time)
-        levels = self._first + self._step * turn
+        levels = self._level(turn)
         different, which = np.unique(levels, return_inverse=True)
         panels, rates = self._lap.panels, self._lap.rates(different)
         ends = np.cumsum((rates * panels.weights).sum(axis=2), axis=1)
@@ -87,7 +92,7 @@ class ManyTurns:
             reach = np.minimum(reach, -2 * root / self._step)
         turns = np.clip(reach * (root + self._step * reach / 4), 0, self._count)
         for _ in range(_MOST_STEPS):
-            pace = (1 / np.sqrt(self._levels + self._step * turns[:, None])) @ self._weights
+            pace = (1 / np.sqrt(self._level(turns)[:, None] + self._lap.below.ravel())) @ self._weights
             missing = (time - self.elapsed(turns)) / pace
             turns = np.clip(turns + missing, 0, self._count)
             if (np.abs(missing) <= _NEAR + _NOISE * turns).all():
@@ -99,11 +104,11 @@ class ManyTurns:
         return turns, np.where(early, time - self.elapsed(turns), since)
 
 
-def _sum_of_roots(first: np.ndarray, step: float, count: np.ndarray) -> np.ndarray:
-    """Return the sum of (first + k step)^(-1/2) over k from 0 to count - 1, for `first` far above a `step`."""
-    near, far = np.sqrt(first), np.sqrt(first + step * count)
+def _sum_of_roots(first: np.ndarray, last: np.ndarray, step: float, count: np.ndarray) -> np.ndarray:
+    """Return the sum of (first + k step)^(-1/2) over k from 0 to count - 1, where first + count step is `last`."""
+    near, far = np.sqrt(first), np.sqrt(last)
     result = 2 * count / (near + far) * (1 + step / (4 * near * far))
-    near_steps, far_steps = step / near**2, step / far**2
+    near_steps, far_steps = step / first, step / last
     return result + near_steps * _correction(near_steps) / near - far_steps * _correction(far_steps) / far
 
 

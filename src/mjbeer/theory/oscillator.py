@@ -155,7 +155,7 @@ class Oscillator:
         crest = self.crest
         behind = 2 * math.pi - crest.well
         # As high as the barrier, on the downhill side of the one before it, which is a step higher.
-        past = root(lambda x: float(crest.below(x)) - crest.step, behind)
+        past = root(lambda x: float(crest.below(x)) - crest.step, 0, behind)
         return crest.rest - behind + past, self.barrier()
 
     def require_libration(self, phi: float) -> None:

@@ -46,6 +46,17 @@ class Place:
             return Place(_past_crest(crest, from_rest), from_rest)
         return Place(past, from_rest)
 
+    def below_ahead(self, crest: Crest) -> float:
+        """Return by how much V is below its value at the next crest downhill [J]."""
+        past = self.past if self.past < 0 else self.from_rest - crest.well
+        if abs(past) <= abs(self.past):
+            return float(crest.below(past))
+        return float(crest.below(self.past)) - crest.step
+
+    def below_behind(self, crest: Crest) -> float:
+        """Return by how much V is below its value at the last crest uphill [J]."""
+        return float(crest.below(self.past)) + (crest.step if self.past < 0 else 0)
+
     def rounding(self, crest: Crest) -> float:
         """Return by how much rounding of the scene may put the crest elsewhere, and so falsify this place [rad].
 

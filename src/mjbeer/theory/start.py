@@ -9,7 +9,8 @@ from mjbeer.exceptions import NoLibrationError
 from mjbeer.theory.libration import libration_through
 from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.place import ROUNDINGS, Place
-from mjbeer.theory.roll_down import ON_SEPARATRIX, nearest_crest, roll
+from mjbeer.theory.roll_down import Passage, roll
+from mjbeer.theory.turning_point import ON_SEPARATRIX
 
 
 @dataclass(frozen=True)
@@ -41,14 +42,9 @@ class Start:
         return math.copysign(self.kinetic, self.phi_dot)
 
     @property
-    def level(self) -> float:
-        """Return E - V at the crest of this turn [J]."""
-        return self.kinetic - float(self.oscillator.crest.below(self.place.past))
-
-    @property
     def level_ahead(self) -> float:
         """Return E - V at the next crest downhill [J]."""
-        return self.level if self.place.past < 0 else self.level + self.oscillator.crest.step
+        return self.kinetic - self.place.below_ahead(self.oscillator.crest)
 
     @property
     def swings(self) -> bool:
@@ -63,9 +59,7 @@ class Start:
           ToleranceError: if sizes, masses or speeds differ by too many orders of magnitude.
         """
         if not self.swings:
-            return roll(
-                self.oscillator, time, past=self.place.past, signed_kinetic=self.signed_kinetic, level=self.level
-            )
+            return roll(self.oscillator, time, self._passage)
         if self.level_ahead == 0:
             raise NoLibrationError(ON_SEPARATRIX)
         libration = libration_through(self.oscillator, self.place, self.kinetic)
@@ -94,7 +88,11 @@ class Start:
         """Return by how little the motion passes or misses a crest until the time `latest` [s], as an energy [J]."""
         if self.swings:
             return -self.level_ahead
-        return nearest_crest(self.oscillator, self.signed_kinetic, self.level, latest)
+        return self._passage.nearest_crest(self.oscillator, latest)
+
+    @property
+    def _passage(self) -> Passage:
+        return Passage.of(self.oscillator.crest, self.place, self.signed_kinetic)
 
     def _sway(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the motion of a swing so small that it is harmonic, like `move`."""

@@ -32,9 +32,9 @@ class Lap:
     @cached_property
     def panels(self) -> Panels:
         """Return panels of x that resolve the turn."""
-        well = self.oscillator.crest.well
-        edges = (-well, 0.0, 2 * math.pi - well) if well > 0 else (0.0, 2 * math.pi)
-        return resolve(lambda x: self._mass(x) / np.sqrt(self.lowest + self.oscillator.crest.below(x)), *edges)
+        begins, crest = self.oscillator.crest.turn_begins, self.oscillator.crest
+        edges = sorted({begins, 0.0, begins + 2 * math.pi})
+        return resolve(lambda x: self._mass(x) / np.sqrt(self.lowest + crest.below(x)), *edges)
 
     @cached_property
     def below(self) -> np.ndarray:
