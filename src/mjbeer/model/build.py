@@ -124,6 +124,8 @@ def specify(
     specification, bodies keep their joints, masses and geoms, and lose all options: `mjcf/README.md` lists those that
     the parent needs.
     """
+    require.instance("scene", scene, Scene)
+    visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
     return compose(scene, setting, visuals)
 
