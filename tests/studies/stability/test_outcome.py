@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, hoop, simulate, sliding
+from mjbeer.exceptions import MjbeerError, OutputError, TemplateError
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability import truth
 from mjbeer.studies.stability.outcome import (
@@ -87,6 +88,15 @@ def test_no_run_is_judged_where_theories_differ(monkeypatch: pytest.MonkeyPatch)
 def test_warnings_are_told_apart_by_their_beginnings() -> None:
     outcome = judge(lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02))
     assert outcome.alarms == ("energy or momentum drift like an error of", "the can slips by")
+
+
+@pytest.mark.parametrize("error", [TemplateError("gone"), OutputError("full")])
+def test_a_run_that_cannot_be_tried_is_not_refused(error: MjbeerError) -> None:
+    def fail() -> Run:
+        raise error
+
+    with pytest.raises(type(error)):
+        judge(fail)
 
 
 def test_an_error_in_the_program_is_no_outcome() -> None:
