@@ -1,6 +1,7 @@
 """How a run ended: whether two theories find it accurate, and whether its own diagnostics warned if it is not."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -43,7 +44,7 @@ class Outcome:
     apart: float | None = None
     """Distance of the two theories [rad], relative beyond 1 rad; None if there is no run, or only one theory."""
     alarms: tuple[str, ...] = ()
-    """The beginnings, up to the first number, of its warnings, or of the error that ended it."""
+    """Its warnings, or the text of the error that ended it, with dots instead of numbers, so that equals are equal."""
 
 
 def judge(simulate: Callable[[], Run]) -> Outcome:
@@ -57,9 +58,9 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
     try:
         run = simulate()
     except DivergenceError as error:
-        return Outcome(UNSTABLE, None, None, str(error), alarms=(_beginning(str(error)),))
+        return Outcome(UNSTABLE, None, None, str(error), alarms=(_numberless(str(error)),))
     except REFUSALS as error:
-        return Outcome(REFUSED, None, None, str(error), alarms=(_beginning(str(error)),))
+        return Outcome(REFUSED, None, None, str(error), alarms=(_numberless(str(error)),))
     radius = run.scene.can.radius
     motion = truth(run.scene, run.time, run.phi0, run.phi_dot0)
     error = motion.off(run.phi, run.u / radius)
@@ -69,7 +70,7 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
         admitted=_finite((run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius),
         says="; ".join(run.warnings),
         apart=motion.apart,
-        alarms=tuple(_beginning(warning) for warning in run.warnings),
+        alarms=tuple(_numberless(warning) for warning in run.warnings),
     )
 
 
@@ -93,14 +94,9 @@ def _explodes(run: Run, motion: Truth) -> bool:
     return not float(kinetic_energy(run.scene, run).max()) <= _GAIN * most
 
 
-def _beginning(text: str) -> str:
-    """Return a sentence up to its first number."""
-    words = []
-    for word in text.split():
-        if any(letter.isdigit() for letter in word):
-            break
-        words.append(word)
-    return " ".join(words)
+def _numberless(text: str) -> str:
+    """Return a text with dots instead of its numbers."""
+    return re.sub(r"[-+]?\d[\d.,]*(e[-+]?\d+)?", "…", text)
 
 
 def _finite(value: float) -> float | None:

@@ -37,8 +37,9 @@ def tasks(extent: str, number: int = 0) -> list[Task]:
 def batch(first: int, size: int = SIZE) -> dict[str, Any]:
     """Return how the runs from the number `first` on ended, and everything about those that must not end so.
 
-    "regions" has the counts by region, "false alarms" and "refusals" those by the beginning of the message, "never" the runs that must
-    not be, and "overconfident" trusted runs that are accurate, but less so than their own diagnostics say.
+    "regions" has the counts by region, "false alarms" and "refusals" those by message. "never" has the runs that must
+    not be, "overconfident" trusted runs that are accurate, but less so than their own diagnostics say, and "needless"
+    those with a false alarm although their error is small.
     """
     regions = {region.name: Counter[str]() for region in REGIONS}
     alarms, refusals = Counter[str](), Counter[str]()

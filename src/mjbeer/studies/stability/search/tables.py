@@ -30,8 +30,8 @@ def tables(batches: list[dict[str, Any]]) -> list[Table]:
     """Return the tables; but for the one by region, they are left out where there is nothing to show."""
     return [
         by_region(batches),
-        *by_message("False alarms, by the beginning of the warning", "false alarms", batches),
-        *by_message("Refusals, by the beginning of the message", "refusals", batches),
+        *by_message("False alarms, by warning", "false alarms", batches),
+        *by_message("Refusals, by message", "refusals", batches),
         *overconfident(batches),
         *never(batches),
     ]
@@ -57,7 +57,7 @@ def by_message(title: str, kind: str, batches: list[dict[str, Any]]) -> list[Tab
     total = Counter[str]()
     for batch in batches:
         total.update(batch[kind])
-    rows = [(beginning, str(count)) for beginning, count in total.most_common()]
+    rows = [(message, str(count)) for message, count in total.most_common()]
     return [Table(title, ("message", "runs"), rows)] if rows else []
 
 
