@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, hoop, simulate, sliding
+from mjbeer.exceptions import MjbeerError, OutputError, TemplateError
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability import truth
 from mjbeer.studies.stability.outcome import (
@@ -84,9 +85,25 @@ def test_no_run_is_judged_where_theories_differ(monkeypatch: pytest.MonkeyPatch)
     assert outcome.apart == pytest.approx(1e-3, rel=0.1)
 
 
-def test_warnings_are_told_apart_by_their_beginnings() -> None:
-    outcome = judge(lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02))
-    assert outcome.alarms == ("energy or momentum drift like an error of", "the can slips by")
+def test_warnings_that_differ_in_numbers_alone_are_equal() -> None:
+    both = [judge(lambda f=f: simulate(frozen(), 1, 1.0, rolling="contact", friction=f)) for f in (0.02, 0.03)]
+    assert both[0].says != both[1].says
+    for outcome in both:
+        assert "the can slips by … radii (trusted up to …)" in outcome.alarms
+
+
+def test_refusals_have_their_reason_too() -> None:
+    outcome = judge(lambda: simulate(frozen(), 1, 1.0, tolerance=1e-16))
+    assert outcome.alarms[0].startswith("tolerance … rad is not reached: ")
+
+
+@pytest.mark.parametrize("error", [TemplateError("gone"), OutputError("full")])
+def test_a_run_that_cannot_be_tried_is_not_refused(error: MjbeerError) -> None:
+    def fail() -> Run:
+        raise error
+
+    with pytest.raises(type(error)):
+        judge(fail)
 
 
 def test_an_error_in_the_program_is_no_outcome() -> None:

@@ -17,7 +17,7 @@ from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.studies.stability import outcome
 from mjbeer.studies.stability.crew import crew
-from mjbeer.studies.stability.outcome import ACCURATE, MISSED, SILENT, THEORIES, Outcome
+from mjbeer.studies.stability.outcome import ACCURATE, MISSED, REFUSED, SILENT, THEORIES, Outcome
 from mjbeer.studies.stability.reference.lagrangian import reference
 from mjbeer.studies.stability.search import batches, check, tables
 from mjbeer.studies.stability.search.batches import SIZE, batch, tasks
@@ -211,25 +211,27 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
             Finding(Outcome(THEORIES, 1.0, 1e-4, "", 0.0)),
             Finding(Outcome(ACCURATE, 1e-3, 1.0, "off", 0.0, alarms=("off by", "from t =")), FALSE, SMALL * 2),
             Finding(Outcome(ACCURATE, 1e-3, 1.0, "off", 0.0, alarms=("off by", "drifts by")), FALSE, SMALL / 2),
+            Finding(Outcome(REFUSED, None, None, "tolerance 1 is not reached", alarms=("tolerance",))),
             Finding(Outcome(ACCURATE, 1e-3, 1.0, "slips", 0.0, alarms=("slips by",)), PARTS),
         ]
     )
     monkeypatch.setattr(batches, "check", lambda _: next(ends))
-    found = batch(SIZE, 9)
+    found = batch(SIZE, 10)
     assert [each["number"] - SIZE for each in found["never"]] == [3, 4, 5]
     assert [each["number"] - SIZE for each in found["overconfident"]] == [1]
     assert [each["number"] - SIZE for each in found["needless"]] == [7]
     assert found["false alarms"] == {"off by": 2, "drifts by": 1}
+    assert found["refusals"] == {"tolerance": 1}
     assert found["never"][0]["call"].startswith("simulate(Scene(")
     by_region = tables.by_region([found, found])
     everything = dict(zip(by_region.columns, by_region.rows[-1], strict=True))
     assert everything == {
-        "region": "all", "runs": "18", "refused": "0", "unstable": "0", "accurate": "12", "inaccurate": "0",
+        "region": "all", "runs": "20", "refused": "2", "unstable": "0", "accurate": "12", "inaccurate": "0",
         "silent": "2", "missed": "2", "theories": "2", "false alarms": "4", "below 0.0001": "2", "slip or lift": "2",
         "way": "0", "sensitive": "0", "one theory": "0",
     }  # fmt: skip
     assert by_region.rows[0][:2] == (RUNS[SIZE].region, "2")
-    assert [len(table.rows) for table in tables.tables([found])] == [len(REGIONS) + 1, 2, 1, 3]
+    assert [len(table.rows) for table in tables.tables([found])] == [len(REGIONS) + 1, 2, 1, 1, 3]
 
 
 def test_the_search_is_cut_into_tasks_without_gaps() -> None:

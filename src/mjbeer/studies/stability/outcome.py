@@ -1,10 +1,11 @@
 """How a run ended: whether two theories find it accurate, and whether its own diagnostics warned if it is not."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mjbeer.exceptions import DivergenceError, MjbeerError
+from mjbeer.exceptions import DivergenceError, ParameterError, ToleranceError, UnsupportedError
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability.truth import Truth, truth
 from mjbeer.theory.conserved import kinetic_energy
@@ -22,6 +23,8 @@ VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT, MISSED, THEORIES)
 NEVER = (SILENT, MISSED, THEORIES)
 """The verdicts that must not occur: a run that is trusted although it is wrong, a run whose error is above its
 tolerance, and a motion of which two theories say different things that no rounding explains."""
+REFUSALS = (ParameterError, ToleranceError, UnsupportedError)
+"""The errors with which a run is refused. Others, such as a template that is missing, are no way to end."""
 _GAIN = 10.0
 """A run is unstable if its kinetic energy exceeds the largest that the motion can have by this factor."""
 
@@ -41,20 +44,23 @@ class Outcome:
     apart: float | None = None
     """Distance of the two theories [rad], relative beyond 1 rad; None if there is no run, or only one theory."""
     alarms: tuple[str, ...] = ()
-    """The beginnings of its warnings, up to the first number."""
+    """Its warnings, or the text of the error that ended it, with dots instead of numbers, so that equals are equal."""
 
 
 def judge(simulate: Callable[[], Run]) -> Outcome:
     """Simulate a motion, and return how that ended.
 
-    A run is accurate if the error of phi and u/a is at most `trajectory.ERROR`, the limit for trusted runs as well.
+    A run is accurate if the error of phi and u/a is at most `trust.ERROR`, the limit for trusted runs as well.
+
+    Raises:
+      MjbeerError: if the run cannot even be tried, as when its template is missing.
     """
     try:
         run = simulate()
     except DivergenceError as error:
-        return Outcome(UNSTABLE, None, None, str(error))
-    except MjbeerError as error:
-        return Outcome(REFUSED, None, None, str(error))
+        return Outcome(UNSTABLE, None, None, str(error), alarms=(_numberless(str(error)),))
+    except REFUSALS as error:
+        return Outcome(REFUSED, None, None, str(error), alarms=(_numberless(str(error)),))
     radius = run.scene.can.radius
     motion = truth(run.scene, run.time, run.phi0, run.phi_dot0)
     error = motion.off(run.phi, run.u / radius)
@@ -64,7 +70,7 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
         admitted=_finite((run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius),
         says="; ".join(run.warnings),
         apart=motion.apart,
-        alarms=tuple(_beginning(warning) for warning in run.warnings),
+        alarms=tuple(_numberless(warning) for warning in run.warnings),
     )
 
 
@@ -88,14 +94,9 @@ def _explodes(run: Run, motion: Truth) -> bool:
     return not float(kinetic_energy(run.scene, run).max()) <= _GAIN * most
 
 
-def _beginning(text: str) -> str:
-    """Return a sentence up to its first number."""
-    words = []
-    for word in text.split():
-        if any(letter.isdigit() for letter in word):
-            break
-        words.append(word)
-    return " ".join(words)
+def _numberless(text: str) -> str:
+    """Return a text with dots instead of its numbers."""
+    return re.sub(r"[-+]?\d[\d.,]*(e[-+]?\d+)?", "…", text)
 
 
 def _finite(value: float) -> float | None:

@@ -6,7 +6,7 @@ from collections import Counter
 from functools import partial
 from typing import Any
 
-from mjbeer.studies.stability.outcome import NEVER
+from mjbeer.studies.stability.outcome import NEVER, REFUSED
 from mjbeer.studies.stability.search.check import FALSE, PULL, SMALL, Finding, check
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.search.regions import REGIONS, random_run
@@ -37,10 +37,12 @@ def tasks(extent: str, number: int = 0) -> list[Task]:
 def batch(first: int, size: int = SIZE) -> dict[str, Any]:
     """Return how the runs from the number `first` on ended, and everything about those that must not end so.
 
-    "regions" has the counts by region, "false alarms" those by the beginning of the warning, "never" the runs that must
-    not be, and "overconfident" trusted runs that are accurate, but less so than their own diagnostics say.
+    "regions" has the counts by region, "false alarms" and "refusals" those by message. "never" has the runs that must
+    not be, "overconfident" trusted runs that are accurate, but less so than their own diagnostics say, and "needless"
+    those with a false alarm although their error is small.
     """
-    regions, alarms = {region.name: Counter[str]() for region in REGIONS}, Counter[str]()
+    regions = {region.name: Counter[str]() for region in REGIONS}
+    alarms, refusals = Counter[str](), Counter[str]()
     never, overconfident, needless = [], [], []
     for number in range(first, first + size):
         run = random_run(number)
@@ -51,6 +53,8 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
         if finding.alarm == FALSE:
             alarms.update(alarm for alarm in finding.outcome.alarms if not alarm.startswith(PULL))
         outcome = finding.outcome
+        if outcome.verdict == REFUSED:
+            refusals.update(outcome.alarms)
         if outcome.verdict in NEVER:
             never.append(_about(number, run, finding))
         elif not outcome.says and (outcome.error or 0) > (outcome.admitted or 0) + _ROUNDING:
@@ -60,6 +64,7 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
     return {
         "regions": {name: dict(counts) for name, counts in regions.items()},
         "false alarms": dict(alarms),
+        "refusals": dict(refusals),
         "never": never,
         "overconfident": overconfident,
         "needless": needless,

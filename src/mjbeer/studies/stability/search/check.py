@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mjbeer.exceptions import MjbeerError
+from mjbeer.exceptions import DivergenceError
 from mjbeer.model.state import START_DEPTH
-from mjbeer.studies.stability.outcome import ACCURATE, Outcome, judge
+from mjbeer.studies.stability.outcome import ACCURATE, REFUSALS, Outcome, judge
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
@@ -49,7 +49,7 @@ def check(run: RandomRun) -> Finding:
         return Finding(outcome)
     try:
         whole = replace(run, every=1, moments=None).simulate()
-    except MjbeerError:
+    except (DivergenceError, *REFUSALS):
         return Finding(outcome, WAY)
     radius = run.scene.can.radius
     error = truth(run.scene, whole.time, run.phi0, run.phi_dot0).off(whole.phi, whole.u / radius)
@@ -69,7 +69,7 @@ def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
         others = [replace(run, phi0=run.phi0 + side, every=1, moments=None).simulate() for side in sides]
     except LongMotionError:
         return False
-    except MjbeerError:
+    except (DivergenceError, *REFUSALS):
         return True
     motion, *beside = (angles(run.scene, motion, run.phi0, run.phi_dot0) for motion in (*motions, *others))
     return not max(motion.off(other.phi, other.roll) for other in beside) * _SAFETY <= ERROR

@@ -27,8 +27,14 @@ _COLUMNS = {
 
 
 def tables(batches: list[dict[str, Any]]) -> list[Table]:
-    """Return the tables; those of false alarms and of runs that must not be are left out where there are none."""
-    return [by_region(batches), *by_warning(batches), *overconfident(batches), *never(batches)]
+    """Return the tables; but for the one by region, they are left out where there is nothing to show."""
+    return [
+        by_region(batches),
+        *by_message("False alarms, by warning", "false alarms", batches),
+        *by_message("Refusals, by message", "refusals", batches),
+        *overconfident(batches),
+        *never(batches),
+    ]
 
 
 def by_region(batches: list[dict[str, Any]]) -> Table:
@@ -46,13 +52,13 @@ def by_region(batches: list[dict[str, Any]]) -> Table:
     return Table("Random runs, by region", ("region", "runs", *_COLUMNS.values()), rows)
 
 
-def by_warning(batches: list[dict[str, Any]]) -> list[Table]:
-    """Return a table of the warnings that were false alarms, if there are any."""
+def by_message(title: str, kind: str, batches: list[dict[str, Any]]) -> list[Table]:
+    """Return a table of how often a message of a kind came, if it did at all."""
     total = Counter[str]()
     for batch in batches:
-        total.update(batch["false alarms"])
-    rows = [(beginning, str(count)) for beginning, count in total.most_common()]
-    return [Table("False alarms, by the beginning of the warning", ("warning", "runs"), rows)] if rows else []
+        total.update(batch[kind])
+    rows = [(message, str(count)) for message, count in total.most_common()]
+    return [Table(title, ("message", "runs"), rows)] if rows else []
 
 
 def overconfident(batches: list[dict[str, Any]]) -> list[Table]:
