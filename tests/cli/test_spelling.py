@@ -28,8 +28,14 @@ SCENE_LIST = "sliding, frozen, pendulum"
         ("validate --jsn", "`mjbeer validate` has no option --jsn; did you mean --json?"),
         ("simulate sliding --wheel-mass 1", "`mjbeer simulate sliding` has no option --wheel-mass; pendulum has it"),
         ("simulate hoop --fill 1", "`mjbeer simulate hoop` has no option --fill; sliding and frozen have it"),
-        ("simulate frozen --speed 2", "`mjbeer simulate frozen` has no option --speed; `mjbeer render` and `mjbeer view` have it"),
-        ("paper --quick", "`mjbeer paper` has no option --quick; `mjbeer benchmark`, `mjbeer stability` and `mjbeer report` have it"),
+        (
+            "simulate frozen --speed 2",
+            "`mjbeer simulate frozen` has no option --speed; `mjbeer render` and `mjbeer view` have it",
+        ),
+        (
+            "paper --quick",
+            "`mjbeer paper` has no option --quick; `mjbeer benchmark`, `mjbeer stability` and `mjbeer report` have it",
+        ),
         ("simulate --fill 0.3 sliding", "--fill is an option of the scene: write it after sliding or frozen"),
         ("paper --xyzzy", "`mjbeer paper` has no option --xyzzy; `mjbeer paper --help` lists them"),
         ("", "a command is missing: simulate, render, view, export, scenes, "),
