@@ -1,4 +1,4 @@
-"""Exported MJCF: any MuJoCo loads it, it is the model that mjbeer builds, and it moves as the paper says."""
+"""Exported MJCF: MuJoCo 4 loads it without mjbeer, it is the model that mjbeer builds, and moves as the paper says."""
 
 import math
 import os

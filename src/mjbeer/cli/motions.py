@@ -83,7 +83,7 @@ class Render(Motion):
 
 @dataclass(frozen=True)
 class Export:
-    """Write a scene with its start as one MJCF file that MuJoCo loads without mjbeer."""
+    """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
 
     scene: AnyScene
     output: pathlib.Path
@@ -101,6 +101,9 @@ class Export:
     """Timestep [s]."""
     friction: float = 1.0
     """Coefficient of friction, used only with rolling by contact."""
+    portable: bool = False
+    """Write MJCF that MuJoCo 3.3.1 and later, MJX, mujoco_warp and dm_control load too. It has the same reduced
+    coordinates; an equality or a contact is a little softer."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
@@ -117,6 +120,7 @@ class Export:
             integrator=self.integrator,
             timestep=self.timestep,
             friction=self.friction,
+            portable=self.portable,
         )
         say(f"wrote {self.output}")
         return 0
