@@ -138,7 +138,7 @@ def test_beside_a_separatrix_a_tolerance_is_met_or_refused() -> None:
                 continue
             met += 1
             assert phi_error(run, relative=True) <= tolerance, (scene, rolling, beside)
-    assert met > len(BESIDE)
+    assert met >= len(BESIDE)
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])
