@@ -124,7 +124,7 @@ class Scene:
         Raises:
           ParameterError: if `amplitude` is not finite.
           NoEquilibriumError: if there is no equilibrium.
-          NoLibrationError: if `amplitude` is at or beyond the separatrix, or so near it that rounding changes the period.
+          NoLibrationError: if `amplitude` is at or beyond the separatrix, or within the rounding of it.
           ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
         """
         amplitude = require.number("amplitude", amplitude, "rad")
