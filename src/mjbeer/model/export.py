@@ -52,7 +52,7 @@ def export(
             f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
         )
     softness = setting.TUNED
-    if portable:
+    if require.boolean("portable", portable):
         portability.require_integrator(integrator)
         softness = portability.softness(scene, rolling)
     made = setting.Setting(rolling, integrator, timestep, friction=friction, softness=softness)

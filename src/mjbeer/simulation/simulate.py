@@ -68,10 +68,6 @@ def simulate(
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0, many_turns)
     _check_start(scene, phi0, phi_dot0)
-    if tolerance is not None and integrator not in (None, DOP853):
-        raise ParameterError(
-            f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
-        )
     setting = Setting(
         rolling=rolling,
         integrator=Setting.integrator if integrator is None else integrator,
@@ -80,6 +76,10 @@ def simulate(
         friction=friction,
         softness=softness,
     )
+    if tolerance is not None and integrator not in (None, DOP853):
+        raise ParameterError(
+            f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
+        )
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:
