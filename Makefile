@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: help report test quick search lint clean
+.PHONY: help report test quick search portability lint clean
 
 help:
 	@sed -n '1,2p' $(MAKEFILE_LIST)
@@ -25,6 +25,10 @@ quick: $(STAMP)
 search: $(STAMP)
 	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest -s tests/studies/stability/test_search.py -k wrong_and_silent
 
+# What other tools make of portable exports, as docs/portability.md has it: about 1.5 GB into build/, and half an hour.
+portability: $(STAMP)
+	$(BIN)/python -m tests.support.others
+
 lint: $(STAMP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -39,4 +43,4 @@ $(STAMP): pyproject.toml
 	@touch $@
 
 clean:
-	rm -rf $(VENV) report benchmark stability paper dist
+	rm -rf $(VENV) build report benchmark stability paper dist

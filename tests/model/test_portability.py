@@ -34,14 +34,14 @@ REDUCED = 1e-7
 # The softness of the equality adds 6e-9 rad: with an impedance of 0.9999 a row misses 1e-4 of its force, which the
 # stiffness 4/h^2 turns into a residual of 1e-4 (g/a) h^2/4 = 1e-8 rad.
 EQUALITY = 1e-7
-# The contact's softness, with ten times the part of the force and a quarter of the stiffness: 1.8e-6 rad for the hoop,
-# whose load presses it on the incline with 20 times its weight, and 6e-7 rad for the others.
+# The contact's softness: its impedance of 0.999 misses ten times as much of its force, which is largest for the hoop,
+# 1.8e-6 rad; the others have at most 6.9e-7 rad.
 CONTACT = 5e-6
 TOLERANCE = {"reduced": REDUCED, "equality": EQUALITY, "contact": CONTACT}
-# In single precision, each of 1000 to 4000 steps rounds phi and its rate by 6e-8 of their size, 1e-6 rad in all if the
-# roundings are independent, and 1e-4 rad if they are not. The equality's residual is a difference of two angles, and
-# the stiffness 4/h^2 multiplies its rounding. A contact's depth of 1e-8 m is the difference of heights of 0.03 m, which
-# rounding changes by 2e-9 m: a tenth of the normal force.
+# In single precision each of 1000 to 4000 steps rounds phi and its rate by 6e-8 of their size: 1e-6 rad in all if the
+# roundings are independent, and 1e-4 rad if they all have the same sign. The equality's residual is a difference of two
+# angles, whose rounding the stiffness 4/h^2 multiplies. The depth of a contact, 1e-8 m, is the difference of heights of
+# 0.03 m, which are rounded by 2e-9 m: its force has hardly a digit in each step, and is right on average only.
 SINGLE = {"reduced": 1e-4, "equality": 1e-3, "contact": 1e-2}
 ALLOWED = {True: TOLERANCE, False: SINGLE}
 FAITHFUL = [name for name, other in BY_NAME.items() if other.faithful]
