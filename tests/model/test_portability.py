@@ -31,8 +31,8 @@ pytestmark = pytest.mark.slow
 DOCUMENT = others.CHECKOUT / "docs" / "portability.md"
 # RK4's own error after 1 s: 4.2e-8 rad for the hoop at 0.25 ms, at most 8.4e-9 rad for the others at 1 ms.
 REDUCED = 1e-7
-# The softness of the equality adds 6e-9 rad: with an impedance of 0.9999 a row misses 1e-4 of its force, which the
-# stiffness 4/h^2 turns into a residual of 1e-4 (g/a) h^2/4 = 1e-8 rad.
+# The softness of the equality adds up to 1.2e-8 rad: with an impedance of 0.9999 a row misses 1e-4 of its force, which
+# the stiffness 4/h^2 turns into a residual of 1e-4 (g/a) h^2/4 = 1e-8 rad.
 EQUALITY = 1e-7
 # The contact's softness: its impedance of 0.999 misses ten times as much of its force, which is largest for the hoop,
 # 1.8e-6 rad; the others have at most 6.9e-7 rad.
@@ -229,8 +229,10 @@ def test_an_unknown_tool_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_the_table_of_the_document_is_within_these_tolerances() -> None:
     rows = [line.strip("| ").split(" | ") for line in DOCUMENT.read_text().splitlines() if line.startswith("| ")]
-    numbers = {row[0]: row[1:7] for row in rows if row[0] in BY_NAME}
+    numbers = {row[0]: row[1:7] for row in rows if row[0] in BY_NAME and len(row) > len(ROLLINGS * 2)}
     assert list(numbers) == list(BY_NAME)
     for name in FAITHFUL:
         for rolling, number in zip(ROLLINGS * 2, numbers[name], strict=True):
+            if number == "-":  # not measured
+                continue
             assert float(number) < ALLOWED[BY_NAME[name].precise][rolling], (name, rolling)

@@ -102,8 +102,8 @@ class Export:
     friction: float = 1.0
     """Coefficient of friction, used only with rolling by contact."""
     portable: bool = False
-    """Write MJCF that MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load too. In double precision, the paper's scenes are
-    then within 1e-7 rad of exact theory after a second, as without it; with a contact within 2e-6 rad, not 3e-7.
+    """Write MJCF that MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load too. In double precision the paper's scenes
+    are within 1e-7 rad of exact theory after a second, as without it; with a contact within 2e-6 rad, not 3e-7.
     docs/portability.md has each tool's error. The integrator must be Euler, implicitfast or RK4."""
 
     def run(self) -> int:

@@ -35,8 +35,8 @@ def export(
     it is written, and must give the same model. A reduced model of a frozen load turns on the spot, because its one
     coordinate is phi.
 
-    With `portable`, MuJoCo 3.3 and what is made after it load the file too. A constraint is then a little softer, which
-    docs/portability.md measures, and the integrator must be one of `portable.INTEGRATORS`.
+    With `portable`, MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load the file too. The integrator must then be one of
+    `portable.INTEGRATORS`, and a contact is softer: docs/portability.md has the errors.
 
     Raises:
       ParameterError: if a parameter is not allowed.

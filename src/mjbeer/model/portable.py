@@ -53,9 +53,11 @@ def rewrite(text: str) -> str:
     """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3.0 does not know, frames, and bodies without mass."""
     root = ET.fromstring(text, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     for texture in root.iter("texture"):
-        texture.attrib.pop("colorspace", None)
+        if texture.get("colorspace") == "auto":  # what a texture without it has
+            del texture.attrib["colorspace"]
     for light in root.iter("light"):
-        if light.attrib.pop("type", None) == "directional":
+        if light.get("type") == "directional":
+            del light.attrib["type"]
             light.set("directional", "true")
     world = root.find("worldbody")
     assert world is not None
