@@ -25,7 +25,7 @@ quick: $(STAMP)
 search: $(STAMP)
 	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest -s tests/studies/stability/test_search.py -k wrong_and_silent
 
-# What other tools make of portable exports, as docs/portability.md has it: about 1.5 GB into build/, and half an hour.
+# What other tools make of portable exports, as docs/portability.md has it: 3 GB in build/, and an hour.
 portability: $(STAMP)
 	$(BIN)/python -m tests.support.others
 
