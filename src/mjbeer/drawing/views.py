@@ -24,6 +24,8 @@ from mjbeer.theory.trajectory import Trajectory
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from mjbeer.drawing.cameras import Camera
+
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
 
@@ -133,7 +135,7 @@ class Video:
 
 
 def video(
-    trajectory: Trajectory, width: int, height: int, fps: float, speed: float, camera: str, progress: bool
+    trajectory: Trajectory, width: int, height: int, fps: float, speed: float, camera: "Camera", progress: bool
 ) -> Video:
     """Return a video of a trajectory; the arguments are those of `mjbeer.render`.
 

@@ -3,11 +3,13 @@
 import math
 import pathlib
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from mjbeer.drawing.film import Film
+from mjbeer.drawing.film import Take
+from mjbeer.drawing.look import Look
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import chart
 from mjbeer.paper.scenarios import footnote_scene
@@ -19,6 +21,11 @@ from mjbeer.theory.trajectory import Trajectory
 
 _MARGIN = 0.02
 """Relative difference of footnote 7's two friction coefficients from tan(alpha)."""
+_ROCKING = Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths"))
+_ROLL_DOWN = Look(
+    "Frozen beer, let go on top: it rolls, slips and hops", ("normal", "lift"), ("phi", "paths", "forces")
+)
+_FRICTION = Look("Too little friction: a can at its equilibrium slides off", ("phi", "slip"), ("phi", "forces"))
 
 
 def stories() -> Iterator[Story]:
@@ -28,7 +35,7 @@ def stories() -> Iterator[Story]:
         "A can with frozen beer, let go at phi = 0, rocks about its equilibrium and does not roll off. Footnote 8's "
         "equation as printed gives another swing. The film shows a half-full can.",
         draw=_draw_rocking,
-        film=Film(speed=0.5, trajectory=lambda: simulate(frozen(), 2.0, 0.0, integrator=DOP853)),
+        film=Take(partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853), speed=0.5, look=_ROCKING),
     )
     yield Story(
         "roll-down",
@@ -36,14 +43,14 @@ def stories() -> Iterator[Story]:
         "jerks. Rolling needs more and more friction, and from 0.848 s on the incline would have to pull the can. The "
         "film shows a half-full can, which slips and hops.",
         draw=_draw_roll_down,
-        film=Film(speed=0.25, trajectory=lambda: _lift_off(1.0)),
+        film=Take(partial(_lift_off, 1.0), speed=0.25, look=_ROLL_DOWN),
     )
     yield Story(
         "friction",
         "Footnote 7: at the equilibrium the can stays if the friction coefficient is more than tan(alpha), and slides "
         "off if it is less. The two lines are simulations in contact, 2 % above and 2 % below.",
         draw=_draw_friction,
-        film=Film(speed=0.5, trajectory=lambda: _contact_at_equilibrium(1 - 0.3)),
+        film=Take(partial(_contact_at_equilibrium, 1 - 0.3), speed=0.5, look=_FRICTION),
     )
     yield Story(
         "period",

@@ -3,16 +3,22 @@
 import math
 import pathlib
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
-from mjbeer.drawing.film import Film
+from mjbeer.drawing.film import Take
+from mjbeer.drawing.look import Look
 from mjbeer.output.plots import chart
 from mjbeer.paper.equations import hopping
 from mjbeer.paper.scenarios import GRIP, MU, RATIO, fall_from_top
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import hoop
+from mjbeer.theory.trajectory import Trajectory
+
+_HOP = Look("A weight on the rim makes a light hoop hop", ("normal", "lift"), ("paths", "forces"))
+_LIFT_OFF = Look("With less friction the hoop skids before it hops", ("normal", "slip"), ("paths", "forces"))
 
 
 def stories() -> Iterator[Story]:
@@ -23,18 +29,20 @@ def stories() -> Iterator[Story]:
         "ground's normal force, divided by m g. Below 0 the ground would have to pull, so the hoop hops: that needs "
         "M/m < 1/13.",
         draw=_draw_normal,
-        film=Film(speed=0.1, trajectory=lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4)),
+        film=Take(partial(_hop, friction=1.0), speed=0.1, look=_HOP),
     )
     yield Story(
         "lift-off",
         "The angles at which the hoop lifts off and at which it skids, for different masses of the hoop. Littlewood's "
         "90 degrees hold for a massless hoop; with any finite friction coefficient the hoop skids first.",
         draw=_draw_lift_off,
-        film=Film(
-            speed=0.1,
-            trajectory=lambda: simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=MU),
-        ),
+        film=Take(partial(_hop, friction=MU), speed=0.1, look=_LIFT_OFF),
     )
+
+
+def _hop(friction: float) -> Trajectory:
+    """Return the motion of a light hoop, pushed with the weight on top, in contact with level ground."""
+    return simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=friction)
 
 
 def _draw_normal(path: pathlib.Path) -> None:

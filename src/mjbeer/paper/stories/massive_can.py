@@ -3,10 +3,11 @@
 import math
 import pathlib
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
-from mjbeer.drawing.film import Film
+from mjbeer.drawing.film import Take
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import chart
 from mjbeer.paper.equations import segment
@@ -56,7 +57,7 @@ def stories() -> Iterator[Story]:
         "A wheel with a pendulum, and its two limits. A light bob swings as if its pivot accelerated at half of "
         "g sin(alpha). Under a heavy bob the wheel swings instead, the faster the heavier the bob.",
         draw=_draw_pendulum,
-        film=Film(speed=0.5, trajectory=lambda: simulate(pendulum(), 1.5, 1.0, integrator=DOP853)),
+        film=Take(partial(simulate, pendulum(), 1.5, 1.0, integrator=DOP853), speed=0.5),
     )
 
 

@@ -3,10 +3,12 @@
 import math
 import pathlib
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
-from mjbeer.drawing.film import Film
+from mjbeer.drawing.film import Take
+from mjbeer.drawing.look import Look
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import chart
 from mjbeer.paper.equations import sliding as equations
@@ -22,6 +24,10 @@ from mjbeer.theory.trajectory import Trajectory
 _SMALL = 0.2
 """Amplitude [rad] of the swing that shows the hesitation."""
 _METAL = Can.sheet_metal()
+_TRIVIAL = Look("Let go with its surface along the incline, beer does not swing", ("phi", "u"), ("phi",))
+_HESITATION = Look("A can hesitates in every swing of its beer", ("phi", "ahead"), ("phi", "ghost"))
+_RELEASE = Look("Let go with its surface level, beer swings", ("phi", "ahead"), ("phi", "ghost"))
+_LOOPING = Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces"))
 
 
 def stories() -> Iterator[Story]:
@@ -31,7 +37,7 @@ def stories() -> Iterator[Story]:
         "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls down with exactly "
         "g sin(alpha). Beer let go at 60 degrees swings, but its centre of mass moves down the incline just the same.",
         draw=_draw_trivial,
-        film=Film(speed=0.5, trajectory=lambda: simulate(sliding(), 1.0, 0.0, integrator=DOP853)),
+        film=Take(partial(simulate, sliding(), 1.0, 0.0, integrator=DOP853), speed=0.5, look=_TRIVIAL),
     )
     yield Story(
         "hesitation",
@@ -39,14 +45,14 @@ def stories() -> Iterator[Story]:
         "beer's frequency and the amplitude b phi_0. Eq. (25) as printed has a far smaller ripple at twice that "
         "frequency.",
         draw=_draw_hesitation,
-        film=Film(speed=0.25, trajectory=lambda: simulate(sliding(can=_METAL), 1.0, 0.6, integrator=DOP853)),
+        film=Take(partial(simulate, sliding(can=_METAL), 1.0, 0.6, integrator=DOP853), speed=0.25, look=_HESITATION),
     )
     yield Story(
         "release",
         "A can is held until its beer is level and then let go, so that phi starts at -alpha. The steeper the incline, "
         "the wider the swing, and the slower it is in comparison with small swings.",
         draw=_draw_release,
-        film=Film(speed=0.5, trajectory=lambda: _level_start(40.0)),
+        film=Take(partial(_level_start, 40.0), speed=0.25, look=_RELEASE),
     )
     yield Story(
         "looping",
@@ -55,7 +61,7 @@ def stories() -> Iterator[Story]:
         "neither of these two motions, since nothing holds it down: if phi_dot at the bottom exceeds 47 rad/s, the "
         "beer lifts it off the incline. In the film it is 45 rad/s.",
         draw=_draw_looping,
-        film=Film(speed=0.1, trajectory=lambda: simulate(sliding(can=_METAL), 0.5, 0.0, 45.0, integrator=DOP853)),
+        film=Take(partial(simulate, sliding(can=_METAL), 0.5, 0.0, 45.0, integrator=DOP853), speed=0.1, look=_LOOPING),
     )
     yield Story(
         "ripples",
