@@ -23,7 +23,7 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         if theory is not None:
             values = quantity.of(theory.scene, theory)
             lines.append(Line("theory", theory.time, values, possible=theory.rolls_until()))
-        drawn.append(Chart(quantity.title, lines, low=quantity.low, high=quantity.high))
+        drawn.append(Chart(quantity.title, lines, low=quantity.low, high=quantity.high, least=quantity.least))
     return drawn
 
 

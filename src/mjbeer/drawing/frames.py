@@ -97,14 +97,15 @@ class Stage:
     ) -> "Stage":
         """Return the stage for the pictures of a trajectory at some times [s]."""
         scene, unit = trajectory.scene, height / UNITS
-        header = Header(look, trajectory, speed, width, unit)
+        header = Header(look, trajectory, speed, unit)
         lasts = len(trajectory.time) > 1
         below = round(_STRIP * unit) if lasts and look.strips else 0
         pixels = (width, height - header.height - below)
         fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
         positions = coordinates(trajectory, fine)
         plane = -scene.can.length / scene.can.radius * RADIUS / 2
-        shot = Shot.fit(scene, look.camera, fine, positions[:, 0], positions[:, 3], plane=plane, pixels=pixels)
+        u, lift = positions[:, 0], positions[:, 3]
+        shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, forces="forces" in look.marks)
         marks = Marks(trajectory, look.marks, plane, fine, positions)
         strip = Strip(charts(trajectory, look.strips), width, below) if below else None
         return cls(Sheet(width, height), shot, marks, header, strip, header.height, pixels, unit)

@@ -98,7 +98,7 @@ def _draw_distances(
     down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
     size = 1.15 * unit
     for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)), strict=True):
-        words = f"{round(number / step) * step:.6g} m"
+        words = f"{round(number / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
         half = 0.35 * size * len(words)
         covers = taken and place[0] + half > taken[0] - unit and place[0] - half < taken[1] + unit
         inside = half < place[0] < width - half and place[1] + 2.2 * unit < height

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 from mjbeer.drawing.look import Look
 from mjbeer.drawing.marks import LEGENDS
-from mjbeer.drawing.sheet import INK, Sheet
+from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.trajectory import Trajectory
 
-HEIGHT = 2.8
-"""Height of the first line, in units of the picture."""
-_LEGEND = 1.6
-"""Height of the second line, which tells what the marks mean."""
+HEIGHT = 4.4
+"""Height of both lines, in units of the picture."""
+_FIRST, _SECOND = 1.5, 3.4
+"""Height at which each of them is, likewise."""
 _GREY = "#52606d"
 
 
@@ -22,14 +22,13 @@ class Header:
     look: Look
     trajectory: Trajectory
     speed: float
-    width: int
     unit: float
     """Unit of length of the sheet [pixels]."""
 
     @property
     def height(self) -> int:
         """Return the height of the lines [pixels]."""
-        return round((HEIGHT + (_LEGEND if self._legend else 0)) * self.unit)
+        return round(HEIGHT * self.unit)
 
     @property
     def _legend(self) -> list[tuple[str, tuple[float, float, float], str]]:
@@ -40,21 +39,20 @@ class Header:
         unit, column = self.unit, 1.2 * self.unit
         duration = float(self.trajectory.time[-1] - self.trajectory.time[0])
         digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
-        head(sheet, self.look.title, time, self.speed, self.width, unit, digits)
-        sheet.blank(0, round(HEIGHT * unit), self.width, self.height)
+        head(sheet, self.look.title, time, self.speed, unit, digits)
         for sign, colour, meaning in self._legend:
-            *_, column, _ = sheet.text((column, 3.4 * unit), sign, 1.1 * unit, colour, bold=True)
-            *_, column, _ = sheet.text((column + 0.5 * unit, 3.4 * unit), meaning, 1.0 * unit)
+            *_, column, _ = sheet.text((column, _SECOND * unit), sign, 1.1 * unit, colour, bold=True)
+            *_, column, _ = sheet.text((column + 0.5 * unit, _SECOND * unit), meaning, 1.0 * unit)
             column += 1.8 * unit
 
 
-def head(sheet: Sheet, title: str, time: float, speed: float, width: int, unit: float, digits: int) -> None:
-    """Draw the first line: a title, the playback speed and the `time` [s] with some digits after the point."""
-    sheet.blank(0, 0, width, round(HEIGHT * unit))
-    sheet.text((1.2 * unit, 1.5 * unit), title, 1.45 * unit, bold=True)
-    right = (width - 1.2 * unit, 1.5 * unit)
-    left, *_ = sheet.text(right, f"t = {time:.{digits}f} s", 1.45 * unit, INK, anchor=(1, 0.5))
-    sheet.text((left - 1.6 * unit, 1.55 * unit), pace(speed), 1.1 * unit, _GREY, anchor=(1, 0.5))
+def head(sheet: Sheet, title: str, time: float, speed: float, unit: float, digits: int) -> None:
+    """Draw a title, the playback speed and the `time` [s] with some digits after the point."""
+    sheet.blank(0, 0, sheet.width, round(HEIGHT * unit))
+    sheet.text((1.2 * unit, _FIRST * unit), title, 1.45 * unit, bold=True)
+    right = sheet.width - 1.2 * unit
+    sheet.text((right, _FIRST * unit), f"t = {time:.{digits}f} s", 1.45 * unit, anchor=(1, 0.5))
+    sheet.text((right, _SECOND * unit), pace(speed), 1.0 * unit, _GREY, anchor=(1, 0.5))
 
 
 def pace(speed: float) -> str:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -20,11 +21,13 @@ RIM, CENTRE, GHOST = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45)
 NORMAL, FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)
 """Colours of the forces."""
 _WEIGHT = 1.0
-"""Length of the arrow of a force equal to the weight, in radii."""
-_LONGEST = 2.6
-"""Longest arrow of a force, in radii."""
+"""Length of the arrow of a force equal to the weight, in radii, unless a longer one would be too long."""
+LONGEST = 1.6
+"""Longest arrow of a force, in radii. Only the blow of a landing would be longer."""
+_RARE = 90.0
+"""Percentage of times at which no force is larger than the longest arrow shows."""
 _FAINT = 0.05
-"""Least force that is drawn, in weights."""
+"""Least length of an arrow that is drawn, in radii."""
 LEGENDS: dict[Mark, tuple[tuple[str, tuple[float, float, float], str], ...]] = {
     "phi": (),
     "paths": (("—", RIM, "path of a point on the rim"), ("—", CENTRE, "path of the centre of mass")),
@@ -89,22 +92,25 @@ class Marks:
         return axis + np.stack([np.sin(roll), np.cos(roll)], axis=1), load
 
     def _forces(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        weight = self.scene.mass * self.scene.gravity
-        normal, friction = (float(np.interp(time, self.trajectory.time, force)) / weight for force in self._acting)
+        normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
         foot = np.array([now[0] / self.scene.can.radius, 0.0])
         if normal > _FAINT:
-            tail = foot - np.array([0, min(_WEIGHT * normal, _LONGEST)])
+            tail = foot - np.array([0, min(normal, LONGEST)])
             pen.arrow(tail, foot, NORMAL)
             pen.text(tail + np.array([0.22, -0.1]), "N", NORMAL)
         if abs(friction) > _FAINT:
             way = -np.sign(friction)
-            head = foot + np.array([way * min(_WEIGHT * abs(friction), _LONGEST), -0.12])
+            head = foot + np.array([way * min(abs(friction), LONGEST), -0.12])
             pen.arrow(foot - np.array([0, 0.12]), head, FRICTION)
             pen.text(head + np.array([0.2 * way, -0.28]), "F", FRICTION)
 
-    @property
-    def _acting(self) -> tuple[np.ndarray, np.ndarray]:
-        return quantity.forces(self.scene, self.trajectory)
+    @cached_property
+    def _lengths(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the lengths of the arrows of N and F [radii], positive away from the incline and up it."""
+        normal, friction = quantity.forces(self.scene, self.trajectory)
+        largest = np.percentile(np.hypot(normal, friction), _RARE) / (self.scene.mass * self.scene.gravity)
+        length = min(_WEIGHT, LONGEST / max(largest, _FAINT)) / (self.scene.mass * self.scene.gravity)
+        return length * normal, length * friction
 
     def _phi(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         """Draw phi outside the rim, where it opens upwards: at the beer's surface, or over a bob."""

@@ -25,6 +25,8 @@ class Quantity:
     """Least value that a chart has room for."""
     high: float = math.inf
     """Largest value that a chart has room for; the blow of a landing goes beyond."""
+    least: float = 0.0
+    """Least range of values that a chart shows."""
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:
@@ -74,7 +76,7 @@ def _normal(scene: Scene, motion: Coordinates) -> np.ndarray:
 
 
 QUANTITIES = {
-    "phi": Quantity("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi)),
+    "phi": Quantity("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), least=10.0),
     "u": Quantity("way down the incline, u [m]", lambda _, motion: motion.u),
     "ahead": Quantity(
         "ahead of even acceleration [mm]", lambda scene, motion: 1e3 * (motion.u - even(scene, motion, motion.time))

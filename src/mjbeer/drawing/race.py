@@ -23,7 +23,7 @@ from mjbeer.theory.exact import exact
 from mjbeer.theory.segment import segment
 from mjbeer.theory.trajectory import Trajectory
 
-APART = 0.215
+APART = 0.225
 """Distance from lane to lane as drawn [m]; a can is 0.12 m long."""
 _STRIP = 11
 """Height of chart and table, in units of the picture."""
@@ -126,7 +126,7 @@ def draw(race: Race, runners: Sequence[Runner], times: np.ndarray, width: int, h
             sheet.boxes.clear()
             painter.paint(sheet, view, positions, top)
             _name(sheet, display, view, runners, top, unit)
-            head(sheet, race.title, time, race.speed, width, unit, digits=2)
+            head(sheet, race.title, time, race.speed, unit, digits=2)
             strip.draw(sheet, time, top + pixels[1])
             results.draw(sheet, time, positions, (round(_CHART * width), top + pixels[1]), unit)
             yield sheet.picture()

@@ -1,13 +1,16 @@
 """Lines, arrows and texts drawn over a picture, with smooth edges."""
 
+import math
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from matplotlib.backends.backend_agg import RendererAgg
-from matplotlib.font_manager import FontProperties
+from matplotlib.colors import to_rgb
+from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
+from PIL import Image, ImageDraw, ImageFont
 
 Colour = str | tuple[float, float, float]
 """A colour as matplotlib takes it."""
@@ -16,6 +19,8 @@ Box = tuple[float, float, float, float]
 
 INK = "#1f2933"
 """Colour of texts and of lines that explain."""
+_EDGE = 2
+"""Width of the white edge around a text that may lie on anything [pixels]."""
 _HEAD = 3.2
 """Length of an arrow's head, in widths of its line."""
 
@@ -101,16 +106,22 @@ class Sheet:
 
         With a `halo` the text has a white edge, so that it can be read on anything.
         """
-        font = _font(round(size), bold)
-        width, height, descent = self._renderer.get_text_width_height_descent(words, font, False)
-        left, top = place[0] - anchor[0] * width, place[1] - anchor[1] * height
-        foot = top + height - descent
-        shifts = [(x, y) for x in (-1.5, 0, 1.5) for y in (-1.5, 0, 1.5) if x or y] if halo else []
-        for right, down in shifts:
-            self._renderer.draw_text(self._pen(1, "white", 0.8), left + right, foot + down, words, font, 0)
-        self._renderer.draw_text(self._pen(1, colour, 1.0), left, foot, words, font, 0)
+        letters, edge = _letters(words, round(size), bold, _EDGE if halo else 0)
+        width, height = letters.shape[1] - 2 * edge, letters.shape[0] - 2 * edge
+        left, top = round(place[0] - anchor[0] * width), round(place[1] - anchor[1] * height)
+        if halo:
+            self._blend(left - edge, top - edge, letters, (1.0, 1.0, 1.0))
+            letters, _ = _letters(words, round(size), bold, 0)
+        self._blend(left, top, letters, to_rgb(colour))
         self.boxes.append((left, top, left + width, top + height))
         return self.boxes[-1]
+
+    def _blend(self, left: int, top: int, mask: np.ndarray, colour: tuple[float, float, float]) -> None:
+        """Mix a colour into the picture where a mask says how much of it, with its upper left corner at a place."""
+        low, high = max(0, -left), max(0, -top)
+        under = self._pixels[max(0, top) : top + mask.shape[0], max(0, left) : left + mask.shape[1], :3]
+        part = mask[high : high + under.shape[0], low : low + under.shape[1], None]
+        under[:] = under + part * (255 * np.array(colour, np.float32) - under)
 
     def _pen(self, width: float, colour: Colour, alpha: float):
         pen = self._renderer.new_gc()
@@ -125,6 +136,21 @@ class Sheet:
         return pen
 
 
+@lru_cache(1000)
+def _letters(words: str, size: int, bold: bool, edge: int) -> tuple[np.ndarray, int]:
+    """Return how much of each pixel the letters of a text cover, from 0 to 1, and the width of the edge around them.
+
+    The array is as high as a line, so that texts beside each other stand on one line.
+    """
+    font = _font(size, bold)
+    ascent, descent = font.getmetrics()
+    width = math.ceil(font.getlength(words))
+    image = Image.new("L", (width + 2 * edge, ascent + descent + 2 * edge))
+    ImageDraw.Draw(image).text((edge, edge), words, fill=255, font=font, stroke_width=edge)
+    return np.asarray(image, np.float32) / 255, edge
+
+
 @cache
-def _font(size: int, bold: bool) -> FontProperties:
-    return FontProperties(size=size, weight="bold" if bold else "normal")
+def _font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
+    """Return matplotlib's own font, which is the same everywhere and has the Greek letters."""
+    return ImageFont.truetype(findfont(FontProperties(weight="bold" if bold else "normal")), size)

@@ -17,6 +17,8 @@ _AROUND = 1.95
 """What is seen around the can's axis on each side, at least, in radii: the can, its angle, and a little air."""
 _BELOW = 1.95
 """What is seen below it, in radii: the board too, with the numbers below it."""
+_FORCES = 3.0
+"""The same where the arrows of forces are below the board."""
 _LARGEST = 0.22
 """Largest radius of a can, in heights of the picture."""
 _SMALLEST = 0.11
@@ -54,12 +56,15 @@ class Shot:
     @classmethod
     def fit(
         cls, scene: Scene, camera: Camera, time: np.ndarray, u: np.ndarray, lift: np.ndarray, plane: float,
-        pixels: tuple[int, int],
+        pixels: tuple[int, int], forces: bool = False,
     ) -> "Shot":  # fmt: skip
-        """Return the shot that shows a can that is at `u` and `lift` [m] at some times [s]."""
+        """Return the shot that shows a can that is at `u` and `lift` [m] at some times [s].
+
+        With `forces`, there is room for arrows below the can.
+        """
         along, height = u * scale(scene), lift * scale(scene)
         if camera == "auto":
-            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels)
+            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels, forces)
             radius = RADIUS / fixed.metres[1]
             camera = "fixed" if radius >= _SMALLEST else "pan"
         if camera == "fixed" or len(time) < 3 or np.ptp(time) == 0:
@@ -69,7 +74,7 @@ class Shot:
         else:
             way = partial(np.interp, xp=time, fp=along)
         places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([_AROUND, _BELOW])
+        low = places.min(axis=0) - RADIUS * np.array([_AROUND, _FORCES if forces else _BELOW])
         high = places.max(axis=0) + RADIUS * _AROUND
         shape = np.array(pixels) / pixels[1]
         tall = max(float(((high - low) / shape).max()), RADIUS / _LARGEST)

@@ -53,6 +53,8 @@ class Chart:
     """Least value that the chart has room for."""
     high: float = math.inf
     """Largest value that it has room for."""
+    least: float = 0.0
+    """Least range of values that it shows: a straight line is not to look like a crooked one."""
 
 
 class Strip:
@@ -67,14 +69,15 @@ class Strip:
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
             sides = {"left": 4.5 * unit / width, "right": 1 - 2 * unit / width}
-            figure.subplots_adjust(**sides, top=0.84, bottom=0.24, wspace=10 * unit / (width / len(charts)))
+            figure.subplots_adjust(**sides, top=0.84, bottom=0.27, wspace=10 * unit / (width / len(charts)))
             drawn = [self._draw(panel, chart) for panel, chart in zip(panels, charts, strict=True)]
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()
                 named = dict(zip(names, handles, strict=True))
-                panels[0].legend(
-                    named.values(), named, loc="lower right", bbox_to_anchor=(1, 1), ncols=2, borderaxespad=0.1,
-                    handlelength=1.5, columnspacing=1.2,
+                figure.legend(
+                    named.values(), named, loc="lower right", bbox_to_anchor=(1 - unit / width, 0), ncols=2,
+                    borderaxespad=0.1,
+                    borderpad=0, handlelength=1.5, columnspacing=1.2,
                 )  # fmt: skip
             canvas.draw()
             self._complete = np.array(canvas.buffer_rgba())[:, :, :3]
@@ -102,7 +105,8 @@ class Strip:
         panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
         low, high = panel.get_ylim()
-        panel.set_ylim(max(low, chart.low), min(high, chart.high))
+        room = max(0.0, chart.least - (high - low)) / 2
+        panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
         panel.set_xlabel("time [s]", labelpad=0.1 * unit)
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return drawn

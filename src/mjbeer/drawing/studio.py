@@ -28,7 +28,7 @@ class Order:
 
     film: Film
     path: pathlib.Path
-    """Its file, whose name ends in .mp4."""
+    """Its file, whose name ends in .mp4. The still picture's ends in -still.png."""
     width: int
     """Width [pixels]."""
     height: int
@@ -45,7 +45,7 @@ class Order:
         reel = self.film.reel()
         video.write(reel, self.path, self.width, self.height, self.fps, _count)
         picture = video.still(reel, self.film.still, self.width, self.height)
-        with files.whole(self.path.with_suffix(".png")) as temporary:
+        with files.whole(self.path.with_name(f"{self.path.stem}-still.png")) as temporary:
             Image.fromarray(picture).save(temporary)
         _count()
 
