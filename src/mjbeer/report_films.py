@@ -36,7 +36,7 @@ FILMS: dict[str, Film] = {
         "Which can wins?",
         runners,
         length=1.0,
-        speed=0.5,
+        speed=0.25,
         caption="Four equal cans are let go together on an incline of 5 degrees, and race over one metre. The can wins "
         "whose beer slides: the beer only goes downhill and does not turn, so that almost nothing is spent on turning. "
         "What is frozen must turn with its can: the full one is as slow as a solid cylinder, with two thirds of the "
@@ -44,11 +44,11 @@ FILMS: dict[str, Film] = {
         "beer below it would stay where it is; that gives it a lead which the winner makes up just before the finish. "
         "The empty can comes last, since all of its mass is in its wall. Theory has the same times, to all digits.",
         still=1.4,
-        after=0.3,
+        after=0.2,
     ),
     "sliding": Take(
-        partial(simulate, sliding(can=_METAL), 2.0, math.radians(60), tolerance=1e-9),
-        speed=0.5,
+        partial(simulate, sliding(can=_METAL), 1.2, math.radians(60), tolerance=1e-9),
+        speed=0.25,
         caption="Half a can of beer, let go at φ = 60°. The beer slides in its can without friction and swings. The "
         "can goes to and fro about the dashed one, which accelerates evenly: it hesitates with every swing. The camera "
         "moves along evenly.",
@@ -64,8 +64,8 @@ FILMS: dict[str, Film] = {
         look=Look("Frozen beer, let go with the beer on top", ("u", "normal"), ("phi", "paths", "forces")),
     ),
     "pendulum": Take(
-        partial(simulate, pendulum(), 2.0, math.radians(60), tolerance=1e-9),
-        speed=0.5,
+        partial(simulate, pendulum(), 1.5, math.radians(60), tolerance=1e-9),
+        speed=0.25,
         caption="A hoop wheel with a pendulum on its axle, let go at φ = 60°. The wheel goes to and fro about the "
         "dashed one, which accelerates evenly.",
         still=0.4,

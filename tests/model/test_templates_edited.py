@@ -12,7 +12,7 @@ import pytest
 
 from mjbeer import MjbeerError, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import main
-from mjbeer.drawing.display import display_model
+from mjbeer.drawing.display import Display
 from mjbeer.exceptions import TemplateError, UnsupportedError
 from mjbeer.model import appearance, state, templates
 from mjbeer.model.export import export
@@ -162,7 +162,7 @@ def test_more_may_be_drawn(copy: pathlib.Path, kind: str) -> None:
         text = re.sub(f'(<body name="{body}"[^>]*>)', rf"\1{MORE[kind].replace('more', body + '_more')}", text)
     (copy / "sliding.xml").write_text(text)
     assert_same_motion("sliding")
-    for model in (build(SCENES["sliding"], visuals=True), display_model(SCENES["sliding"])):
+    for model in (build(SCENES["sliding"], visuals=True), Display.of([SCENES["sliding"]], 0, 1).model):
         assert len(re.findall(rb"\w+_more", model.names)) == 3
 
 
@@ -354,7 +354,7 @@ def test_mesh_files_may_be_the_user_s(copy: pathlib.Path, tmp_path: pathlib.Path
 def test_a_mesh_file_that_is_missing_is_named(copy: pathlib.Path, tmp_path: pathlib.Path) -> None:
     substitute(copy, "sliding", 'name="can" file="can.obj"', 'name="can" file="own.obj"')
     assert all(simulated("sliding", rolling) == unedited(simulated, "sliding", rolling) for rolling in ROLLINGS)
-    for draw in (display_model, lambda scene: export(scene, tmp_path / "exported.xml")):
+    for draw in (lambda scene: Display.of([scene], 0, 1), lambda scene: export(scene, tmp_path / "exported.xml")):
         with pytest.raises(UnsupportedError, match=r"own\.obj"):
             draw(SCENES["sliding"])
 

@@ -80,7 +80,13 @@ class Take:
     """What is drawn; None is the usual look of such a motion."""
 
     def reel(self) -> Reel:
-        return reel(self.trajectory(), self.look, self.speed)
+        """Compute the motion, and return what is needed to draw it."""
+        trajectory = self.trajectory()
+        return reel(trajectory, self.chosen(trajectory), self.speed)
+
+    def chosen(self, trajectory: Trajectory) -> Look:
+        """Return what is drawn of the motion."""
+        return self.look or Look.usual(trajectory)
 
 
 def reel(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -> Reel:

@@ -66,7 +66,7 @@ def _draw(
     trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
 ) -> Generator[np.ndarray]:
     stage = Stage.of(trajectory, times, width, height, look, speed)
-    display = Display.of([trajectory.scene], *stage.reach)
+    display = stage.display()
     with Canvas(display.model, width, stage.pixels[1]) as canvas:
         painter = Painter(canvas, display, stage.shot.still)
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
@@ -116,12 +116,16 @@ class Stage:
         along = self.marks.positions[:, 0] * scale(self.marks.scene)
         return float(along.min()), float(along.max())
 
+    def display(self) -> Display:
+        """Return the model to be drawn."""
+        return Display.of([self.marks.scene], *self.reach)
+
     def explain(self, display: Display, time: float, now: np.ndarray) -> None:
         """Draw title, guides, marks and charts at a `time` [s], with u, phi, roll and lift `now`."""
         view = self.shot.view(time)
         board = guides.Board.of(self.marks.scene, display.model)
-        guides.draw(self.sheet, board, view, self.top, self.unit)
         self.marks.draw(self.sheet, view, self.top, time, now)
+        guides.draw(self.sheet, board, view, self.top, self.unit)
         self.header.draw(self.sheet, time)
         if self.strip is not None:
             self.strip.draw(self.sheet, time, self.top + self.pixels[1])

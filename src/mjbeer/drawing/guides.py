@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.drawing.display import on_incline, scale
-from mjbeer.drawing.sheet import INK, Sheet
+from mjbeer.drawing.sheet import Sheet, overlap
 from mjbeer.drawing.view import View
 from mjbeer.theory.scene import Scene
 
@@ -55,16 +55,17 @@ def draw(sheet: Sheet, board: Board, view: View, top: int, unit: float) -> None:
     shift = np.array([0.0, top])
     tail = np.array([width - 1.6 * unit, top + 1.0 * unit])
     if board.scene.incline < 0:
-        tail[0] = 1.6 * unit
+        tail[0] = 3 * unit
     sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
     sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
-    taken = _draw_angle(sheet, board, view, shift, unit) if board.scene.incline else ()
-    _draw_distances(sheet, board, view, shift, unit, taken)
+    if board.scene.incline:
+        _draw_angle(sheet, board, view, shift, unit)
+    _draw_distances(sheet, board, view, shift, unit)
     sheet.clip(None)
 
 
-def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> tuple[float, float]:
-    """Draw the angle of the incline under the board's lower end, and return the columns that it takes."""
+def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> None:
+    """Draw the angle of the incline under the board's lower end."""
     width, height = view.pixels
     uphill = -math.copysign(1.0, board.scene.incline)
     tilt, reach = abs(board.scene.incline), 9 * unit
@@ -77,34 +78,26 @@ def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit:
     sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
     arc = np.linspace(0, tilt, 24)
     sheet.line(corner + 0.8 * reach * np.stack([uphill * np.cos(arc), -np.sin(arc)], axis=1), 0.12 * unit)
-    left, _, right, _ = sheet.text(
-        corner + np.array([uphill * 0.8 * reach, 0.3 * unit]),
-        f"{_ALPHA} = {degrees(tilt)}",
-        1.4 * unit,
-        anchor=(0.5, 0),
-    )
-    ends = (corner[0], corner[0] + uphill * reach, left, right)
-    return min(ends), max(ends)
+    place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
+    sheet.text(place, f"{_ALPHA} = {degrees(tilt)}", 1.4 * unit, anchor=(0.5, 0))
 
 
-def _draw_distances(
-    sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float, taken: tuple[float, ...]
-) -> None:
-    """Write distances down the incline below the board [m], with a tick at each."""
+def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> None:
+    """Write distances down the incline below the board [m], with a tick at each, where there is room."""
     width, height = view.pixels
     ends = [board.along(view, column) / scale(board.scene) for column in (0, width)]
     step = _round((ends[1] - ends[0]) * _SPACING * unit / width)
     numbers = step * np.arange(math.ceil(min(ends) / step), math.floor(max(ends) / step) + 1)
     down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
-    size = 1.15 * unit
-    for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)), strict=True):
+    window = (0.0, shift[1], float(width), shift[1] + height)
+    for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)) + shift, strict=True):
         words = f"{round(number / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
-        half = 0.35 * size * len(words)
-        covers = taken and place[0] + half > taken[0] - unit and place[0] - half < taken[1] + unit
-        inside = half < place[0] < width - half and place[1] + 2.2 * unit < height
-        if not covers and inside:
-            sheet.line(np.array([place, place + 0.5 * unit * down]) + shift, 0.12 * unit)
-            sheet.text(place + shift + np.array([0, 0.8 * unit]), words, size, colour=INK, anchor=(0.5, 0))
+        below = place + np.array([0, 0.8 * unit])
+        box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
+        inside = window[0] < box[0] and window[1] < box[1] and box[2] < window[2] and box[3] < window[3]
+        if inside and not any(overlap(box, other) for other in sheet.boxes):
+            sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
+            sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))
 
 
 def _round(least: float) -> float:

@@ -24,6 +24,8 @@ _WEIGHT = 1.0
 """Length of the arrow of a force equal to the weight, in radii, unless a longer one would be too long."""
 LONGEST = 1.6
 """Longest arrow of a force, in radii. Only the blow of a landing would be longer."""
+_CLEAR = 0.4
+"""Least distance of a force's letter from the foot of the can, in radii: no letter is to cover it."""
 _RARE = 90.0
 """Percentage of times at which no force is larger than the longest arrow shows."""
 _FAINT = 0.05
@@ -94,15 +96,16 @@ class Marks:
     def _forces(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
         foot = np.array([now[0] / self.scene.can.radius, 0.0])
+        way = -1.0 if friction > 0 else 1.0
         if normal > _FAINT:
-            tail = foot - np.array([0, min(normal, LONGEST)])
-            pen.arrow(tail, foot, NORMAL)
-            pen.text(tail + np.array([0.22, -0.1]), "N", NORMAL)
+            length = min(normal, LONGEST)
+            pen.arrow(foot - np.array([0, length]), foot, NORMAL)
+            pen.text(foot - np.array([0.3 * way, max(length, _CLEAR) + 0.1]), "N", NORMAL)
         if abs(friction) > _FAINT:
-            way = -np.sign(friction)
-            head = foot + np.array([way * min(abs(friction), LONGEST), -0.12])
-            pen.arrow(foot - np.array([0, 0.12]), head, FRICTION)
-            pen.text(head + np.array([0.2 * way, -0.28]), "F", FRICTION)
+            length = min(abs(friction), LONGEST)
+            start = foot - np.array([0, 0.12])
+            pen.arrow(start, start + np.array([way * length, 0]), FRICTION)
+            pen.text(foot + np.array([way * max(length, _CLEAR), -0.5]), "F", FRICTION)
 
     @cached_property
     def _lengths(self) -> tuple[np.ndarray, np.ndarray]:

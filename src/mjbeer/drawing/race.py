@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq
@@ -102,34 +102,71 @@ class Race:
         """Compute the motions, and return what is needed to draw them."""
         runners = self.runners()
         end = max(runner.finish(self.length) for runner in runners) + self.after
-        return Reel(0.0, end, self.speed, partial(draw, self, runners))
+
+        def pictures(times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
+            return draw(self.course(runners, width, height), times)
+
+        return Reel(0.0, end, self.speed, pictures)
+
+    def course(self, runners: Sequence[Runner], width: int, height: int) -> "Course":
+        """Return what is drawn of the race, in pictures of a width and a height [pixels]."""
+        return Course.of(self, runners, frames.whole("width", width), frames.whole("height", height))
 
 
-def draw(race: Race, runners: Sequence[Runner], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
+def draw(course: "Course", times: np.ndarray) -> Generator[np.ndarray]:
     """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
 
     Raises:
       RenderingError: while the first picture is drawn, if OpenGL does not work.
     """
-    unit = height / frames.UNITS
-    top, below = round(HEIGHT * unit), round(_STRIP * unit)
-    scenes = [runner.trajectory.scene for runner in runners]
-    pixels = (width, height - top - below)
-    display = Display.of(scenes, -_NAMES, race.length, APART, lines=(0.0, race.length))
-    view = _view(display, race, pixels)
-    sheet, results = Sheet(width, height), _Results.of(race, runners)
-    strip = Strip([_chart(race, runners)], round(_CHART * width), below)
-    with Canvas(display.model, *pixels) as canvas:
-        painter = Painter(canvas, display, still=True)
+    with Canvas(course.display.model, *course.view.pixels) as canvas:
+        painter = Painter(canvas, course.display, still=True)
         for time in times:
-            positions = np.array([_position(runner, time) for runner in runners])
-            sheet.boxes.clear()
-            painter.paint(sheet, view, positions, top)
-            _name(sheet, display, view, runners, top, unit)
-            head(sheet, race.title, time, race.speed, unit, digits=2)
-            strip.draw(sheet, time, top + pixels[1])
-            results.draw(sheet, time, positions, (round(_CHART * width), top + pixels[1]), unit)
-            yield sheet.picture()
+            course.sheet.boxes.clear()
+            painter.paint(course.sheet, course.view, course.positions(time), course.top)
+            course.explain(time)
+            yield course.sheet.picture()
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """Everything in the pictures of a race but what OpenGL draws."""
+
+    race: Race
+    runners: Sequence[Runner]
+    sheet: Sheet
+    display: Display
+    view: View
+    strip: Strip
+    results: "_Results"
+    top: int
+    """Row of the upper edge of the scene [pixels]."""
+    unit: float
+    """Unit of length of the sheet [pixels]."""
+
+    @classmethod
+    def of(cls, race: Race, runners: Sequence[Runner], width: int, height: int) -> "Course":
+        """Return the course of a race in pictures of a width and a height [pixels]."""
+        unit = height / frames.UNITS
+        top, below = round(HEIGHT * unit), round(_STRIP * unit)
+        scenes = [runner.trajectory.scene for runner in runners]
+        display = Display.of(scenes, -_NAMES, race.length, APART, lines=(0.0, race.length))
+        view = _view(display, race, (width, height - top - below))
+        strip = Strip([_chart(race, runners)], round(_CHART * width), below)
+        results = _Results.of(race, runners)
+        return cls(race, runners, Sheet(width, height), display, view, strip, results, top, unit)
+
+    def positions(self, time: float) -> np.ndarray:
+        """Return u from the start [m], phi, roll [rad] and lift [m] of each can at a time [s]."""
+        return np.array([_position(runner, time) for runner in self.runners])
+
+    def explain(self, time: float) -> None:
+        """Draw title, names, chart and results at a `time` [s]."""
+        sheet, below = self.sheet, self.top + self.view.pixels[1]
+        _name(sheet, self.display, self.view, self.runners, self.top, self.unit)
+        head(sheet, self.race.title, time, self.race.speed, self.unit, digits=2)
+        self.strip.draw(sheet, time, below)
+        self.results.draw(sheet, time, self.positions(time), (round(_CHART * sheet.width), below), self.unit)
 
 
 def _position(runner: Runner, time: float) -> np.ndarray:

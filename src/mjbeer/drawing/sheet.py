@@ -106,20 +106,32 @@ class Sheet:
 
         With a `halo` the text has a white edge, so that it can be read on anything.
         """
-        letters, edge = _letters(words, round(size), bold, _EDGE if halo else 0)
-        width, height = letters.shape[1] - 2 * edge, letters.shape[0] - 2 * edge
-        left, top = round(place[0] - anchor[0] * width), round(place[1] - anchor[1] * height)
+        box = self.box(place, words, size, anchor, bold)
+        left, top = int(box[0]), int(box[1])
         if halo:
-            self._blend(left - edge, top - edge, letters, (1.0, 1.0, 1.0))
-            letters, _ = _letters(words, round(size), bold, 0)
-        self._blend(left, top, letters, to_rgb(colour))
-        self.boxes.append((left, top, left + width, top + height))
-        return self.boxes[-1]
+            self._blend(left - _EDGE, top - _EDGE, _letters(words, round(size), bold, _EDGE), (1.0, 1.0, 1.0))
+        self._blend(left, top, _letters(words, round(size), bold, 0), to_rgb(colour))
+        self.boxes.append(box)
+        return box
+
+    def box(
+        self,
+        place: np.ndarray | tuple[float, float],
+        words: str,
+        size: float,
+        anchor: tuple[float, float] = (0.0, 0.5),
+        bold: bool = False,
+    ) -> Box:
+        """Return the box that a text would have."""
+        height, width = _letters(words, round(size), bold, 0).shape
+        left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
+        return left, top, left + width, top + height
 
     def _blend(self, left: int, top: int, mask: np.ndarray, colour: tuple[float, float, float]) -> None:
         """Mix a colour into the picture where a mask says how much of it, with its upper left corner at a place."""
-        low, high = max(0, -left), max(0, -top)
-        under = self._pixels[max(0, top) : top + mask.shape[0], max(0, left) : left + mask.shape[1], :3]
+        rows, columns = mask.shape
+        under = self._pixels[max(0, top) : max(0, top + rows), max(0, left) : max(0, left + columns), :3]
+        high, low = max(0, -top), max(0, -left)
         part = mask[high : high + under.shape[0], low : low + under.shape[1], None]
         under[:] = under + part * (255 * np.array(colour, np.float32) - under)
 
@@ -130,15 +142,21 @@ class Sheet:
         pen.set_alpha(alpha)
         pen.set_capstyle("round")
         pen.set_joinstyle("round")
+        pen.set_snap(False)  # what moves must not jump from pixel to pixel
         if self._clip is not None:
             left, top, right, bottom = self._clip
             pen.set_clip_rectangle(Bbox([[left, self.height - bottom], [right, self.height - top]]))
         return pen
 
 
+def overlap(one: Box, other: Box) -> bool:
+    """Return whether two boxes have a point in common."""
+    return min(one[2], other[2]) > max(one[0], other[0]) and min(one[3], other[3]) > max(one[1], other[1])
+
+
 @lru_cache(1000)
-def _letters(words: str, size: int, bold: bool, edge: int) -> tuple[np.ndarray, int]:
-    """Return how much of each pixel the letters of a text cover, from 0 to 1, and the width of the edge around them.
+def _letters(words: str, size: int, bold: bool, edge: int) -> np.ndarray:
+    """Return how much of each pixel the letters of a text and an `edge` [pixels] around them cover, from 0 to 1.
 
     The array is as high as a line, so that texts beside each other stand on one line.
     """
@@ -147,7 +165,7 @@ def _letters(words: str, size: int, bold: bool, edge: int) -> tuple[np.ndarray, 
     width = math.ceil(font.getlength(words))
     image = Image.new("L", (width + 2 * edge, ascent + descent + 2 * edge))
     ImageDraw.Draw(image).text((edge, edge), words, fill=255, font=font, stroke_width=edge)
-    return np.asarray(image, np.float32) / 255, edge
+    return np.asarray(image, np.float32) / 255
 
 
 @cache

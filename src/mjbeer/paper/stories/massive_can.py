@@ -57,7 +57,7 @@ def stories() -> Iterator[Story]:
         "A wheel with a pendulum, and its two limits. A light bob swings as if its pivot accelerated at half of "
         "g sin(alpha). Under a heavy bob the wheel swings instead, the faster the heavier the bob.",
         draw=_draw_pendulum,
-        film=Take(partial(simulate, pendulum(), 1.5, 1.0, integrator=DOP853), speed=0.5),
+        film=Take(partial(simulate, pendulum(), 1.5, 1.0, integrator=DOP853), speed=0.25),
     )
 
 

@@ -11,7 +11,7 @@ from mjbeer.paper.stories import frozen, hopping, letters, massive_can, sliding
 from mjbeer.paper.stories.story import Story
 
 _CHAPTERS = (sliding, massive_can, frozen, hopping)
-_WIDTH, _HEIGHT, _FPS = 960, 540, 24
+_WIDTH, _HEIGHT, _FPS = 960, 540, 30
 """Width and height [pixels] and pictures per second of a film: small, for there are ten of them."""
 
 

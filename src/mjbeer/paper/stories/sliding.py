@@ -37,7 +37,7 @@ def stories() -> Iterator[Story]:
         "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls down with exactly "
         "g sin(alpha). Beer let go at 60 degrees swings, but its centre of mass moves down the incline just the same.",
         draw=_draw_trivial,
-        film=Take(partial(simulate, sliding(), 1.0, 0.0, integrator=DOP853), speed=0.5, look=_TRIVIAL),
+        film=Take(partial(simulate, sliding(), 1.0, 0.0, integrator=DOP853), speed=0.25, look=_TRIVIAL),
     )
     yield Story(
         "hesitation",
@@ -52,7 +52,7 @@ def stories() -> Iterator[Story]:
         "A can is held until its beer is level and then let go, so that phi starts at -alpha. The steeper the incline, "
         "the wider the swing, and the slower it is in comparison with small swings.",
         draw=_draw_release,
-        film=Take(partial(_level_start, 40.0), speed=0.25, look=_RELEASE),
+        film=Take(partial(_level_start, 40.0, periods=2.0), speed=0.1, look=_RELEASE),
     )
     yield Story(
         "looping",
