@@ -47,14 +47,14 @@ def stories() -> Iterator[Story]:
     )
 
 
-def _thrown(friction: float) -> Trajectory:
-    """Return half a second of a hoop in contact, which passes near the top so fast that its hop can be seen."""
+def _hop(friction: float) -> Trajectory:
+    """Return the motion of a light hoop, pushed with the weight on top, in contact with level ground."""
     return simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=friction)
 
 
-def _draw_thrown(axes: Axes, friction: float, sliding: bool) -> None:
-    """Draw the height of a thrown hoop, and how far it has slid if asked for, with the events that theory foresees."""
-    run = _thrown(friction)
+def _draw_hop(axes: Axes, friction: float, sliding: bool) -> None:
+    """Draw the height of a pushed hoop, how far it has slid if asked for, and what theory foresees."""
+    run = _hop(friction)
     rolling = exact(run.scene, np.linspace(0, 0.06, 6001), run.phi0, run.phi_dot0)
     if sliding:
         axes.plot(run.time, 1e3 * run.slip, color=COLOURS[2], label="slip: distance less the arc turned, MuJoCo")
@@ -68,7 +68,7 @@ def _draw_thrown(axes: Axes, friction: float, sliding: bool) -> None:
     axes.set(
         xlabel="time t [s]",
         ylabel="distance [mm]" if sliding else "height [mm]",
-        title=f"Thrown: φ = {in_degrees(run.phi0)}, {run.phi_dot0:g} rad/s, M/m = 1/20, μ = {friction:g}",
+        title=f"Pushed: φ = {in_degrees(run.phi0)}, {run.phi_dot0:g} rad/s, M/m = 1/20, μ = {friction:g}",
     )
 
 
@@ -95,7 +95,7 @@ def _draw_normal(path: pathlib.Path) -> None:
             title="Rolling from rest, theory",
             xticks=range(0, 181, 30),
         )
-        _draw_thrown(hop, FRICTION, sliding=False)
+        _draw_hop(hop, FRICTION, sliding=False)
         name_below([push, hop], 3)
 
 
@@ -123,7 +123,7 @@ def _draw_lift_off(path: pathlib.Path) -> None:
         angle = fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP).takeoff()
         measured.append(math.nan if angle is None else math.degrees(angle))
     title = "Before a hoop lifts off, it skids"
-    with chart(path, 1, 2, width=12, height=5.6, title=title, subtitle=_SCENE) as (where, thrown):
+    with chart(path, 1, 2, width=12, height=5.6, title=title, subtitle=_SCENE) as (where, hop):
         lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
         where.plot(ratios, lifts, color=COLOURS[0], label="lifts off, theory")
         where.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
@@ -140,5 +140,5 @@ def _draw_lift_off(path: pathlib.Path) -> None:
             title="Rolling from rest",
         )
         ticks(where.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05))
-        _draw_thrown(thrown, MU, sliding=True)
-        name_below([where, thrown], 3)
+        _draw_hop(hop, MU, sliding=True)
+        name_below([where, hop], 3)
