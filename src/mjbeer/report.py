@@ -4,7 +4,8 @@ import pathlib
 
 from rich.console import Console
 
-from mjbeer.drawing.studio import Order, produce
+from mjbeer.drawing import studio
+from mjbeer.drawing.studio import Order
 from mjbeer.output import files
 from mjbeer.paper.stories import report
 from mjbeer.report_films import FILMS
@@ -37,7 +38,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         missing = [str(order.path.relative_to(folder)) for order in orders] if opengl.problem() else []
         report.write(folder / "paper", False, console)
         if not missing:
-            produce(orders, console)
+            studio.produce(orders, console)
         console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
         summary.write_text(_summary(validation, missing), encoding="utf-8")
     return validation, missing

@@ -53,7 +53,7 @@ def test_the_angle_of_the_incline_is_drawn_and_written(incline: float) -> None:
     # Its corner lies on the board's underside.
     edge = board.pixel(view, board.along(view, corner[0]))
     assert edge == pytest.approx(corner, abs=PIXEL)
-    assert f"α = {abs(incline):g}°" in sheet.words  # noqa: RUF001
+    assert f"α = {abs(incline):g}°" in sheet.words
 
 
 def test_on_level_ground_there_is_no_angle() -> None:

@@ -74,10 +74,13 @@ class Take:
     trajectory: Callable[[], Trajectory]
     """A function that computes the motion, and that can be pickled."""
     speed: float
-    caption: str = ""
-    still: float = 0.0
+    """Playback speed: 1 is real time, 0.5 is half as fast."""
     look: Look | None = None
     """What is drawn; None is the usual look of such a motion."""
+    still: float = 0.0
+    """Time of the motion that the still picture of the film shows [s]."""
+    caption: str = ""
+    """What is seen in it, in whole sentences, for the text beside the film."""
 
     def reel(self) -> Reel:
         """Compute the motion, and return what is needed to draw it."""

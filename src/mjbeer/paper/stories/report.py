@@ -4,7 +4,8 @@ import pathlib
 
 from rich.console import Console
 
-from mjbeer.drawing.studio import Order, produce
+from mjbeer.drawing import studio
+from mjbeer.drawing.studio import Order
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.stories import frozen, hopping, letters, massive_can, sliding
@@ -52,7 +53,7 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
                 begin(story.name)
                 story.draw(folder / story.name)
         if filmed and not missing:
-            produce(filmed, console)
+            studio.produce(filmed, console)
         summary.write_text(_summary(drawn, films, missing), encoding="utf-8")
     return missing
 
