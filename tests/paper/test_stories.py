@@ -16,6 +16,7 @@ from mjbeer.paper.stories import report
 from mjbeer.paper.stories.frozen import _contact_at_equilibrium, _footnote_8_as_printed
 from mjbeer.paper.stories.hopping import _skids
 from mjbeer.paper.stories.sliding import _least_push
+from mjbeer.theory.words import in_words
 from tests.support import figures, stubs
 
 pytestmark = pytest.mark.slow
@@ -41,6 +42,10 @@ def test_a_plot_can_be_read_by_itself(name: str, tmp_path: pathlib.Path, monkeyp
     panels = figure.axes
     assert all(panel.get_title(loc="left") for panel in panels) or len(panels) == 1
     assert {name for panel in panels for name in panel.get_legend_handles_labels()[1]} <= named
+    if (film := STORIES[name].film) is not None:  # which is of the same scene
+        assert in_words(film.trajectory().scene, {"load", "incline"}) in "\n".join(
+            text.get_text() for text in figure.texts
+        )
 
 
 @pytest.mark.parametrize("name", STORIES)

@@ -22,6 +22,7 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.exact import exact
 from mjbeer.theory.segment import segment
 from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.words import in_degrees
 
 APART = 0.225
 """Distance from lane to lane as drawn [m]; a can is 0.12 m long."""
@@ -164,7 +165,8 @@ class Course:
         """Draw title, names, chart and results at a `time` [s]."""
         sheet, below = self.sheet, self.top + self.view.pixels[1]
         _name(sheet, self.display, self.view, self.runners, self.top, self.unit)
-        head(sheet, self.race.title, time, self.race.speed, self.unit, digits=2)
+        scene = f"{self.race.length:g} m, incline {in_degrees(self.display.scenes[0].incline)}"
+        head(sheet, (self.race.title, scene), time, self.race.speed, self.unit, digits=2)
         self.strip.draw(sheet, time, below)
         self.results.draw(sheet, time, self.positions(time), (round(_CHART * sheet.width), below), self.unit)
 
