@@ -133,7 +133,7 @@ def _fan(corners: int) -> np.ndarray:
 
 
 def _strip(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """Return the faces between two lines of as many vertices: first those with two corners on `one`, then the others."""
+    """Return the faces between two lines of as many vertices: first those with two corners on `one`, then the rest."""
     return np.concatenate([
         np.stack([one[:-1], one[1:], other[1:]], 1),
         np.stack([one[:-1], other[1:], other[:-1]], 1),
