@@ -74,7 +74,7 @@ def test_a_level_line_and_the_board_make_the_angle(camera: str, incline: float) 
     assert np.linalg.norm(first) == pytest.approx(float(np.linalg.norm(last)), rel=1e-5)
     normal = np.array([math.sin(scene.incline), 0, math.cos(scene.incline)])
     model, _, _ = posed(scene)
-    side = model.geom("board_side")
+    side = model.geom("board")
     assert corner @ normal == pytest.approx(side.pos[2] - side.size[2], abs=SINGLE)
 
 

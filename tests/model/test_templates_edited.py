@@ -71,7 +71,7 @@ def substitute(folder: pathlib.Path, file: str, old: str, new: str) -> None:
 
 # Looks: what is edited, and where it is seen in a model.
 SEEN: dict[str, tuple[tuple[str, ...], Callable[[mujoco.MjModel], bool]]] = {
-    "colour": (("shared", "1 0.66 0.08 1", "0 1 0 1"), lambda m: list(m.mat("beer").rgba) == [0, 1, 0, 1]),
+    "colour": (("shared", "0.98 0.63 0.08 1", "0 1 0 1"), lambda m: list(m.mat("beer").rgba) == [0, 1, 0, 1]),
     "own colour": (
         ("sliding", 'mesh="load" material="beer"', 'mesh="load" rgba="0 1 0 1"'),
         lambda m: list(m.geom("load").rgba) == [0, 1, 0, 1],

@@ -12,8 +12,6 @@ from mjbeer.theory.scene import Scene
 
 _HALF_TURNS = (-20, 980)
 """Where the templates' board begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
-_STRIPED = ("planks", "wood")
-"""The materials of the board and of its side."""
 _SPARE = 20
 """Half turns of board beyond either end of a motion: more than a camera at the can sees."""
 _MARGIN = 1.1
@@ -75,12 +73,11 @@ def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None
     turn = math.pi * scene.can.radius
     first = min(_HALF_TURNS[0], math.floor(low / turn) - _SPARE)
     last = max(_HALF_TURNS[1], math.ceil(high / turn) + _SPARE)
-    for geom in (spec.geom("board"), spec.geom("board_side")):
-        geom.pos = [(first + last) / 2 * turn, *geom.pos[1:]]
-        geom.size = [(last - first) / 2 * turn, *geom.size[1:]]
-    for name in _STRIPED:
-        if (material := spec.material(name)) is not None:
-            material.texrepeat = [last - first, material.texrepeat[1]]
+    board = spec.geom("board")
+    board.pos = [(first + last) / 2 * turn, *board.pos[1:]]
+    board.size = [(last - first) / 2 * turn, *board.size[1:]]
+    planks = spec.material("planks")
+    planks.texrepeat = [last - first, planks.texrepeat[1]]
 
 
 def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: float) -> None:
