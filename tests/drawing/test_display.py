@@ -81,12 +81,17 @@ def test_cans_side_by_side_are_posed_by_themselves() -> None:
     for number, position in enumerate(positions):
         check(display, number, *position)
     assert display.lanes == [0.0, 0.2, 0.4]
-    for name in ("board", "board_side"):
-        board = display.model.geom(name)
-        assert (board.pos[1] - board.size[1], board.pos[1] + board.size[1]) == pytest.approx((-0.075, 0.475))
-    line = display.model.geom("line1")
+    board, line = display.model.geom("board"), display.model.geom("line1")
+    assert (board.pos[1] - board.size[1], board.pos[1] + board.size[1]) == pytest.approx((-0.075, 0.475))
     assert in_incline(scenes[0], display.data.geom("line1").xpos)[0] == pytest.approx(0.5)
     assert line.size[1] == display.model.geom("board").size[1]
+
+
+def test_each_can_has_a_label_of_its_colour() -> None:
+    display = Display.of([sliding(can=METAL), frozen(can=METAL)], 0, 1, apart=0.2)
+    display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)])
+    assert display.model.mat("label").rgba.tolist() == [1, 0, 0, 1]
+    assert display.model.mat("1-label").rgba.tolist() == [0, 0, 1, 1]
 
 
 def test_hidden_cans_are_out_of_sight() -> None:

@@ -13,6 +13,7 @@ from mjbeer.drawing.look import Mark
 from mjbeer.drawing.marks import LONGEST, Marks
 from mjbeer.drawing.shot import Shot
 from mjbeer.drawing.view import View
+from mjbeer.model.parts import WALL
 from mjbeer.theory.can import RADIUS
 from tests.support.drawn import Recorder
 
@@ -83,7 +84,7 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     motion = exact(frozen(), TIMES, 2.0)
     sheet, view, (u, *_) = drawn(motion, "forces", 0.1)
     (tail, head), (start, end) = sheet.arrows
-    assert head == pytest.approx(place(motion, view, u, 0.0), abs=ROUNDING)
+    assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)  # under the drawn wall
     assert differ(direction(np.array([tail, head])), math.pi / 2 - motion.scene.incline) < ROUNDING
     normal, friction = (float(np.interp(0.1, TIMES, force)) for force in (motion.forces.normal, motion.forces.friction))
     # Friction is positive up the incline, which is to the left.

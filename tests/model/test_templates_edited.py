@@ -71,7 +71,7 @@ def substitute(folder: pathlib.Path, file: str, old: str, new: str) -> None:
 
 # Looks: what is edited, and where it is seen in a model.
 SEEN: dict[str, tuple[tuple[str, ...], Callable[[mujoco.MjModel], bool]]] = {
-    "colour": (("shared", "0.92 0.58 0.06 1", "0 1 0 1"), lambda m: list(m.mat("beer").rgba) == [0, 1, 0, 1]),
+    "colour": (("shared", "0.98 0.63 0.08 1", "0 1 0 1"), lambda m: list(m.mat("beer").rgba) == [0, 1, 0, 1]),
     "own colour": (
         ("sliding", 'mesh="load" material="beer"', 'mesh="load" rgba="0 1 0 1"'),
         lambda m: list(m.geom("load").rgba) == [0, 1, 0, 1],
@@ -84,8 +84,8 @@ SEEN: dict[str, tuple[tuple[str, ...], Callable[[mujoco.MjModel], bool]]] = {
         ("shared", 'xyaxes="1 0 0 0 0.2 1"', 'euler="90 0 0"'),
         lambda m: np.allclose(m.camera("overview").quat, [0.5**0.5, 0.5**0.5, 0, 0]),
     ),
-    "light": (("shared", "0.3 0.9 -0.75", "0 0 -1"), lambda m: list(m.light("sun").dir) == [0, 0, -1]),
-    "texture": (("shared", "0.86 0.74 0.56", "0 0 0"), lambda m: m.tex_data[m.tex("planks").adr[0]] == 0),
+    "light": (("shared", "-0.35 0.7 -0.9", "0 0 -1"), lambda m: list(m.light("sun").dir) == [0, 0, -1]),
+    "texture": (("shared", "0.94 0.84 0.69", "0 0 0"), lambda m: m.tex_data[m.tex("planks").adr[0]] == 0),
     "picture": (("shared", 'fovy="32"', 'fovy="60"'), lambda m: m.camera("overview").fovy[0] == 60),
     "centre of view": (("shared", 'extent="0.3"', 'extent="0.5"'), lambda m: m.stat.extent == 0.5),
 }  # fmt: skip

@@ -57,16 +57,20 @@ class Display:
         for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
             frame = board.body("incline").add_frame(pos=[0, lane, 0])
             frame.attach_body(spec.body("can"), _prefix(number), "")
-        for name in ("board", "board_side"):
-            geom = board.geom(name)
-            geom.pos = [geom.pos[0], geom.pos[1] + lanes[-1] / 2, geom.pos[2]]
-            geom.size = [geom.size[0], geom.size[1] + lanes[-1] / 2, geom.size[2]]
+        planks = board.geom("board")
+        planks.pos = [planks.pos[0], planks.pos[1] + lanes[-1] / 2, planks.pos[2]]
+        planks.size = [planks.size[0], planks.size[1] + lanes[-1] / 2, planks.size[2]]
         wall = board.geom("wall")
         wall.pos = [*wall.pos[:1], wall.pos[1] + lanes[-1], *wall.pos[2:]]
         for number, along in enumerate(lines):
             _add_line(board, f"line{number}", along)
         model = compile_spec(board)
         return cls(model, mujoco.MjData(model), scenes, lanes)
+
+    def paint(self, colours: Sequence[tuple[float, float, float]]) -> None:
+        """Give each can's label a colour."""
+        for number, colour in enumerate(colours):
+            self.model.mat(_prefix(number) + "label").rgba[:3] = colour
 
     def pose(self, positions: np.ndarray) -> None:
         """Put each can at u [m], phi [rad], roll [rad] and lift [m], one row for each; a frozen load turns with it."""
@@ -113,11 +117,9 @@ def on_incline(scene: Scene, along: np.ndarray | float, height: np.ndarray | flo
 def _add_line(spec: mujoco.MjSpec, name: str, along: float) -> None:
     """Add a dark line across the board, as thin as a coat of paint, to its specification."""
     board = spec.geom("board")
-    size = [0.003, board.size[1], 0.0002]
+    top, half = board.pos[2] + board.size[2], [0.003, board.size[1], 0.0002]
     body, kind = spec.body("incline"), mujoco.mjtGeom.mjGEOM_BOX
-    body.add_geom(
-        spec.default, name=name, type=kind, size=size, pos=[along, board.pos[1], board.pos[2]], rgba=_PAINT, group=2
-    )
+    body.add_geom(spec.default, name=name, type=kind, size=half, pos=[along, board.pos[1], top], rgba=_PAINT, group=2)
 
 
 def _prefix(number: int) -> str:

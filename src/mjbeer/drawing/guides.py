@@ -31,8 +31,8 @@ class Board:
     @classmethod
     def of(cls, scene: Scene, model: mujoco.MjModel) -> "Board":
         """Return the edge of the board of a display model."""
-        side = model.geom("board_side")
-        return cls(scene, front=float(side.pos[1] - side.size[1]), under=float(side.pos[2] - side.size[2]))
+        board = model.geom("board")
+        return cls(scene, front=float(board.pos[1] - board.size[1]), under=float(board.pos[2] - board.size[2]))
 
     def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
         """Return column and row of points of the edge, `along` the incline as drawn [m], shape (..., 2)."""

@@ -12,6 +12,7 @@ from mjbeer.drawing.display import on_incline
 from mjbeer.drawing.look import Mark
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.view import View, circle
+from mjbeer.model.parts import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -72,9 +73,9 @@ class Marks:
         along = float(quantity.even(self.scene, trajectory, np.array(time)))
         centre = np.array([along / radius, 1.0])
         roll = along / radius
-        pen.line(centre + circle(1.04), 0.05, GHOST, dashes=(3, 2.5))
+        pen.line(centre + circle(1 + WALL), 0.05, GHOST, dashes=(3, 2.5))
         turned = np.array([math.sin(roll), math.cos(roll)])
-        pen.line(np.array([centre + 0.8 * turned, centre + 1.04 * turned]), 0.07, GHOST)
+        pen.line(np.array([centre + 0.8 * turned, centre + (1 + WALL) * turned]), 0.07, GHOST)
 
     def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         until = np.searchsorted(self.fine, time, side="right")
@@ -95,7 +96,7 @@ class Marks:
 
     def _forces(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
-        foot = np.array([now[0] / self.scene.can.radius, 0.0])
+        foot = np.array([now[0] / self.scene.can.radius, -WALL])
         way = -1.0 if friction > 0 else 1.0
         if normal > _FAINT:
             length = min(normal, LONGEST)

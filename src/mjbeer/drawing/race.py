@@ -152,6 +152,7 @@ class Course:
         top, below = round(HEIGHT * unit), round(_STRIP * unit)
         scenes = [runner.trajectory.scene for runner in runners]
         display = Display.of(scenes, -_NAMES, race.length, APART, lines=(0.0, race.length))
+        display.paint([runner.colour for runner in runners])
         view = _view(display, race, (width, height - top - below))
         strip = Strip([_chart(race, runners)], round(_CHART * width), below)
         results = _Results.of(race, runners)
