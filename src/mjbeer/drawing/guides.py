@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.drawing.display import on_incline, scale
-from mjbeer.drawing.sheet import Sheet, overlap
+from mjbeer.drawing.sheet import Box, Sheet, overlap
 from mjbeer.drawing.view import View
 from mjbeer.theory.scene import Scene
 
@@ -58,14 +58,13 @@ def draw(sheet: Sheet, board: Board, view: View, top: int, unit: float) -> None:
         tail[0] = 3 * unit
     sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
     sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
-    if board.scene.incline:
-        _draw_angle(sheet, board, view, shift, unit)
-    _draw_distances(sheet, board, view, shift, unit)
+    taken = [_draw_angle(sheet, board, view, shift, unit)] if board.scene.incline else []
+    _draw_distances(sheet, board, view, shift, unit, taken)
     sheet.clip(None)
 
 
-def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> None:
-    """Draw the angle of the incline under the board's lower end."""
+def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> Box:
+    """Draw the angle of the incline under the board's lower end, and return the box of its lines."""
     width, height = view.pixels
     uphill = -math.copysign(1.0, board.scene.incline)
     tilt, reach = abs(board.scene.incline), 9 * unit
@@ -78,11 +77,13 @@ def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit:
     sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
     arc = np.linspace(0, tilt, 24)
     sheet.line(corner + 0.8 * reach * np.stack([uphill * np.cos(arc), -np.sin(arc)], axis=1), 0.12 * unit)
+    ends = sorted((float(corner[0]), float(corner[0] + uphill * reach)))
     place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
     sheet.text(place, f"{_ALPHA} = {degrees(tilt)}", 1.4 * unit, anchor=(0.5, 0))
+    return ends[0], float(corner[1] - reach * math.sin(tilt)), ends[1], float(corner[1])
 
 
-def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> None:
+def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float, taken: list[Box]) -> None:
     """Write distances down the incline below the board [m], with a tick at each, where there is room."""
     width, height = view.pixels
     ends = [board.along(view, column) / scale(board.scene) for column in (0, width)]
@@ -95,7 +96,7 @@ def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, u
         below = place + np.array([0, 0.8 * unit])
         box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
         inside = window[0] < box[0] and window[1] < box[1] and box[2] < window[2] and box[3] < window[3]
-        if inside and not any(overlap(box, other) for other in sheet.boxes):
+        if inside and not any(overlap(box, other) for other in sheet.boxes + taken):
             sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
             sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))
 

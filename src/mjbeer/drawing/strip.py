@@ -107,7 +107,7 @@ class Strip:
         low, high = panel.get_ylim()
         room = max(0.0, chart.least - (high - low)) / 2
         panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
-        panel.set_xlabel("time [s]", labelpad=0.1 * unit)
+        panel.set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return drawn
 
