@@ -19,8 +19,6 @@ ENOUGH = float(np.finfo(EXTENDED).eps) < 1e-18
 _ORDER = 26
 _LOCAL = EXTENDED(1e-20)
 """Local error relative to each quantity."""
-_STEPS = 4000
-"""Most steps; a motion that needs more is given up."""
 
 mp = MPContext()
 mp.dps = 40
@@ -80,8 +78,8 @@ def _value(series: np.ndarray, step: np.ndarray) -> np.ndarray:
     return total
 
 
-def integrate(cases: Sequence[Case]) -> tuple[np.ndarray, np.ndarray]:
-    """How far phi has turned and phi_dot, of shape (cases, times); NaN for a motion that takes too many steps."""
+def integrate(cases: Sequence[Case], steps: int = 4000) -> tuple[np.ndarray, np.ndarray]:
+    """How far phi has turned and phi_dot, of shape (cases, times); NaN for a motion that takes more steps than that."""
     known = [coefficients(case.scene) for case in cases]
     terms = {name: _extended([each[name] for each in known]) for name in known[0]}
     halves = [mp.mpf(case.phi0) / 2 for case in cases]
@@ -90,7 +88,7 @@ def integrate(cases: Sequence[Case]) -> tuple[np.ndarray, np.ndarray]:
     turned, now, sample = np.zeros_like(v), np.zeros_like(v), np.zeros(len(cases), int)
     turns, rates = np.full(ends.shape, np.nan, EXTENDED), np.full(ends.shape, np.nan, EXTENDED)
     active = np.arange(len(cases))
-    for _ in range(_STEPS):
+    for _ in range(steps):
         sines, cosines, speeds = _series(
             {name: each[active] for name, each in terms.items()}, s[active], c[active], v[active]
         )
