@@ -397,3 +397,12 @@ def test_a_good_run_warns_of_nothing_and_is_run_once(monkeypatch: pytest.MonkeyP
     with warnings.catch_warnings():
         warnings.simplefilter("error", UntrustedWarning)
         simulate(frozen(), 1.0, 1.0)
+
+
+@pytest.mark.parametrize(("gravity", "trusted"), [(0.0, True), (9.81, False)])
+def test_a_model_that_rounding_takes_all_inertia_from(gravity: float, trusted: bool) -> None:
+    """A point on the rim of a can of next to no mass, where it touches the incline: nothing but the can has inertia."""
+    scene = Scene(Can(1.0, 1.0, 1e-32, 0.0), Load(10**-14.8125, 1.0, 0.0), 0.0, "frozen", gravity)
+    run = simulate(scene, 5.0, 0.0, rolling="contact", integrator="Euler", timestep=1.0)
+    assert run.error_estimate is not None
+    assert run.trusted == trusted
