@@ -50,7 +50,7 @@ def blocks(path: pathlib.Path) -> list[Block]:
 
 
 BLOCKS = [block for path in DOCUMENTS for block in blocks(path)]
-COMMANDS = [command for block in BLOCKS if block.language in SHELLS for command in block.commands]
+COMMANDS = list(dict.fromkeys(command for block in BLOCKS if block.language in SHELLS for command in block.commands))
 
 
 def test_every_block_says_its_language() -> None:
@@ -93,7 +93,7 @@ def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.
     monkeypatch.chdir(tmp_path)
     stubs.validate(monkeypatch)
     stubs.draw(monkeypatch)
-    stubs.benchmark(monkeypatch)
+    stubs.benchmark(monkeypatch, stubs.FEW)
     stubs.stability(monkeypatch)
     words = re.split(r"[|>]", command)[0]
     try:

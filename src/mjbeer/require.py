@@ -1,5 +1,6 @@
 """Checks of arguments: each returns the valid value, or raises an error that names the value and what is allowed."""
 
+import difflib
 import math
 import numbers
 import os
@@ -145,13 +146,21 @@ def choice(name: str, value: str, allowed: Iterable[Name]) -> Name:
     """Return `value` if it is one of the `allowed` names.
 
     Raises:
-      ParameterError: if it is none of them; the message lists the names.
+      ParameterError: if it is none of them; the message lists the names, and asks after one that is spelled alike.
     """
     names = {str(name): name for name in allowed}
     if not isinstance(value, str) or value not in names:
         listed = ", ".join(repr(name) for name in names)
-        raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}")
+        alike = " or ".join(repr(name) for name in spelled_alike(value, names)) if isinstance(value, str) else ""
+        question = f": did you mean {alike}?" if alike else ""
+        raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}{question}")
     return names[value]
+
+
+def spelled_alike(word: str, allowed: Iterable[str]) -> list[str]:
+    """Return the one or two allowed words that are spelled most like this one, in capitals or not; empty if none is."""
+    folded = {each.casefold(): each for each in allowed}
+    return [folded[each] for each in difflib.get_close_matches(word.casefold(), folded, n=2)]
 
 
 def path(value: str | os.PathLike[str]) -> pathlib.Path:

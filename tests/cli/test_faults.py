@@ -5,6 +5,7 @@ import pathlib
 import stat
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -130,5 +131,6 @@ def test_two_commands_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> No
     while any(each.poll() is None for each in both):
         if (tmp_path / "same.csv").exists():
             seen.add((tmp_path / "same.csv").read_text())
+        time.sleep(1e-3)  # and leaves the processor to them
     assert seen == set(alone)
     assert os.listdir(tmp_path) == ["same.csv"]

@@ -15,6 +15,7 @@ SCENE_LIST = "sliding, frozen, pendulum"
     ("words", "message"),
     [
         ("simlate sliding", "'simlate' is no command; did you mean simulate?"),
+        ("VALIDATE", "'VALIDATE' is no command; did you mean validate?"),
         ("Validate", "'Validate' is no command; did you mean validate?"),
         ("--verson", "'--verson' is no command; did you mean --version?"),
         ("--phi0 3 simulate sliding", "'--phi0' is no command; the commands are simulate, render, view, export, "),

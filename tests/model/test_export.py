@@ -12,7 +12,7 @@ import pytest
 
 from mjbeer import Can, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.cli.app import main
-from mjbeer.exceptions import OutputError, UnsupportedError
+from mjbeer.exceptions import OutputError, ParameterError, UnsupportedError
 from mjbeer.model import state
 from mjbeer.model.build import compose
 from mjbeer.model.engine import library
@@ -168,6 +168,14 @@ def test_the_precision_that_mujoco_writes_with_is_restored(digits: int, tmp_path
 def test_dop853_is_refused_by_name(tmp_path: pathlib.Path) -> None:
     with pytest.raises(UnsupportedError, match="DOP853 is mjbeer's integrator, not MuJoCo's; export with one of Euler"):
         export(frozen(), tmp_path / "model.xml", integrator="DOP853")
+    assert not os.listdir(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["x.urdf", "x.mjcf", "x", "x.XML"])
+def test_a_file_of_another_format_is_refused(name: str, tmp_path: pathlib.Path) -> None:
+    """MJCF under the name of a URDF would be read as URDF."""
+    with pytest.raises(ParameterError, match=rf"MJCF is written: the file's name must end in \.xml, got '{name}'"):
+        export(frozen(), tmp_path / name)
     assert not os.listdir(tmp_path)
 
 

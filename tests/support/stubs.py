@@ -2,7 +2,7 @@
 
 import inspect
 import pathlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -41,11 +41,13 @@ LADDERS = {
     Curve("equality, hinge first", "Euler", "timestep"): (2e-3,),
     Curve("contact, defaults", "Euler", "timestep"): (2e-3,),
 }
+FEW = {Curve("reduced", "RK4", "timestep"): STEPS[:2], Curve("equality", "RK4", "timestep"): STEPS[:2]}
+"""For what does not depend on the ladders."""
 
 
-def benchmark(monkeypatch: pytest.MonkeyPatch) -> None:
+def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[float, ...]] = LADDERS) -> None:
     """Make the benchmark one of short ladders and two peers, timed twice, with a made-up cost of stages."""
-    monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(LADDERS))
+    monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(ladders))
     monkeypatch.setattr(benchmark_run, "installed", lambda: [with_scipy.DOP853, with_scipy.ODEINT])
     monkeypatch.setattr(benchmark_run, "absent", dict)
     stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]

@@ -19,8 +19,6 @@ ENOUGH = float(np.finfo(EXTENDED).eps) < 1e-18
 _ORDER = 26
 _LOCAL = EXTENDED(1e-20)
 """Local error relative to each quantity."""
-_STEPS = 4000
-"""Most steps; a motion that needs more is given up."""
 
 mp = MPContext()
 mp.dps = 40
@@ -68,20 +66,20 @@ def _extended(numbers: Sequence[Any]) -> np.ndarray:
     return np.array([EXTENDED(float(each)) + EXTENDED(float(each - mp.mpf(float(each)))) for each in numbers])
 
 
-def _product(x: list[np.ndarray], y: list[np.ndarray]) -> np.ndarray:
-    """The last known coefficient of the product of two series."""
-    return sum((x[i] * y[-1 - i] for i in range(1, len(y))), start=x[0] * y[-1])
+def _product(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
+    """Coefficient k of the products of one or several pairs of series, of shape (..., order, cases)."""
+    return (x[..., : k + 1, :] * y[..., k::-1, :]).sum(axis=-2)
 
 
-def _value(series: list[np.ndarray], step: np.ndarray) -> np.ndarray:
+def _value(series: np.ndarray, step: np.ndarray) -> np.ndarray:
     total = series[-1]
-    for coefficient in reversed(series[:-1]):
+    for coefficient in series[-2::-1]:
         total = total * step + coefficient
     return total
 
 
-def integrate(cases: Sequence[Case]) -> tuple[np.ndarray, np.ndarray]:
-    """How far phi has turned and phi_dot, of shape (cases, times); NaN for a motion that takes too many steps."""
+def integrate(cases: Sequence[Case], steps: int = 4000) -> tuple[np.ndarray, np.ndarray]:
+    """How far phi has turned and phi_dot, of shape (cases, times); NaN for a motion that takes more steps than that."""
     known = [coefficients(case.scene) for case in cases]
     terms = {name: _extended([each[name] for each in known]) for name in known[0]}
     halves = [mp.mpf(case.phi0) / 2 for case in cases]
@@ -90,7 +88,7 @@ def integrate(cases: Sequence[Case]) -> tuple[np.ndarray, np.ndarray]:
     turned, now, sample = np.zeros_like(v), np.zeros_like(v), np.zeros(len(cases), int)
     turns, rates = np.full(ends.shape, np.nan, EXTENDED), np.full(ends.shape, np.nan, EXTENDED)
     active = np.arange(len(cases))
-    for _ in range(_STEPS):
+    for _ in range(steps):
         sines, cosines, speeds = _series(
             {name: each[active] for name, each in terms.items()}, s[active], c[active], v[active]
         )
@@ -98,7 +96,7 @@ def integrate(cases: Sequence[Case]) -> tuple[np.ndarray, np.ndarray]:
         step = _step(sines, cosines, speeds)
         there = step >= left
         step = np.where(there, left, step)
-        turned[active] += step * _value([each / (k + 1) for k, each in enumerate(speeds)], step)
+        turned[active] += step * _value(speeds / np.arange(1, _ORDER + 2)[:, np.newaxis], step)
         s[active], c[active], v[active] = (_value(each, step) for each in (sines, cosines, speeds))
         length = np.hypot(s[active], c[active])
         s[active], c[active] = s[active] / length, c[active] / length
@@ -112,32 +110,35 @@ def integrate(cases: Sequence[Case]) -> tuple[np.ndarray, np.ndarray]:
     return turns, rates
 
 
-def _series(terms: dict[str, np.ndarray], s: np.ndarray, c: np.ndarray, v: np.ndarray) -> tuple[list, list, list]:
-    """The Taylor series in time of sin(phi/2), cos(phi/2) and phi_dot."""
+def _series(terms: dict[str, np.ndarray], s: np.ndarray, c: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """The Taylor series in time of sin(phi/2), cos(phi/2) and phi_dot, of shape (3, _ORDER + 1, cases)."""
     base, chord, swing, slope, cosine, sine = (
         terms[name] for name in ("base", "chord", "swing", "slope", "cosine", "sine")
     )
-    sines, cosines, speeds = [s], [c], [v]
-    sin_phi, cos_phi, inertia, half_slope, squares, accelerations = [], [], [], [], [], []
-    for k in range(_ORDER):
+    series = np.empty((3, _ORDER + 1, len(v)), EXTENDED)
+    sines, cosines, speeds = series
+    sines[0], cosines[0], speeds[0] = s, c, v
+    sin_phi, cos_phi = whole = np.empty((2, _ORDER, len(v)), EXTENDED)
+    inertia, half_slope = lever = np.empty((2, _ORDER, len(v)), EXTENDED)
+    accelerations, squares = driven = np.empty((2, _ORDER, len(v)), EXTENDED)
+    for k in range(_ORDER):  # few calls on many numbers: where few cases are left, calls are what takes time
         first = 1 if k == 0 else 0
-        square = _product(sines, sines)
-        sin_phi.append(2 * _product(sines, cosines))
-        cos_phi.append(first - 2 * square)
-        inertia.append(first * base + chord * square + swing * _product(sin_phi, sin_phi))
-        half_slope.append(chord * sin_phi[-1] / 4 + swing * _product(sin_phi, cos_phi))
-        squares.append(_product(speeds, speeds))
-        torque = first * slope - cosine * sin_phi[-1] - sine * cos_phi[-1] - _product(half_slope, squares)
-        known = sum((inertia[i] * accelerations[k - i] for i in range(1, k + 1)), start=np.zeros_like(v))
-        accelerations.append((torque - known) / inertia[0])
-        change = _product(cosines, speeds), _product(sines, speeds)
-        speeds.append(accelerations[-1] / (k + 1))
-        sines.append(change[0] / 2 / (k + 1))
-        cosines.append(-change[1] / 2 / (k + 1))
-    return sines, cosines, speeds
+        square, half_sin_phi = _product(series[:2], sines, k)
+        sin_phi[k], cos_phi[k] = 2 * half_sin_phi, first - 2 * square
+        sin_phi_squared, sin_phi_cos_phi = _product(whole, sin_phi, k)
+        inertia[k] = first * base + chord * square + swing * sin_phi_squared
+        half_slope[k] = chord * sin_phi[k] / 4 + swing * sin_phi_cos_phi
+        sines_slope, cosines_slope, squares[k] = _product(series, speeds, k)
+        accelerations[k] = 0  # until it is known
+        turning = _product(lever, driven, k).sum(axis=0)  # J phi_ddot + J' phi_dot^2 / 2
+        accelerations[k] = (first * slope - cosine * sin_phi[k] - sine * cos_phi[k] - turning) / inertia[0]
+        speeds[k + 1] = accelerations[k] / (k + 1)
+        sines[k + 1] = cosines_slope / (2 * (k + 1))
+        cosines[k + 1] = -sines_slope / (2 * (k + 1))
+    return series
 
 
-def _step(sines: list[np.ndarray], cosines: list[np.ndarray], speeds: list[np.ndarray]) -> np.ndarray:
+def _step(sines: np.ndarray, cosines: np.ndarray, speeds: np.ndarray) -> np.ndarray:
     """The step at which the last terms of all series are as small as they should be."""
     fastest = np.abs(speeds[0]) + np.sqrt(np.abs(speeds[1])) + EXTENDED(1e-300)
     steps = [

@@ -112,8 +112,6 @@ class Export:
         """Run the command and return its exit status, 0."""
         from mjbeer.model.export import export
 
-        if self.output.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-            raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {self.output.name!r}")
         export(
             self.scene.scene(),
             self.output,

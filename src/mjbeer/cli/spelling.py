@@ -1,12 +1,12 @@
 """Words of the command line that are no command, scene or option: an error that says what may have been meant."""
 
 import dataclasses
-import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import tyro
 
+from mjbeer import require
 from mjbeer.cli.arguments import SCENES, AnyScene
 from mjbeer.exceptions import ParameterError
 
@@ -86,7 +86,7 @@ def _unknown_option(
 
 def _close(word: str, allowed: Iterable[str]) -> str:
     """Return a question after the one or two allowed words that are most like this one; empty if none is."""
-    close = difflib.get_close_matches(word, list(allowed), n=2)
+    close = require.spelled_alike(word, allowed)
     return f"did you mean {_listed(close)}?" if close else ""
 
 

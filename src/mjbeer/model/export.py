@@ -6,7 +6,7 @@ import pathlib
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import UnsupportedError
+from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import portable as portability
 from mjbeer.model import same, setting
 from mjbeer.model.engine import library
@@ -31,9 +31,9 @@ def export(
 ) -> None:
     """Write a scene as one MJCF file, with everything drawn, with sensors, and with its start as the keyframe "start".
 
-    The parameters are those of `simulate`, but the integrator must be one of MuJoCo's. The text is read back before
-    it is written, and must give the same model. A reduced model of a frozen load turns on the spot, because its one
-    coordinate is phi.
+    The parameters are those of `simulate`, but the integrator must be one of MuJoCo's, and the file's name must end in
+    .xml. The text is read back before it is written, and must give the same model. A reduced model of a frozen load
+    turns on the spot, because its one coordinate is phi.
 
     With `portable`, MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load the file too. The integrator must then be one of
     `portable.INTEGRATORS`, and a contact is softer: docs/portability.md has the errors.
@@ -46,6 +46,8 @@ def export(
     """
     require.instance("scene", scene, Scene)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
+    if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
+        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
     wanted = setting.Setting(rolling, integrator, timestep, friction=friction)
     if wanted.integrator == setting.DOP853:
         raise UnsupportedError(

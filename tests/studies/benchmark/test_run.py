@@ -13,7 +13,7 @@ from rich.console import Console
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies import study
-from mjbeer.studies.benchmark import advice, run, tables
+from mjbeer.studies.benchmark import advice, overview, plots, run, tables
 from mjbeer.studies.benchmark.curves import Curve, aligned, curves
 from mjbeer.studies.benchmark.measure import Rung
 from mjbeer.studies.benchmark.points import Benchmark, Point
@@ -30,6 +30,11 @@ ORDER_MARGIN = 0.2
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     stubs.benchmark(monkeypatch)
+
+
+@pytest.fixture
+def shortest(monkeypatch: pytest.MonkeyPatch) -> None:
+    stubs.benchmark(monkeypatch, stubs.FEW)
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +174,7 @@ def test_an_interrupted_study_goes_on(short: None, tmp_path: pathlib.Path, monke
     assert [each.times[0] for each in done.points] == [each.times[0] for each in second]
 
 
-def test_another_question_starts_anew(short: None, tmp_path: pathlib.Path) -> None:
+def test_another_question_starts_anew(shortest: None, tmp_path: pathlib.Path) -> None:
     Benchmark({"cases": ["sliding"]}, study.machine(), [Point("sliding", "reduced", "RK4", "timestep", 1.0)]).save(
         tmp_path / "study.json"
     )
@@ -186,10 +191,12 @@ def test_a_setting_that_fails_is_a_point_with_a_reason(short: None, tmp_path: pa
 
 
 def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(
-    short: None, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    shortest: None, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """When it is there again, the study begins anew, and the summary does not name it any more."""
     reason = "libGL.so.1: cannot open shared object file: No such file or directory"
+    for diagram in (plots, overview):
+        monkeypatch.setattr(diagram, "draw", lambda study, path: None)
     monkeypatch.setattr(run, "absent", lambda: {"EXUDYN": reason})
     assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
     assert f"\nEXUDYN is absent: {reason}\n" in (tmp_path / "summary.md").read_text()

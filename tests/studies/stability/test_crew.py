@@ -1,7 +1,6 @@
 """Processes that measure tasks ahead: the same results in the same order, and none is left when it ends."""
 
 import multiprocessing
-import os
 import pathlib
 import signal
 import time
@@ -13,6 +12,7 @@ import pytest
 from mjbeer.studies.stability.crew import crew
 from mjbeer.studies.stability.search.batches import batch
 from mjbeer.studies.study import Task
+from tests.support.errands import fall, where
 from tests.support.processes import interrupt, start
 
 pytestmark = pytest.mark.slow
@@ -20,29 +20,15 @@ pytestmark = pytest.mark.slow
 ALONE = """
 import pathlib, sys
 from functools import partial
-from tests.studies.stability.test_crew import crew, mark_and_sleep
+from mjbeer.studies.stability.crew import crew
 from mjbeer.studies.study import Task
+from tests.support.errands import mark_and_sleep
 folder = pathlib.Path(sys.argv[1])
 tasks = [Task("t", str(place), partial(mark_and_sleep, folder / str(place))) for place in range(4)]
 with crew(tasks, 2) as measure:
     for task in tasks:
         measure(task)
 """
-
-
-def where() -> dict[str, Any]:
-    return {"process": os.getpid()}
-
-
-def mark_and_sleep(path: pathlib.Path) -> dict[str, Any]:
-    path.write_text(str(os.getpid()))
-    time.sleep(60)
-    return {}
-
-
-def fall() -> dict[str, Any]:
-    os.kill(os.getpid(), signal.SIGKILL)
-    return {}
 
 
 def tasks(*functions: Any) -> list[Task]:
