@@ -128,6 +128,8 @@ class Stability:
     """Run the whole study: all integrators, finer maps, 20000 random runs, a million swings; takes forty minutes."""
     quick: bool = False
     """Make 250 random runs instead of 3000; takes two minutes."""
+    maps: bool = False
+    """Make only the maps of timestep and stiffness, but all 40 of them, and fine; takes three minutes."""
     json: bool = False
     """Print the results as JSON."""
 
@@ -135,14 +137,16 @@ class Stability:
         """Run the command and return its exit status: 0, or 1 if a check failed.
 
         Raises:
-          ParameterError: if the study is to be both long and quick.
+          ParameterError: if more than one of long, quick and maps is asked for.
         """
         from mjbeer.studies.stability import report, tables
         from mjbeer.studies.stability import run as stability
 
-        if self.long and self.quick:
-            raise ParameterError("--long and --quick exclude each other: take one of them, or neither")
-        extent = "long" if self.long else "quick" if self.quick else "usual"
+        asked = [extent for extent in ("long", "quick", "maps") if getattr(self, extent)]
+        if len(asked) > 1:
+            options = " and ".join(f"--{extent}" for extent in asked)
+            raise ParameterError(f"{options} exclude each other: take one of them, or neither")
+        extent = asked[0] if asked else "usual"
         with files.locked(self.output):
             study = stability.conduct(self.output, extent, STDERR)
             report.write(study, self.output)
