@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mjbeer import exact, sliding
-from mjbeer.drawing import opengl, video, viewer
+from mjbeer.drawing import encoder, opengl, video, viewer
 from mjbeer.drawing.film import Film
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
@@ -80,7 +80,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
 
     A viewer is closed as soon as it would open.
 
-    There is OpenGL then, or so it seems, and the paper has a single story, whose plot is a text file too.
+    There are OpenGL and ffmpeg then, or so it seems, and the paper has a single story, whose plot is a text file too.
     """
     calls: list[dict[str, Any]] = []
 
@@ -102,6 +102,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
 
     film = Film(0.5, lambda: exact(sliding(), [0.0, 0.1], 0.1))
     monkeypatch.setattr(opengl, "problem", lambda: None)
+    monkeypatch.setattr(encoder, "problem", lambda: None)
     monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     monkeypatch.setattr(viewer, "require_window", lambda: None)
     monkeypatch.setattr(viewer, "_play", lambda player: None)

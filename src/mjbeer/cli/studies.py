@@ -47,9 +47,9 @@ class Validate:
 
 @dataclass(frozen=True)
 class Report:
-    """Validate, draw the four scenes and the paper's stories, and write a summary.
+    """Validate, draw the scenes and the paper's stories, and write a page that shows it all.
 
-    The exit status is 1 if a check fails. Without OpenGL there are no films.
+    The exit status is 1 if a check fails. Without OpenGL or ffmpeg there are no films.
     """
 
     output: pathlib.Path = pathlib.Path("report")
@@ -57,19 +57,20 @@ class Report:
     quick: bool = False
     """Draw smaller videos with fewer frames, and no films for the paper's scenarios."""
     verbose: bool = False
-    """Also print the tables of the validation, which are in the summary."""
+    """Also print the tables of the validation, which are on the page."""
 
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
-        from mjbeer import report
+        from mjbeer.report.write import write
         from mjbeer.studies.validation import tables
 
         began = time.perf_counter()
-        validation, missing = report.write(self.output, self.quick, STDERR)
+        validation, not_drawn = write(self.output, self.quick, STDERR)
         if self.verbose:
             show(tables.validation(validation.results), tables.audit(validation.findings))
-        _tell(missing)
-        say(f"the report is in {self.output / 'summary.md'}")
+        if not_drawn:
+            say(not_drawn, "yellow")
+        say(f"the report is in {self.output / 'index.html'}")
         return _conclude(validation, began)
 
 
@@ -171,11 +172,13 @@ class Paper:
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
+        from mjbeer.drawing import opengl
         from mjbeer.paper.stories import report
 
         missing = report.write(self.output, self.films, STDERR)
         say(f"the stories are in {self.output / 'stories.md'}")
-        _tell(missing)
+        if missing:
+            say(opengl.missing(missing), "yellow")
         return 0
 
 
@@ -188,11 +191,3 @@ def _conclude(validation: "Validation", began: float) -> int:
     style = "green" if validation.passed else "red"
     say(f"{tables.sentence(validation)}, in {time.perf_counter() - began:.0f} s", style)
     return 0 if validation.passed else _FAILED
-
-
-def _tell(missing: list[str]) -> None:
-    """Say which films were not drawn for lack of OpenGL, if any, and what brings them, on a line."""
-    from mjbeer.drawing import opengl
-
-    if missing:
-        say(opengl.missing(missing), "yellow")
