@@ -103,6 +103,14 @@ def test_a_film_that_the_page_has_no_room_for_is_linked(folder: pathlib.Path, mo
     assert "paper/told.mp4" in [element.attributes["href"] for element in read.all("a")]
 
 
+def test_a_wide_plot_without_a_film_takes_the_width_of_the_page(text: str) -> None:
+    """Both plots are three times as wide as high, and the first has a film."""
+    figures = [
+        element.attributes for element in Page.of(text).all("figure") if "story-" in element.attributes.get("id", "")
+    ]
+    assert [(each["id"], each["class"]) for each in figures] == [("story-told", "story"), ("story-still", "story wide")]
+
+
 def test_a_quick_page_has_no_films_of_stories_and_says_so(folder: pathlib.Path) -> None:
     text = page.html(folder, pages.validation(), quick=True, not_drawn="")
     assert len(Page.of(text).all("source")) == len(films.FILMS)
@@ -116,7 +124,7 @@ def test_the_misprints_have_the_numbers_of_the_findings(text: str) -> None:
     numbers = [float(element.attributes["value"]) for element in read.all("data")]
     assert numbers == [number for finding in found for number in (finding.printed, finding.right)]
     told = [element.text for element in read.all("data")]
-    assert told[:4] == ["1.2 %", "1.7\u2009·\u200910\N{MINUS SIGN}9", "2.5 %", "3.4\u2009·\u200910\N{MINUS SIGN}9"]
+    assert told[:4] == ["1.3 %", "1.7\u2009·\u200910\N{MINUS SIGN}9", "2.5 %", "3.4\u2009·\u200910\N{MINUS SIGN}9"]
     assert len(read.all("math")) >= 2 * len(found)
 
 

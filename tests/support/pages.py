@@ -1,4 +1,4 @@
-"""A small report: films of a second, plots that are squares, and made-up numbers; and the elements of a page."""
+"""A small report: films of a second, plots that are nearly empty, and made-up numbers; and the elements of a page."""
 
 import html.parser
 import pathlib
@@ -17,7 +17,7 @@ from mjbeer.report import films
 from mjbeer.studies.check import Result
 from mjbeer.studies.validation.run import Validation
 
-SQUARE = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 5"><rect width="5" height="5"/></svg>'
+PLOT = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30"><rect width="5" height="5"/></svg>'
 SIZE = (64, 36, 10)
 """Width and height [pixels] and frames per second of the films, which last a second."""
 
@@ -27,7 +27,7 @@ def validation(misprints: slice = slice(None)) -> Validation:
     checks = [Result(name, "a <stub>", error, 1e-3, "rad", "phi_0^2") for name, error in (("fine", 1e-6), ("bad", 0.5))]
     findings = [
         Finding(
-            equation, quantity, CORRECTED, "a witness", printed=0.0123 * (place + 1), right=1.7e-9 * (place + 1),
+            equation, quantity, CORRECTED, "a witness", printed=0.0127 * (place + 1), right=1.7e-9 * (place + 1),
             bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
         )
         for place, (equation, quantity) in enumerate(FORMULAS)
@@ -48,7 +48,7 @@ def fill(folder: pathlib.Path, encoded: bool = False) -> None:
     """Write the files that a page shows into a folder: films are `encoded`, or else a few letters."""
     (folder / "paper").mkdir()
     for name in ("letters", *(story.name for story in stories_report.stories())):
-        (folder / "paper" / f"{name}.svg").write_text(SQUARE)
+        (folder / "paper" / f"{name}.svg").write_text(PLOT)
     for name in (*films.FILMS, *(f"paper/{story.name}" for story in stories_report.stories() if story.film)):
         if encoded:
             width, height, fps = SIZE

@@ -30,6 +30,9 @@ _BASE64 = 4 / 3
 """Size of a file in a page over that on the disk."""
 _SMALL = 1e-3
 """A smaller share is a power of ten and not a percentage."""
+_WIDE = 2.0
+"""Width over height from which a plot takes the width of the page."""
+_BOX = re.compile(r'viewBox="\S+ \S+ (\S+) (\S+)"')
 _FAILED = re.compile(r"\*\*(.+?)\*\*")
 
 
@@ -46,6 +49,8 @@ class Shown:
     """The poster of the film, or the plot, as a data: URI; empty if there is none."""
     beside: str = ""
     """Where the film is, relative to the page, if it is too large for it."""
+    wide: bool = False
+    """Whether the plot has several panels side by side, and no film below: it needs the width of the page."""
 
 
 def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: str) -> str:
@@ -125,15 +130,23 @@ def _stories(folder: pathlib.Path, quick: bool, room: float) -> list[Shown]:
     command = "mjbeer paper" if quick else "mjbeer paper --films"
     shown = []
     for story in stories_report.stories():
-        picture, video = data_uri(folder / "paper" / f"{story.name}.svg"), folder / "paper" / f"{story.name}.mp4"
+        plot, video = (folder / "paper" / f"{story.name}.{kind}" for kind in ("svg", "mp4"))
+        picture = data_uri(plot)
         room -= len(picture)
         film, beside = "", ""
         if story.film is not None and not quick and video.exists():
             fits = _BASE64 * video.stat().st_size < room
             film, beside = (data_uri(video), "") if fits else ("", f"paper/{story.name}.mp4")
             room -= len(film)
-        shown.append(Shown(story.name, story.caption, command, film, picture, beside))
+        wide = story.film is None and _aspect(plot) > _WIDE
+        shown.append(Shown(story.name, story.caption, command, film, picture, beside, wide))
     return shown
+
+
+def _aspect(plot: pathlib.Path) -> float:
+    """Return the width of a plot (SVG) over its height; 1 if it does not say."""
+    box = _BOX.search(plot.read_text(encoding="utf-8"))
+    return float(box[1]) / float(box[2]) if box else 1.0
 
 
 def _size(film: Shown) -> int:
