@@ -15,6 +15,8 @@ _REPLACED = {
 _GREEK = ("alpha", "beta", "delta", "epsilon", "theta", "mu", "pi", "phi", "omega", "Omega")
 _NAME = re.compile(rf"(?<![A-Za-z])({'|'.join(_GREEK)})(?![A-Za-z])")
 _RATE = re.compile(r"(?<![A-Za-z])(\w)_(d?)dot")
+_POWER = re.compile(r"\^(\d)(?!\d)")
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 _DOTS = {"": "\N{COMBINING DOT ABOVE}", "d": "\N{COMBINING DIAERESIS}"}
 
 
@@ -30,7 +32,7 @@ def letters(text: str) -> str:
     """Return a text of the audit with phi as φ, phi_dot as φ̇, a^2 as a² and phi_0 as φ₀."""
     text = _NAME.sub(lambda name: html.unescape(f"&{name[1]};"), text)
     text = _RATE.sub(lambda rate: rate[1] + _DOTS[rate[2]], text)
-    return text.replace("^2", "²").replace("_0", "₀")
+    return _POWER.sub(lambda power: power[1].translate(_RAISED), text).replace("_0", "₀")
 
 
 def _line(latex: str) -> Markup:
