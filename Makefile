@@ -1,4 +1,4 @@
-# make report: validate, and draw the four scenes into report/.   make test: all checks.
+# make report: validate, draw the scenes, and write one page, report/index.html.   make test: all checks.
 # Both set themselves up in .venv; the second time that takes a second. Without OpenGL, neither draws films.
 .DEFAULT_GOAL := help
 PYTHON ?= python3

@@ -1,12 +1,15 @@
-"""The films of the report, in its order: the race, and each of the four scenes."""
+"""The films of the report, in the order in which the page shows them, and how to draw them."""
 
 import math
+import pathlib
 from collections.abc import Sequence
 from functools import partial
 
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.look import Look
 from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.studio import Order
+from mjbeer.paper.stories import report as stories_report
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
@@ -81,3 +84,31 @@ FILMS: dict[str, Film] = {
     ),
 }
 """The films by the names of their files."""
+RACE = "race"
+"""The film that the page shows first and alone."""
+COMMANDS = {
+    "sliding": "mjbeer render sliding --can metal --phi0 60 --duration 1.2 --tolerance 1e-9 --speed 0.25",
+    "frozen": "mjbeer render frozen --phi0 180 --duration 0.82 --tolerance 1e-9 --speed 0.2",
+    "pendulum": "mjbeer render pendulum --phi0 60 --duration 1.5 --tolerance 1e-9 --speed 0.25",
+    "hoop": "mjbeer render hoop --phi0 -171.8873 --phi-dot0 916.7325 --duration 0.5 --rolling contact --timestep 2e-4 "
+    "--speed 0.1",
+}
+"""The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
+_SMALL, _LARGE = (640, 360, 30), (1280, 720, 30)
+"""Width and height [pixels] and pictures per second of a film in a quick report, and in another one."""
+
+
+def orders(folder: pathlib.Path, quick: bool) -> list[Order]:
+    """Return the films to be drawn into a folder: those of the scenes and, unless it must be quick, of the stories."""
+    size = _SMALL if quick else _LARGE
+    scenes = [Order(film, folder / f"{name}.mp4", *size) for name, film in FILMS.items()]
+    return scenes if quick else scenes + stories_report.orders(folder / "paper")
+
+
+def not_drawn(names: Sequence[str]) -> str:
+    """Return the line that says why films are missing and what brings them, or "" where they can be drawn."""
+    from mjbeer.drawing import encoder, opengl
+
+    if opengl.problem():
+        return opengl.missing(names)
+    return encoder.missing(names) if encoder.problem() else ""
