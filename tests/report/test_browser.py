@@ -41,7 +41,6 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("mjbeer.paper.stories.report.stories", pages.stories)
-        patch.setitem(films.FILMS, films.RACE, films.FILMS["sliding"])
         pages.fill(folder, encoded=True)
         text = page.html(folder, pages.validation(LONGEST), quick=False, not_drawn="")
     (folder / "index.html").write_text(text)
@@ -74,7 +73,7 @@ def visit(chromium: Browser, address: str, request: pytest.FixtureRequest) -> Ge
 
 def test_every_film_plays(visit: Visit) -> None:
     count = visit.page.locator("video").count()
-    assert count == len(films.FILMS) + 2  # with the race and the story
+    assert count == len(films.FILMS) + 1  # with the story
     for place in range(count):
         film = visit.page.locator("video").nth(place)
         film.scroll_into_view_if_needed()

@@ -44,8 +44,9 @@ FILMS: dict[str, Film] = {
         "whose beer slides: the beer only goes downhill and does not turn, so that almost nothing is spent on turning. "
         "What is frozen must turn with its can: the full one is as slow as a solid cylinder, with two thirds of the "
         "winner's acceleration. The frozen one that is three quarters full starts with its beer on top, for with its "
-        "beer below it would stay where it is; that gives it a lead which the winner makes up just before the finish. "
-        "The empty can comes last, since all of its mass is in its wall. Theory has the same times, to all digits.",
+        "beer below it would stay where it is; that gives it a lead of two centimetres, which the winner takes back "
+        "before half-way. The empty can comes last, since all of its mass is in its wall. Theory has the same times, "
+        "to all digits.",
         still=1.4,
         after=0.2,
     ),
