@@ -86,7 +86,7 @@ def test_without_output_no_file_is_written(
         ("simulate frozen --timestep 0.5 --integrator Euler --phi0 3e9 --duration 900", "the run diverged at t ="),
         ("stability --long --quick", "--long and --quick exclude each other"),
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
-        ("render frozen --camera top", "camera must be one of 'side', 'quarter', 'overview'; got 'top'"),
+        ("render frozen --camera top", "invalid choice 'top' for argument '--camera'"),
         ("simulate frozen --output .", "cannot write .: it is a folder"),
         ("simulate frozen --tolerance 1e-6 --integrator Euler", "give a tolerance or an integrator: only DOP853 keeps"),
         ("render frozen --integrator RK4 --tolerance 1e-6", "give a tolerance or an integrator: only DOP853 keeps a"),

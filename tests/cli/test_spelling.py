@@ -58,7 +58,7 @@ def test_a_wrong_word_gets_a_suggestion(words: str, message: str, capsys: pytest
     [
         "simulate sliding --phi_dot0 -20 --fill=0.3",  # an underscore, a negative value, a value after =
         "simulate --integrator RK4 --json frozen --output -",
-        "render --output frozen sliding --camera hoop",  # names of scenes that are values
+        "render --output frozen sliding",  # names of scenes that are values
         "benchmark frozen hoop --quick",
         "advise frozen --rolling contact",
     ],

@@ -31,10 +31,12 @@ SCENE = frozen(can=METAL)
 SEEN = 300
 
 
-def beer(picture: np.ndarray) -> int:
-    """Return how many pixels have the colour of beer: much red, less green and hardly any blue."""
+def load(picture: np.ndarray) -> int:
+    """Return how many pixels have the colour of beer or brass, with hardly any blue, or of ice, with little red."""
     red, green, blue = np.moveaxis(picture.astype(float), 2, 0)
-    return int(((red > 100) & (green > 0.5 * red) & (blue < 0.3 * red)).sum())
+    amber = (red > 100) & (green > 0.5 * red) & (blue < 0.3 * red)
+    ice = (blue > 150) & (green > 0.8 * blue) & (red < 0.8 * blue)
+    return int((amber | ice).sum())
 
 
 def is_drawn(picture: np.ndarray) -> bool:
@@ -56,7 +58,7 @@ def test_a_template_shows_its_can_after_three_seconds(name: str, shown: Screen) 
     with subprocess.Popen(command, env=shown.environment) as process:
         try:
             shown.wait(is_drawn)
-            assert beer(shown.after(3.0)) > SEEN
+            assert load(shown.after(3.0)) > SEEN
         finally:
             process.terminate()
 
@@ -73,7 +75,7 @@ def test_a_scene_is_viewed_paused_runs_and_starts_anew(scene: str, shown: Screen
             assert np.array_equal(shown.after(1.0), paused)
             shown.press("space")
             running = shown.after(3.0)
-            assert beer(running) > SEEN
+            assert load(running) > SEEN
             assert not np.array_equal(running, paused)
             shown.press("BackSpace")
             assert np.array_equal(shown.after(1.0), paused)

@@ -20,7 +20,7 @@ def test_a_plot_shows_the_motion_over_theory() -> None:
     assert np.array_equal(simulated.get_ydata(), np.degrees(run.phi))
     assert np.array_equal(theory.get_ydata(), np.degrees(exact(run.scene, theory.get_xdata(), 1.0).phi))
     assert np.array_equal(below.get_lines()[1].get_ydata(), run.u)
-    assert (above.get_ylabel(), below.get_ylabel(), below.get_xlabel()) == ("φ [degrees]", "u [m]", "time [s]")
+    assert (above.get_ylabel(), below.get_ylabel(), below.get_xlabel()) == ("φ [°]", "u [m]", "time [s]")
     assert [text.get_text() for text in above.get_legend().get_texts()] == ["exact theory", "MuJoCo"]
     plt.close(above.figure)
 
@@ -50,6 +50,21 @@ def test_without_pandas_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyP
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(MjbeerError, match="pip install pandas"):
         simulate(frozen(), 0.1, 1.0).to_dataframe()
+
+
+def test_what_cannot_happen_is_dotted() -> None:
+    """From the top, rolling is possible until N = 0, after 0.834 s; a can in contact leaves the incline by itself."""
+    above, below = exact(frozen(), np.linspace(0, 1, 1001), math.pi).plot()
+    for axes in (above, below):
+        rolls, pulled = axes.get_lines()
+        assert rolls.get_xdata()[-1] < 0.8339 < pulled.get_xdata()[0] < 0.836
+        assert (rolls.get_linestyle(), pulled.get_linestyle()) == ("-", ":")
+    assert len(above.get_legend().get_texts()) == 2
+    plt.close(above.figure)
+    above, _ = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=1e-3).plot()
+    assert len(above.get_lines()) == 1
+    assert above.figure.get_suptitle() == "half-full massless can, beer frozen, incline 10°"
+    plt.close(above.figure)
 
 
 @pytest.mark.draws

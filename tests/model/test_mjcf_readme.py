@@ -5,9 +5,10 @@ import re
 from collections.abc import Callable
 
 import mujoco
+import numpy as np
 import pytest
 
-from mjbeer.model import templates
+from mjbeer.model import appearance, parts, templates
 
 FOLDER = templates.folder()
 TEXT = (FOLDER / "README.md").read_text()
@@ -44,11 +45,16 @@ def tilt(model: mujoco.MjModel) -> float:
     return math.degrees(2 * math.asin(model.body("incline").quat[2]))
 
 
+def vertices(model: mujoco.MjModel, name: str) -> np.ndarray:
+    mesh = model.mesh(name)
+    return model.mesh_vert[mesh.vertadr[0] : mesh.vertadr[0] + mesh.vertnum[0]]
+
+
 VALUES: dict[str, Callable[[mujoco.MjModel], float]] = {
     "incline [degrees]": tilt,
     "gravity [m/s²]": lambda model: -float(model.opt.gravity[2]),
     "radius of the can, a [m]": lambda model: float(model.body("can").pos[2]),
-    "length of the can, l [m]": lambda model: 2 * float(abs(model.mesh_vert[model.mesh("can").vertadr[0] :, :]).max()),
+    "length of the can, l [m]": lambda model: float(np.ptp(vertices(model, "can"), axis=0).max()),
     "mass of the can [kg]": lambda model: float(model.body("can").mass[0]),
     "inertia of the can [kg m²]": lambda model: float(model.body("can").inertia[1]),
     "mass of the load [kg]": lambda model: float(model.body("load").mass[0]),
@@ -96,6 +102,22 @@ def test_cameras_are_those_of_every_model() -> None:
         assert told == {model.camera(i).name: MODES[mujoco.mjtCamLight(model.cam_mode[i])] for i in range(model.ncam)}
 
 
+def test_what_is_drawn_is_what_the_models_have() -> None:
+    rows = table("What is drawn")
+    for name, model in MODELS.items():
+        told = {quoted(geom)[0]: quoted(material)[0] for geom, material, _, models in rows if name in named(models)}
+        geoms = [geom for geom in map(model.geom, range(model.ngeom)) if geom.group[0] == 2]
+        assert told == {geom.name: model.mat(int(geom.matid[0])).name for geom in geoms}, name
+
+
+def test_numbers_of_what_is_drawn_are_those_that_it_is_drawn_with() -> None:
+    section = TEXT.split("\n## What is drawn\n")[1].split("\n## ")[0]
+    assert f"on {round(math.degrees(parts.SECTOR))}° of the near edge" in section
+    assert f"{100 * appearance.FOAM:g} % of the radius thick" in section
+    assert f"{100 * parts.WALL:g} % of a radius lower" in section
+    assert set(re.findall("`(\\w+)`", section.split("turned: no")[1])) == set(appearance.TURNING)
+
+
 def test_keyframes_are_those_of_the_models_and_start_there() -> None:
     told = [
         (quoted(model)[0], quoted(key)[0], float(phi), float(rate)) for model, key, phi, rate, _ in table("Keyframes")
@@ -141,7 +163,7 @@ def test_mujoco_is_as_new_as_is_required() -> None:
 def test_every_model_is_there_and_has_a_picture() -> None:
     assert {path.stem for path in FOLDER.glob("*.xml")} == {*NAMES, "shared", "incline"}
     for name in NAMES:
-        assert f"(../renders/{name}.png)" in TEXT
+        assert f"(../renders/{name}.webp)" in TEXT
         assert f"`{name}.xml`" in TEXT
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, build, frozen, hoop, pendulum, sliding
-from mjbeer.drawing.display import display_model
+from mjbeer.drawing.display import Display
 from mjbeer.model import sensors, templates
 from mjbeer.model.present import present
 from mjbeer.model.setting import ROLLINGS, Setting
@@ -103,7 +103,7 @@ def test_a_scene_with_other_masses_shows_no_energy() -> None:
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 @pytest.mark.parametrize("visuals", [False, True])
 def test_what_is_stepped_has_none(name: str, rolling: str, visuals: bool) -> None:
-    for model in (build(SCENES[name], rolling, visuals), display_model(SCENES[name])):
+    for model in (build(SCENES[name], rolling, visuals), Display.of([SCENES[name]], 0, 1).model):
         names = {model.tendon(i).name for i in range(model.ntendon)}
         assert model.nsensor == 0
         assert names <= {"chord"}

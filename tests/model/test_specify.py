@@ -106,7 +106,7 @@ def test_an_attached_can_keeps_what_is_in_its_body(rolling: str) -> None:
     for body in ("can", "load"):
         assert np.array_equal(model.body(f"own-{body}").mass, alone.body(body).mass)
         assert np.array_equal(model.body(f"own-{body}").inertia, alone.body(body).inertia)
-    geoms = {alone.geom(i).name for i in range(alone.ngeom)} - {"wall", "board", "board_side", "surface"}
+    geoms = {alone.geom(i).name for i in range(alone.ngeom)} - {"wall", "board", "surface"}
     assert {model.geom(i).name for i in range(model.ngeom)} == {f"own-{name}" for name in geoms}
     assert (model.neq, model.npair) == ((1, 0) if rolling == "equality" else (0, 0))
     assert not model.geom_contype.any()

@@ -12,7 +12,7 @@ import pytest
 
 from mjbeer import MjbeerError, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import main
-from mjbeer.drawing.display import display_model
+from mjbeer.drawing.display import Display
 from mjbeer.exceptions import TemplateError, UnsupportedError
 from mjbeer.model import appearance, state, templates
 from mjbeer.model.export import export
@@ -71,7 +71,7 @@ def substitute(folder: pathlib.Path, file: str, old: str, new: str) -> None:
 
 # Looks: what is edited, and where it is seen in a model.
 SEEN: dict[str, tuple[tuple[str, ...], Callable[[mujoco.MjModel], bool]]] = {
-    "colour": (("shared", "0.92 0.58 0.06 1", "0 1 0 1"), lambda m: list(m.mat("beer").rgba) == [0, 1, 0, 1]),
+    "colour": (("shared", "0.98 0.63 0.08 1", "0 1 0 1"), lambda m: list(m.mat("beer").rgba) == [0, 1, 0, 1]),
     "own colour": (
         ("sliding", 'mesh="load" material="beer"', 'mesh="load" rgba="0 1 0 1"'),
         lambda m: list(m.geom("load").rgba) == [0, 1, 0, 1],
@@ -84,8 +84,8 @@ SEEN: dict[str, tuple[tuple[str, ...], Callable[[mujoco.MjModel], bool]]] = {
         ("shared", 'xyaxes="1 0 0 0 0.2 1"', 'euler="90 0 0"'),
         lambda m: np.allclose(m.camera("overview").quat, [0.5**0.5, 0.5**0.5, 0, 0]),
     ),
-    "light": (("shared", "0.3 0.9 -0.75", "0 0 -1"), lambda m: list(m.light("sun").dir) == [0, 0, -1]),
-    "texture": (("shared", "0.86 0.74 0.56", "0 0 0"), lambda m: m.tex_data[m.tex("planks").adr[0]] == 0),
+    "light": (("shared", "-0.35 0.7 -0.9", "0 0 -1"), lambda m: list(m.light("sun").dir) == [0, 0, -1]),
+    "texture": (("shared", "0.94 0.84 0.69", "0 0 0"), lambda m: m.tex_data[m.tex("planks").adr[0]] == 0),
     "picture": (("shared", 'fovy="32"', 'fovy="60"'), lambda m: m.camera("overview").fovy[0] == 60),
     "centre of view": (("shared", 'extent="0.3"', 'extent="0.5"'), lambda m: m.stat.extent == 0.5),
 }  # fmt: skip
@@ -162,7 +162,7 @@ def test_more_may_be_drawn(copy: pathlib.Path, kind: str) -> None:
         text = re.sub(f'(<body name="{body}"[^>]*>)', rf"\1{MORE[kind].replace('more', body + '_more')}", text)
     (copy / "sliding.xml").write_text(text)
     assert_same_motion("sliding")
-    for model in (build(SCENES["sliding"], visuals=True), display_model(SCENES["sliding"])):
+    for model in (build(SCENES["sliding"], visuals=True), Display.of([SCENES["sliding"]], 0, 1).model):
         assert len(re.findall(rb"\w+_more", model.names)) == 3
 
 
@@ -354,7 +354,7 @@ def test_mesh_files_may_be_the_user_s(copy: pathlib.Path, tmp_path: pathlib.Path
 def test_a_mesh_file_that_is_missing_is_named(copy: pathlib.Path, tmp_path: pathlib.Path) -> None:
     substitute(copy, "sliding", 'name="can" file="can.obj"', 'name="can" file="own.obj"')
     assert all(simulated("sliding", rolling) == unedited(simulated, "sliding", rolling) for rolling in ROLLINGS)
-    for draw in (display_model, lambda scene: export(scene, tmp_path / "exported.xml")):
+    for draw in (lambda scene: Display.of([scene], 0, 1), lambda scene: export(scene, tmp_path / "exported.xml")):
         with pytest.raises(UnsupportedError, match=r"own\.obj"):
             draw(SCENES["sliding"])
 

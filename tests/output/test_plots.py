@@ -1,6 +1,8 @@
 """Plots: two files, whole, and the same each time."""
 
 import pathlib
+import re
+from xml.etree import ElementTree
 
 import matplotlib as mpl
 import pytest
@@ -8,6 +10,7 @@ from PIL import Image
 
 from mjbeer.exceptions import OutputError
 from mjbeer.output import plots
+from tests.support import figures
 
 
 def draw(path: pathlib.Path) -> None:
@@ -42,3 +45,57 @@ def test_a_folder_that_cannot_be_written_says_so(tmp_path: pathlib.Path) -> None
 
 def test_colours_differ() -> None:
     assert len(set(plots.COLOURS)) == len(plots.COLOURS)
+
+
+def test_a_title_and_a_scene_stand_above_the_axes(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = figures.saved(monkeypatch)
+    with plots.chart(tmp_path / "plot", title="What it shows", subtitle="of which scene") as (axes,):
+        axes.plot([1, 2], [1, 2], label="a line")
+        axes.set(xlabel="time [s]", ylabel="u [m]")
+        plots.name_below([axes], 1)
+    assert not figures.faults(seen[0])
+    svg = (tmp_path / "plot.svg").read_text()
+    assert "<title>What it shows: of which scene</title>" in svg
+    assert {"What it shows", "of which scene", "a line", "time [s]"} <= set(
+        re.findall(r"<text[^>]*>([^<]*)</text>", svg)
+    )
+
+
+FAULTS = {
+    "'phi [rad]' spells out a letter or a unit": lambda axes: axes.set_ylabel("phi [rad]"),
+    "'30 degrees' spells out a letter or a unit": lambda axes: axes.set_title("30 degrees"),
+    "the horizontal axis of '' has no unit: 'time'": lambda axes: axes.set_xlabel("time"),
+    "'far' is cut off": lambda axes: axes.figure.text(0.99, 0.5, "far"),
+    "'one' and 'other' overlap": lambda axes: [axes.text(1.2, 1.6, word) for word in ("one", "other")],
+    "'on it' lies on a line": lambda axes: axes.text(1.5, 1.5, "on it", ha="center", va="center"),
+    "'the legend' lies on a line": lambda axes: axes.legend(loc="center"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_faults_are_seen(fault: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = figures.saved(monkeypatch)
+    with plots.chart(tmp_path / "plot") as (axes,):
+        axes.plot([1, 2], [1, 2], label="a line")
+        axes.set(xlabel="time [s]", ylabel="u [m]")
+        FAULTS[fault](axes)
+    assert figures.faults(seen[0]) == [fault]
+
+
+def test_a_light_svg_looks_the_same(tmp_path: pathlib.Path) -> None:
+    """Markers keep their place and their style, and whatever is referred to is still there."""
+    with plots.chart(tmp_path / "plot") as (axes,):
+        axes.plot([1, 2, 4], [1, 10, 1000], "o", color="#123456")
+        axes.set(yscale="log")
+    root = ElementTree.parse(tmp_path / "plot.svg").getroot()
+    name, link = "{http://www.w3.org/2000/svg}", "{http://www.w3.org/1999/xlink}href"
+    names = {element.get("id") for element in root.iter()} - {None}
+    links = {element.get(link, "")[1:] for element in root.iter(f"{name}use")}
+    clips = {element.get("clip-path", "")[5:-1] for element in root.iter()} - {""}
+    assert names == links | clips
+    (group,) = (group for group in root.iter(f"{name}g") if "fill: #123456" in group.get("style", ""))
+    markers = [(float(mark.get("x", "")), float(mark.get("y", ""))) for mark in group.findall(f"{name}use")]
+    (x0, y0), (x1, y1), (x2, y2) = markers
+    assert (x2 - x0) / (x1 - x0) == pytest.approx(3, abs=1e-3)
+    assert (y2 - y0) / (y1 - y0) == pytest.approx(3, abs=1e-3)
+    assert "10³" in {text.text for text in root.iter(f"{name}text")}

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from mjbeer.cli.arguments import AnyScene, Motion, if_given, radians
+from mjbeer.drawing.cameras import Camera
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal
@@ -55,8 +56,9 @@ class Render(Motion):
     """MP4 file to write."""
     speed: float = 1.0
     """Playback speed: 1 is real time, 0.25 is four times slower."""
-    camera: str = "side"
-    """Camera: side (the can's open end), quarter (from above and downhill) or overview (the whole motion)."""
+    camera: Camera = "auto"
+    """Camera: fixed (it stands still and shows the whole motion), pan (it moves along with a constant acceleration),
+    close (it goes along with the can), or auto: fixed, unless the can would be too small."""
     width: int = 1280
     """Width of the video [pixels]."""
     height: int = 720

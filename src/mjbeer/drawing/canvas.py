@@ -1,6 +1,5 @@
 """Pictures of a posed MuJoCo model as arrays, drawn without a window."""
 
-from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
@@ -8,10 +7,11 @@ import mujoco
 import numpy as np
 
 from mjbeer.drawing import opengl
+from mjbeer.drawing.view import View
 from mjbeer.exceptions import RenderingError
 
-_ROOM = 64
-"""Most geoms that can be added to those of the model."""
+_NEAR, _FAR = 0.2, 20.0
+"""Nearest and farthest that is drawn, in distances of what is looked at."""
 
 
 class Canvas:
@@ -25,10 +25,9 @@ class Canvas:
 
     def __init__(self, model: mujoco.MjModel, width: int, height: int) -> None:
         self._model = model
-        self._scene = mujoco.MjvScene(model, model.ngeom + _ROOM)
+        self._scene = mujoco.MjvScene(model, model.ngeom)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the drawing time, and hidden by the wall
-        self._option = mujoco.MjvOption()
-        self._view = mujoco.MjrRect(0, 0, width, height)
+        self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
         model.vis.global_.offwidth, model.vis.global_.offheight = width, height
         self._gl = opengl.context(width, height)
         try:
@@ -39,23 +38,28 @@ class Canvas:
             self._gl.free()
             raise RenderingError(f"no off-screen picture of {width} x {height} pixels: {error}") from error
 
-    def draw(
-        self, data: mujoco.MjData, camera: str, decorate: Callable[[mujoco.MjvScene], None] | None = None
-    ) -> np.ndarray:
-        """Return the picture from a camera, by its name, as an array of shape (height, width, 3), uint8.
+    def draw(self, data: mujoco.MjData, view: View) -> np.ndarray:
+        """Return what a view shows as an array of shape (height, width, 3), uint8.
 
-        `decorate` is called with MuJoCo's scene before it is drawn, and may add geoms to it.
+        The view may be smaller than the canvas.
         """
-        view = mujoco.MjvCamera()
-        view.type, view.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, self._model.camera(camera).id
-        everything = mujoco.mjtCatBit.mjCAT_ALL.value
-        mujoco.mjv_updateScene(self._model, data, self._option, None, view, everything, self._scene)
-        if decorate is not None:
-            decorate(self._scene)
-        pixels = np.empty((self._view.height, self._view.width, 3), np.uint8)
+        scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
+        mujoco.mjv_updateScene(self._model, data, self._option, None, self._anywhere, everything, scene)
+        near = _NEAR * view.distance
+        for eye in scene.camera:  # two of them, for stereo; MuJoCo draws their mean
+            eye.pos, eye.up, eye.forward = view.eye, view.axes[1], -view.axes[2]
+            eye.frustum_near, eye.frustum_far = near, _FAR * view.distance
+            eye.frustum_center = near * (view.low[0] + view.high[0]) / 2
+            eye.frustum_width = near * (view.high[0] - view.low[0]) / 2
+            eye.frustum_bottom, eye.frustum_top = near * view.low[1], near * view.high[1]
+        for light in scene.lights[: scene.nlight]:
+            if light.headlight:
+                light.pos, light.dir = view.eye, -view.axes[2]
+        window = mujoco.MjrRect(0, 0, *view.pixels)
+        pixels = np.empty((view.pixels[1], view.pixels[0], 3), np.uint8)
         self._gl.make_current()
-        mujoco.mjr_render(self._view, self._scene, self._context)
-        mujoco.mjr_readPixels(pixels, None, self._view, self._context)
+        mujoco.mjr_render(window, scene, self._context)
+        mujoco.mjr_readPixels(pixels, None, window, self._context)
         return pixels[::-1]  # OpenGL's first row is the lowest
 
     def close(self) -> None:

@@ -1,12 +1,15 @@
-"""The model that is drawn for a scene: it is posed at the coordinates of a trajectory, and never stepped.
+"""The model that is drawn: one can, or several side by side. It is posed, and never stepped.
 
-Its can has the radius of the templates' can, whatever the scene's radius is. All scenes then look alike, and none is
+Its cans have the radius of the templates' can, whatever the scene's radius is. All scenes then look alike, and none is
 too small or too large for the graphics, which compute in single precision.
 """
 
 import dataclasses
+import math
+from collections.abc import Sequence
 
 import mujoco
+import numpy as np
 
 from mjbeer.model import appearance
 from mjbeer.model.build import compile_spec, compose
@@ -15,21 +18,88 @@ from mjbeer.model.state import places
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 
+_PAINT = [0.15, 0.17, 0.2, 1.0]
+"""Colour of lines on the board."""
+_HIDDEN = 1e3
+"""How far off a hidden can is [m]: behind whatever looks at the board."""
 
-def display_model(scene: Scene, reach: tuple[float, float] = (0.0, 0.0), aspect: float = 16 / 9) -> mujoco.MjModel:
-    """Return the model that shows a scene. Its joints are "slide", "lift", "roll" and, for a sliding load, "swing".
 
-    `reach` is the lowest and the highest u [m] that will be shown: the board and the camera "overview" cover this
-    range. `aspect` is the width of the picture over its height.
+@dataclasses.dataclass(frozen=True, eq=False)
+class Display:
+    """A board with cans of one size on it. Their joints are named as in the templates, with a prefix for each lane."""
 
-    Raises:
-      TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
-      UnsupportedError: if MuJoCo cannot compile the geoms of a template.
-    """
-    resized = _resize(scene)
-    spec = compose(resized, Setting("contact"), visuals=True)
-    appearance.extend(spec, resized, reach[0] * scale(scene), reach[1] * scale(scene), aspect)
-    return compile_spec(spec)
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    scenes: Sequence[Scene]
+    lanes: Sequence[float]
+    """Where each can is across the board [m], away from the reader."""
+
+    @classmethod
+    def of(
+        cls, scenes: Sequence[Scene], low: float, high: float, apart: float = 0.0, lines: Sequence[float] = ()
+    ) -> "Display":
+        """Return the display of cans on one incline, whose board is long enough for u from `low` to `high` [m].
+
+        The cans are `apart` [m] from each other, the first of them nearest to the reader. `lines` are distances down
+        the incline at which a line is drawn across the board [m]. All these lengths are as drawn.
+
+        Raises:
+          TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
+          UnsupportedError: if MuJoCo cannot compile the geoms of a template.
+        """
+        lanes = [lane * apart for lane in range(len(scenes))]
+        specs = [compose(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
+        for spec in specs:
+            for pair in spec.pairs:
+                spec.delete(pair)
+        board, *others = specs
+        appearance.lengthen(board, _resize(scenes[0]), low, high)
+        for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+            frame = board.body("incline").add_frame(pos=[0, lane, 0])
+            frame.attach_body(spec.body("can"), _prefix(number), "")
+        planks = board.geom("board")
+        planks.pos = [planks.pos[0], planks.pos[1] + lanes[-1] / 2, planks.pos[2]]
+        planks.size = [planks.size[0], planks.size[1] + lanes[-1] / 2, planks.size[2]]
+        wall = board.geom("wall")
+        wall.pos = [*wall.pos[:1], wall.pos[1] + lanes[-1], *wall.pos[2:]]
+        for number, along in enumerate(lines):
+            _add_line(board, f"line{number}", along)
+        model = compile_spec(board)
+        return cls(model, mujoco.MjData(model), scenes, lanes)
+
+    def paint(self, colours: Sequence[tuple[float, float, float]]) -> None:
+        """Give each can's label a colour."""
+        for number, colour in enumerate(colours):
+            self.model.mat(_prefix(number) + "label").rgba[:3] = colour
+
+    def pose(self, positions: np.ndarray) -> None:
+        """Put each can at u [m], phi [rad], roll [rad] and lift [m], one row for each; a frozen load turns with it."""
+        joints = places(self.model)
+        for number, (scene, (u, phi, roll, lift)) in enumerate(zip(self.scenes, positions, strict=True)):
+            size = scale(scene)
+            values = {"slide": u * size, "lift": lift * size, "roll": roll, "swing": phi - roll}
+            for name, value in values.items():
+                if (joint := _prefix(number) + name) in joints:
+                    self.data.joint(joint).qpos[:] = value
+        self._place()
+
+    def hide(self) -> None:
+        """Put all cans where nobody sees them."""
+        for number in range(len(self.scenes)):
+            self.data.joint(_prefix(number) + "lift").qpos[:] = _HIDDEN
+        self._place()
+
+    def _place(self) -> None:
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def length(self, number: int = 0) -> float:
+        """Return the length of a can as drawn [m]."""
+        return self.scenes[number].can.length * scale(self.scenes[number])
+
+    def front(self, number: int = 0) -> float:
+        """Return the coordinate y of a can's near end [m]."""
+        return self.lanes[number] - self.length(number) / 2
 
 
 def scale(scene: Scene) -> float:
@@ -37,21 +107,23 @@ def scale(scene: Scene) -> float:
     return RADIUS / scene.can.radius
 
 
-def pose(
-    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, u: float, phi: float, roll: float, lift: float
-) -> None:
-    """Pose the display model: the axis at `u` [m] and `lift` [m], the load at `phi` and the can at `roll` [rad].
+def on_incline(scene: Scene, along: np.ndarray | float, height: np.ndarray | float) -> np.ndarray:
+    """Return x and z of points `along` the incline and at a `height` over it, in one unit, shape (..., 2)."""
+    sine, cosine = math.sin(scene.incline), math.cos(scene.incline)
+    x, z = along * cosine + height * sine, height * cosine - along * sine
+    return np.stack(np.broadcast_arrays(x, z), axis=-1)
 
-    A frozen load turns with the can. Cameras follow the can along the incline but do not rise with it, so that a hop
-    can be seen.
-    """
-    values = {"slide": u * scale(scene), "lift": 0.0, "roll": roll, "swing": phi - roll}
-    for name in places(model):
-        data.joint(name).qpos[:] = values[name]
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_camlight(model, data)
-    data.joint("lift").qpos[:] = lift * scale(scene)
-    mujoco.mj_kinematics(model, data)
+
+def _add_line(spec: mujoco.MjSpec, name: str, along: float) -> None:
+    """Add a dark line across the board, as thin as a coat of paint, to its specification."""
+    board = spec.geom("board")
+    top, half = board.pos[2] + board.size[2], [0.003, board.size[1], 0.0002]
+    body, kind = spec.body("incline"), mujoco.mjtGeom.mjGEOM_BOX
+    body.add_geom(spec.default, name=name, type=kind, size=half, pos=[along, board.pos[1], top], rgba=_PAINT, group=2)
+
+
+def _prefix(number: int) -> str:
+    return f"{number}-" if number else ""
 
 
 def _resize(scene: Scene) -> Scene:

@@ -1,38 +1,41 @@
-"""The pictures of a trajectory at given times, drawn one after the other."""
+"""The pictures of a trajectory at given times, drawn one after the other: title, scene, and charts below."""
 
-import math
 from collections.abc import Generator
+from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer import require
-from mjbeer.drawing import display, guides
-from mjbeer.drawing.camera import View
+from mjbeer.drawing import guides
 from mjbeer.drawing.canvas import Canvas
+from mjbeer.drawing.charts import charts
+from mjbeer.drawing.display import Display, scale
+from mjbeer.drawing.header import Header
+from mjbeer.drawing.look import Look
+from mjbeer.drawing.marks import Marks
+from mjbeer.drawing.painter import Painter
+from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.shot import Shot
+from mjbeer.drawing.strip import Strip
 from mjbeer.exceptions import ParameterError
-from mjbeer.model import templates
+from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-CAMERAS = ("side", "quarter", "overview")
-"""A camera at the can's open end; one above and downhill; and one so far away that it shows the whole motion."""
-_TITLES = {
-    "sliding": "beer sliding in a can",
-    "frozen": "beer frozen to a can",
-    "pendulum": "pendulum in a wheel",
-    "hoop": "weight on a hoop's rim",
-}
 _LARGEST = 4096
 """Largest width and height [pixels] that H.264 encoders support."""
+UNITS = 36
+"""Height of a picture in units, which all sizes in it are multiples of."""
+_STRIP = 10
+"""Height of the charts below a picture, in units."""
+_FINE = 2000
+"""Points of a path."""
 
 
 def draw(
-    trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str = "side", speed: float = 1.0
+    trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float = 1.0
 ) -> Generator[np.ndarray]:
     """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
-
-    `camera` is one of CAMERAS. A playback `speed` other than 1 is written into the picture.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -44,8 +47,7 @@ def draw(
             f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
         )
     width, height = whole("width", width), whole("height", height)
-    require.choice("camera", camera, CAMERAS)
-    return _draw(trajectory, times, width=width, height=height, camera=camera, speed=speed)
+    return _draw(trajectory, times, width=width, height=height, look=look, speed=speed)
 
 
 def whole(name: str, pixels: float) -> int:
@@ -61,21 +63,72 @@ def whole(name: str, pixels: float) -> int:
 
 
 def _draw(
-    trajectory: Trajectory, times: np.ndarray, width: int, height: int, camera: str, speed: float
+    trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
 ) -> Generator[np.ndarray]:
-    scene = trajectory.scene
-    model = display.display_model(scene, (trajectory.u.min(), trajectory.u.max()), width / height)
-    data = mujoco.MjData(model)
-    title = _TITLES[templates.name(scene)] + ("" if speed == 1 else f", {speed:g} x speed")
-    duration = trajectory.time[-1] - trajectory.time[0]
-    digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
-    with Canvas(model, width, height) as canvas:
-        for time, (u, phi, roll, lift) in zip(times, coordinates(trajectory, times), strict=True):
-            display.pose(model, data, scene, u=u, phi=phi, roll=roll, lift=lift)
-            view, axis = View.of(model, data, camera, width=width, height=height), data.body("can").xpos
-            pixels = canvas.draw(data, camera, lambda picture: guides.draw(picture, scene, view, axis))  # noqa: B023
-            texts = title, f"t = {time:.{digits}f} s", f"phi = {guides.degrees(phi, '.1f')}"
-            yield guides.write(pixels, scene, view, axis, texts)
+    stage = Stage.of(trajectory, times, width, height, look, speed)
+    display = stage.display()
+    with Canvas(display.model, width, stage.pixels[1]) as canvas:
+        painter = Painter(canvas, display, stage.shot.still)
+        for time, now in zip(times, coordinates(trajectory, times), strict=True):
+            stage.sheet.boxes.clear()
+            painter.paint(stage.sheet, stage.shot.view(time), now[None], stage.top)
+            stage.explain(display, time, now)
+            yield stage.sheet.picture()
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Everything in the pictures of a trajectory but what OpenGL draws."""
+
+    sheet: Sheet
+    shot: Shot
+    marks: Marks
+    header: Header
+    strip: Strip | None
+    top: int
+    """Row of the upper edge of the scene [pixels]."""
+    pixels: tuple[int, int]
+    """Width and height of the scene [pixels]."""
+    unit: float
+
+    @classmethod
+    def of(
+        cls, trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
+    ) -> "Stage":
+        """Return the stage for the pictures of a trajectory at some times [s]."""
+        scene, unit = trajectory.scene, height / UNITS
+        header = Header(look, trajectory, speed, unit)
+        lasts = len(trajectory.time) > 1
+        below = round(_STRIP * unit) if lasts and look.strips else 0
+        pixels = (width, height - header.height - below)
+        fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
+        positions = coordinates(trajectory, fine)
+        plane = -scene.can.length / scene.can.radius * RADIUS / 2
+        u, lift = positions[:, 0], positions[:, 3]
+        shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, forces="forces" in look.marks)
+        marks = Marks(trajectory, look.marks, plane, fine, positions)
+        strip = Strip(charts(trajectory, look.strips), width, below) if below else None
+        return cls(Sheet(width, height), shot, marks, header, strip, header.height, pixels, unit)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Return the lowest and the highest u of the motion, as drawn [m]."""
+        along = self.marks.positions[:, 0] * scale(self.marks.scene)
+        return float(along.min()), float(along.max())
+
+    def display(self) -> Display:
+        """Return the model to be drawn."""
+        return Display.of([self.marks.scene], *self.reach)
+
+    def explain(self, display: Display, time: float, now: np.ndarray) -> None:
+        """Draw title, guides, marks and charts at a `time` [s], with u, phi, roll and lift `now`."""
+        view = self.shot.view(time)
+        board = guides.Board.of(self.marks.scene, display.model)
+        self.marks.draw(self.sheet, view, self.top, time, now)
+        guides.draw(self.sheet, board, view, self.top, self.unit)
+        self.header.draw(self.sheet, time)
+        if self.strip is not None:
+            self.strip.draw(self.sheet, time, self.top + self.pixels[1])
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:

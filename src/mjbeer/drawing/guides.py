@@ -1,119 +1,112 @@
-"""What is drawn over a picture to explain it: gravity's arrow, the angle of the incline, and texts."""
+"""What stands still in a picture and explains it: gravity's arrow, the incline's angle, and distances on the board."""
 
-import functools
 import math
 from dataclasses import dataclass
-from itertools import pairwise
-from typing import Self
 
 import mujoco
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
 
-from mjbeer.drawing.camera import View
-from mjbeer.theory.can import RADIUS
+from mjbeer.drawing.display import on_incline, scale
+from mjbeer.drawing.sheet import Box, Sheet, overlap
+from mjbeer.drawing.view import View
 from mjbeer.theory.scene import Scene
 
-_INK = (40, 50, 65)
-"""Colour of lines and texts."""
-_PAPER = (255, 255, 255, 200)
-"""Colour behind the texts."""
-_FRONT = 0.0155
-"""Distance of the level line from the can's near end [m]: just in front of the board."""
-_UNDERSIDE = 0.01152
-"""Depth of the board's underside [m]."""
-_DEPTH = 0.15
-"""Distance of the arrow from the camera [m]: in front of everything else."""
+_DARK = (0.12, 0.16, 0.2)
+"""Colour of gravity's arrow."""
+_ALPHA = "\N{GREEK SMALL LETTER ALPHA}"
+_SPACING = 7.0
+"""Least distance of two numbers on the board, in units of the sheet."""
 
 
 @dataclass(frozen=True, eq=False)
-class Slope:
-    """A horizontal line under the board, and the angle from it to the board."""
+class Board:
+    """The near edge of the board's underside, where its numbers and the angle of the incline are."""
 
-    corner: np.ndarray
-    """Where the line meets the board's underside, below the can and a little downhill [m]."""
-    uphill: float
-    """Direction of u in which the board rises: -1 or 1."""
-    angle: float
-    """Angle of the incline, always positive [rad]."""
-    unit: float
-    """Unit of length of the guides [m]: the can's radius, or more where the can is small in the picture."""
+    scene: Scene
+    front: float
+    """Its coordinate y [m]."""
+    under: float
+    """Its height over the surface on which the can rolls, negative [m]."""
 
     @classmethod
-    def of(cls, scene: Scene, view: View, axis: np.ndarray) -> Self:
-        """Return the line and the angle for a scene; `axis` is a point on the drawn can's axis [m]."""
-        unit = max(RADIUS, 0.2 * view.depth(axis) * view.tangent[1])
-        sine, cosine, uphill = math.sin(scene.incline), math.cos(scene.incline), -math.copysign(1.0, scene.incline)
-        along = -uphill * min(1.7, 1.2 / max(abs(sine), 0.1)) * unit
-        below = RADIUS + _UNDERSIDE
-        front = scene.can.length / scene.can.radius * RADIUS / 2 + _FRONT
-        corner = axis + np.array([along * cosine - below * sine, -front, -along * sine - below * cosine])
-        return cls(corner, uphill=uphill, angle=abs(scene.incline), unit=unit)
+    def of(cls, scene: Scene, model: mujoco.MjModel) -> "Board":
+        """Return the edge of the board of a display model."""
+        board = model.geom("board")
+        return cls(scene, front=float(board.pos[1] - board.size[1]), under=float(board.pos[2] - board.size[2]))
 
-    def at(self, distance: float, angle: float) -> np.ndarray:
-        """Return the point [m] at a distance [units] from the corner and an `angle` [rad] above the horizontal line."""
-        return self.corner + distance * self.unit * np.array([self.uphill * math.cos(angle), 0, math.sin(angle)])
+    def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
+        """Return column and row of points of the edge, `along` the incline as drawn [m], shape (..., 2)."""
+        x, z = np.moveaxis(on_incline(self.scene, along, self.under), -1, 0)
+        return view.pixel(np.stack([x, np.full_like(x, self.front), z], axis=-1))
 
-
-def draw(picture: mujoco.MjvScene, scene: Scene, view: View, axis: np.ndarray) -> None:
-    """Add gravity's arrow, the horizontal line and its arc to a picture; `axis` is a point on the can's axis [m]."""
-    tail, head = _arrow(view)
-    thickness = 0.04 * float(np.linalg.norm(head - tail))
-    _add_line(picture, mujoco.mjtGeom.mjGEOM_ARROW, width=thickness, start=tail, end=head)
-    if scene.incline != 0:
-        slope = Slope.of(scene, view, axis)
-        arc = [slope.at(2, angle) for angle in np.linspace(0, slope.angle, 16)]
-        for start, end in [(slope.corner, slope.at(2.8, 0)), *pairwise(arc)]:
-            _add_line(picture, mujoco.mjtGeom.mjGEOM_CAPSULE, width=0.015 * slope.unit, start=start, end=end)
+    def along(self, view: View, column: float) -> float:
+        """Return how far down the incline the edge is seen in a column of the picture, as drawn [m]."""
+        first, second = self.pixel(view, np.array([0.0, 1.0]))[:, 0]
+        return float((column - first) / (second - first))
 
 
-def write(pixels: np.ndarray, scene: Scene, view: View, axis: np.ndarray, texts: tuple[str, str, str]) -> np.ndarray:
-    """Return the picture with "g" at the arrow, the angle of the incline, and three texts: a title and two below it."""
-    image = Image.fromarray(pixels)
-    ink = ImageDraw.Draw(image, "RGBA")
-    unit = image.height / 36
+def draw(sheet: Sheet, board: Board, view: View, top: int, unit: float) -> None:
+    """Draw gravity's arrow, the incline's angle and distances into a view whose upper edge is at a row of the sheet.
 
-    def text(place: tuple[float, float], words: str, size: float, anchor: str = "lm") -> None:
-        ink.text(place, words, fill=_INK, font=_font(size * unit), anchor=anchor)
-
-    tail, head = _arrow(view)
-    column, row = view.pixel((tail + head) / 2)
-    text((column + unit, row), "g", 1.7)
-    if scene.incline != 0:
-        slope = Slope.of(scene, view, axis)
-        label = degrees(scene.incline, ".3g")
-        text(view.pixel(slope.at(2.45, slope.angle / 2)), label, size=1.5, anchor="mm")
-    width = max(19 * unit, ink.textlength(texts[0], _font(1.4 * unit)))
-    ink.rounded_rectangle((unit, unit, width + 2.6 * unit, 6 * unit), 0.5 * unit, fill=_PAPER)
-    text((1.8 * unit, 2.3 * unit), texts[0], 1.4)
-    text((1.8 * unit, 4.5 * unit), texts[1], 1.7)
-    text((9.8 * unit, 4.5 * unit), texts[2], 1.7)
-    return np.array(image)
+    `unit` is the unit of length of the sheet [pixels].
+    """
+    width, height = view.pixels
+    sheet.clip((0, top, width, top + height))
+    shift = np.array([0.0, top])
+    tail = np.array([width - 1.6 * unit, top + 1.0 * unit])
+    if board.scene.incline < 0:
+        tail[0] = 3 * unit
+    sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
+    sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
+    taken = [_draw_angle(sheet, board, view, shift, unit)] if board.scene.incline else []
+    _draw_distances(sheet, board, view, shift, unit, taken)
+    sheet.clip(None)
 
 
-def _arrow(view: View) -> tuple[np.ndarray, np.ndarray]:
-    """Return tail and head [m] of gravity's arrow, in the upper right corner of the picture."""
-    tail = view.at((0.88, 0.88), _DEPTH)
-    return tail, tail - np.array([0, 0, 0.35 * _DEPTH * view.tangent[1]])
+def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> Box:
+    """Draw the angle of the incline under the board's lower end, and return the box of its lines."""
+    width, height = view.pixels
+    uphill = -math.copysign(1.0, board.scene.incline)
+    tilt, reach = abs(board.scene.incline), 9 * unit
+    column = width - 2 * unit if uphill < 0 else 2 * unit
+    lowest = height - 2.6 * unit
+    corner = board.pixel(view, board.along(view, column))
+    if corner[1] > lowest:  # the board leaves the picture through its lower edge
+        corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
+    corner = corner + shift
+    sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
+    arc = np.linspace(0, tilt, 24)
+    sheet.line(corner + 0.8 * reach * np.stack([uphill * np.cos(arc), -np.sin(arc)], axis=1), 0.12 * unit)
+    ends = sorted((float(corner[0]), float(corner[0] + uphill * reach)))
+    place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
+    sheet.text(place, f"{_ALPHA} = {degrees(tilt)}", 1.4 * unit, anchor=(0.5, 0))
+    return ends[0], float(corner[1] - reach * math.sin(tilt)), ends[1], float(corner[1])
 
 
-def _add_line(picture: mujoco.MjvScene, kind: mujoco.mjtGeom, width: float, start: np.ndarray, end: np.ndarray) -> None:
-    """Add an arrow or a capsule of a `width` [m] from `start` to `end` [m]."""
-    geom = picture.geoms[picture.ngeom]
-    colour = np.array([*_INK, 255], np.float32) / 255
-    mujoco.mjv_initGeom(geom, kind, size=np.zeros(3), pos=np.zeros(3), mat=np.zeros(9), rgba=colour)
-    mujoco.mjv_connector(geom, kind, width, start, end)
-    if kind == mujoco.mjtGeom.mjGEOM_ARROW:
-        geom.size[2] *= 2  # MuJoCo draws an arrow half as long as the distance that it connects
-    geom.emission = 1.0
-    picture.ngeom += 1
+def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float, taken: list[Box]) -> None:
+    """Write distances down the incline below the board [m], with a tick at each, where there is room."""
+    width, height = view.pixels
+    ends = [board.along(view, column) / scale(board.scene) for column in (0, width)]
+    step = _round((ends[1] - ends[0]) * _SPACING * unit / width)
+    numbers = step * np.arange(math.ceil(min(ends) / step), math.floor(max(ends) / step) + 1)
+    down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
+    window = (0.0, shift[1], float(width), shift[1] + height)
+    for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)) + shift, strict=True):
+        words = f"{round(number / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
+        below = place + np.array([0, 0.8 * unit])
+        box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
+        inside = window[0] < box[0] and window[1] < box[1] and box[2] < window[2] and box[3] < window[3]
+        if inside and not any(overlap(box, other) for other in sheet.boxes + taken):
+            sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
+            sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))
 
 
-def degrees(angle: float, form: str) -> str:
-    """Return an `angle` [rad] as text in degrees, in a format such as ".1f"."""
-    return f"{math.degrees(angle):{form}}\N{DEGREE SIGN}"
+def _round(least: float) -> float:
+    """Return the least of 1, 2 and 5 times a power of ten that is not less than a number."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(power * factor for factor in (1, 2, 5, 10) if power * factor >= least * (1 - 1e-9))
 
 
-@functools.cache
-def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    return ImageFont.load_default(size)
+def degrees(angle: float) -> str:
+    """Return an `angle` [rad] as text in degrees, with three digits."""
+    return f"{math.degrees(angle):.3g}°"

@@ -20,9 +20,12 @@ from mjbeer.output import files
 from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.words import in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+    from mjbeer.drawing.cameras import Camera
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
@@ -78,30 +81,38 @@ def dataframe(trajectory: Trajectory) -> Any:
 
 
 def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
-    """Return the axes of a new figure that shows phi [degrees] above and u [m] below, over time [s].
+    """Return the axes of a new figure that shows φ [degrees] above and u [m] below, over time [s].
 
-    With `theory`, the exact motion from the same start is drawn beneath as a wide grey line.
+    With `theory`, the exact motion from the same start is drawn beneath as a wide grey line. A motion that rolls on
+    where a can would leave the incline is dotted from there on.
     """
+    import matplotlib as mpl
     from matplotlib import pyplot as plt
 
+    from mjbeer.output.plots import SIMULATED, STYLE, THEORY, UNPHYSICAL
+
     require.boolean("theory", theory)
-    figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 5), layout="constrained")
-    if theory:
-        time = np.union1d(trajectory.time, np.linspace(0, trajectory.time[-1], _SMOOTH))
-        start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
-        truth = exact(trajectory.scene, time, **start, many_turns=True)
-        above.plot(time, np.degrees(truth.phi), color="0.75", linewidth=5, label="exact theory")
-        below.plot(time, truth.u, color="0.75", linewidth=5, label="exact theory")
-    name = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
-    above.plot(trajectory.time, np.degrees(trajectory.phi), label=name)
-    below.plot(trajectory.time, trajectory.u, label=name)
-    above.set_ylabel("φ [degrees]")
-    below.set(xlabel="time [s]", ylabel="u [m]")
-    for axes in (above, below):
-        axes.grid(alpha=0.3)
-    if theory:
-        above.legend()
-    figure.suptitle(f"{_kind(trajectory.scene)}, incline {math.degrees(trajectory.scene.incline):.4g}°")
+    scene, time = trajectory.scene, trajectory.time
+    with mpl.rc_context(STYLE):
+        figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 5))
+        if theory:
+            dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
+            start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
+            truth = exact(scene, dense, **start, many_turns=True)
+            above.plot(dense, np.degrees(truth.phi), label="exact theory", **THEORY)
+            below.plot(dense, truth.u, **THEORY)
+        name = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
+        parts = math.inf if trajectory.rolling == "contact" else trajectory.rolls_until()
+        rolls, pulled = time <= parts, time >= parts
+        for axes, values in ((above, np.degrees(trajectory.phi)), (below, trajectory.u)):
+            axes.plot(time[rolls], values[rolls], label=name, **SIMULATED)
+            if pulled.any():
+                axes.plot(time[pulled], values[pulled], label="if the incline could pull the can", **UNPHYSICAL)
+        above.set_ylabel("φ [°]")
+        below.set(xlabel="time [s]", ylabel="u [m]")
+        if len(above.get_lines()) > 1:
+            above.legend()
+        figure.suptitle(in_words(scene), fontsize=STYLE["axes.titlesize"])
     return above, below
 
 
@@ -133,7 +144,7 @@ class Video:
 
 
 def video(
-    trajectory: Trajectory, width: int, height: int, fps: float, speed: float, camera: str, progress: bool
+    trajectory: Trajectory, width: int, height: int, fps: float, speed: float, camera: "Camera", progress: bool
 ) -> Video:
     """Return a video of a trajectory; the arguments are those of `mjbeer.render`.
 
@@ -155,7 +166,7 @@ def trajectory_html(trajectory: Trajectory) -> str:
     """Return the key figures of a trajectory, and what it says about itself, as an HTML table."""
     time, radius, record = trajectory.time, trajectory.scene.can.radius, trajectory.record
     rows = {
-        "scene": _kind(trajectory.scene),
+        "scene": in_words(trajectory.scene),
         "rolling, integrator": f"{trajectory.rolling}, {trajectory.integrator}",
         "samples": f"{len(time)}, from {time[0]:.6g} s to {time[-1]:.6g} s",
         "φ at the last sample": f"{math.degrees(trajectory.phi[-1]):.6g} degrees",
@@ -172,7 +183,7 @@ def scene_html(scene: Scene) -> str:
     """Return the parameters of a scene as an HTML table."""
     can, load = scene.can, scene.load
     rows = {
-        "scene": _kind(scene),
+        "scene": in_words(scene, {"incline"}),
         "incline": f"{math.degrees(scene.incline):.6g} degrees",
         "can": f"radius {can.radius:.6g} m, length {can.length:.6g} m, mass {can.mass:.6g} kg, "
         f"inertia {can.inertia:.6g} kg m²",
@@ -181,11 +192,6 @@ def scene_html(scene: Scene) -> str:
         "gravity": f"{scene.gravity:.6g} m/s²",
     }
     return _html(rows)
-
-
-def _kind(scene: Scene) -> str:
-    """Return what a scene is, in a few words."""
-    return {"sliding": "load that slides in its can", "frozen": "load frozen to its can"}[scene.attachment]
 
 
 def _html(rows: dict[str, str]) -> str:

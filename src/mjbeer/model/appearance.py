@@ -6,29 +6,34 @@ import mujoco
 import numpy as np
 
 from mjbeer.model import mesh
+from mjbeer.model.parts import PARTS
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.scene import Scene
 
-WALL = 0.04
-"""Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
 _HALF_TURNS = (-20, 980)
 """Where the templates' board begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
 _SPARE = 20
 """Half turns of board beyond either end of a motion: more than a camera at the can sees."""
-_MARGIN = 1.1
-"""Size of what the overview shows over the size of the motion."""
+TEXTURED = ("can.obj", "lid.obj", "beer_half.obj")
+"""The mesh files of the templates that say where a vertex is in a texture."""
 _LEAST_FILL = 1e-6
 """Smallest fill that is drawn: a mesh must not be flat, and so little beer cannot be seen."""
 _LEAST_VOLUME = 1e-12
 """Smallest volume [m^3] of a solid mesh. A smaller mesh becomes a shell, which looks the same: below 1e-15 m^3 MuJoCo
 refuses a solid one."""
+TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
+"""The geoms of the templates that show how far the can has turned."""
 DRAWN = (
     "geoms", "sites", "cameras", "lights", "keys", "skins", "meshes", "hfields", "materials", "textures", "numerics",
     "texts", "tuples",
 )  # fmt: skip
 """The kinds of elements in a template that are only drawn and do not act on the motion."""
-_SHAPES = ("can.obj", "beer_half.obj")
-"""The templates' mesh files, which are replaced by shapes that fit the scene."""
+FOAM = 0.025
+"""Thickness of the foam on the beer, in radii."""
+_SHARE = 0.25
+"""Largest thickness of the foam over the depth of the beer, and over the room above it."""
+_LEAST_FOAM = 1e-4
+"""Smallest thickness of foam that is drawn, in radii."""
 _ALONG_THE_AXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE)
 """Types of geoms whose sides are parallel to the axes: each side is stretched by itself."""
 
@@ -48,8 +53,6 @@ def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
     size = radius / RADIUS
     for geom in spec.geoms:
         _stretch(geom, size, length)
-    if (end := spec.geom("can_end")) is not None:
-        end.size = [end.size[0], length / 2 - end.pos[1], 0]
     for element in spec.meshes:
         element.scale = np.array(element.scale) * size
     for camera in spec.cameras:
@@ -57,7 +60,9 @@ def dress(spec: mujoco.MjSpec, scene: Scene) -> None:
     grid = spec.material("grid")
     grid.texrepeat = np.array(grid.texrepeat) / size
     spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
-    _replace_mesh(spec, "can", mesh.tube(radius, radius * (1 + WALL), length))
+    for element in spec.meshes:
+        if (part := PARTS.get(element.file)) is not None:
+            _reshape(element, part(radius, length), radius)  # a file of the user's own keeps its proportions
     _fit_load(spec, scene)
 
 
@@ -66,33 +71,11 @@ def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None
     turn = math.pi * scene.can.radius
     first = min(_HALF_TURNS[0], math.floor(low / turn) - _SPARE)
     last = max(_HALF_TURNS[1], math.ceil(high / turn) + _SPARE)
-    for geom in (spec.geom("board"), spec.geom("board_side")):
-        geom.pos = [(first + last) / 2 * turn, *geom.pos[1:]]
-        geom.size = [(last - first) / 2 * turn, *geom.size[1:]]
+    board = spec.geom("board")
+    board.pos = [(first + last) / 2 * turn, *board.pos[1:]]
+    board.size = [(last - first) / 2 * turn, *board.size[1:]]
     planks = spec.material("planks")
     planks.texrepeat = [last - first, planks.texrepeat[1]]
-
-
-def extend(spec: mujoco.MjSpec, scene: Scene, low: float, high: float, aspect: float) -> None:
-    """Make the board long enough for a motion from u = `low` to `high` [m], and fit the overview camera to all of it.
-
-    `aspect` is the width of the picture over its height.
-    """
-    lengthen(spec, scene, low, high)
-    overview, downhill = spec.camera("overview"), np.array([math.cos(scene.incline), 0, -math.sin(scene.incline)])
-    extent = np.abs((high - low) * downhill) + 10 * scene.can.radius
-    distance = _MARGIN * max(extent[0] / aspect, extent[2]) / (2 * math.tan(math.radians(overview.fovy) / 2))
-    overview.pos = (low + high) / 2 * downhill + distance * _backwards(spec, overview)
-    spec.visual.map.zfar = max(spec.visual.map.zfar, 4 * distance / spec.stat.extent)
-
-
-def _backwards(spec: mujoco.MjSpec, camera: mujoco.MjsCamera) -> np.ndarray:
-    """Return the unit vector that points out of the back of a camera, in world coordinates."""
-    quaternion, axes = np.array(camera.quat), np.zeros(9)
-    if camera.alt.type != mujoco.mjtOrientation.mjORIENTATION_QUAT:
-        quaternion = spec.resolve_orientation(spec.compiler.degree, spec.compiler.eulerseq, camera.alt)
-    mujoco.mju_quat2Mat(axes, np.array(quaternion))
-    return axes.reshape(3, 3)[:, 2]
 
 
 def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
@@ -120,9 +103,10 @@ def _scale_point(point: np.ndarray, size: float, length: float) -> np.ndarray:
 
 
 def _fit_load(spec: mujoco.MjSpec, scene: Scene) -> None:
+    """Give the beer and its foam the scene's fill, or put the bob or the bar where the scene has it."""
     load = scene.load
     if load.fill is not None:
-        _replace_mesh(spec, "load", mesh.beer(max(load.fill, _LEAST_FILL), scene.can.radius, scene.can.length))
+        _fill(spec, scene, max(load.fill, _LEAST_FILL))
         return
     ball, arm = spec.geom("load"), spec.geom("load_arm")
     if arm is not None:
@@ -136,18 +120,28 @@ def _fit_load(spec: mujoco.MjSpec, scene: Scene) -> None:
         ball.fromto = [*ball.fromto[:2], depth, *ball.fromto[3:5], depth]
 
 
-def _replace_mesh(spec: mujoco.MjSpec, name: str, replacement: mesh.Mesh) -> None:
-    """Replace the file of a template's mesh by vertices, so that the model needs no file.
+def _fill(spec: mujoco.MjSpec, scene: Scene, fill: float) -> None:
+    """Give the beer its `fill`, and put the foam on it, which gets thin or goes where there is no room or no beer."""
+    radius, length = scene.can.radius, scene.can.length
+    thickness = min(FOAM, _SHARE * 2 * fill, _SHARE * 2 * (1 - fill))
+    if thickness < _LEAST_FOAM:
+        for element in (spec.geom("foam"), spec.mesh("foam")):
+            if element is not None:
+                spec.delete(element)
+    for element in spec.meshes:
+        if element.file == "beer_half.obj":
+            _reshape(element, mesh.beer(fill, radius, length), radius)
+        elif element.file == "foam_half.obj":
+            _reshape(element, mesh.layer(fill, thickness, radius, length), radius)
 
-    A file that did not come with mjbeer stays, and keeps the proportions of the template's can.
-    """
-    vertices, faces = replacement
-    element = spec.mesh(name)
-    if element.file not in _SHAPES:
-        return
+
+def _reshape(element: mujoco.MjsMesh, shape: mesh.Mesh, radius: float) -> None:
+    """Replace the file of a template's mesh by a shape for a can of a `radius` [m], so that the model needs no file."""
+    vertices, faces = shape
+    if element.file in TEXTURED:
+        element.usertexcoord = mesh.texture(vertices, radius).ravel()
     element.scale = [1, 1, 1]
     element.file, element.content_type = "", ""
     element.uservert, element.userface = vertices.ravel(), faces.ravel()
-    volume = np.einsum("ij,ij->", vertices[faces[:, 0]], np.cross(vertices[faces[:, 1]], vertices[faces[:, 2]])) / 6
-    if volume < _LEAST_VOLUME:
+    if mesh.volume(shape) < _LEAST_VOLUME:
         element.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL

@@ -9,6 +9,7 @@ import math
 import mujoco
 
 from mjbeer.model import joints
+from mjbeer.model.appearance import TURNING
 from mjbeer.model.inertia import load_with_can_mass, load_with_inertia, remove_mass, set_inertial
 from mjbeer.theory.scene import Scene
 
@@ -37,8 +38,8 @@ def _sliding(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
     body, can = spec.body("can"), scene.can
     light = can.mass <= _HEAVY * scene.load.mass
     load = load_with_can_mass(scene, can.mass) if light else load_with_inertia(scene)
-    for mark in (spec.geom("can_mark"), spec.geom("can_spot")):
-        if mark is not None:  # no joint turns with the can, and its marks would turn with the load
+    for name in TURNING:
+        if (mark := spec.geom(name)) is not None:  # no joint turns with the can, and these would turn with the load
             spec.delete(mark)
     joints.add(spec, "slide", "phi")
     set_inertial(body, mass=unit * load.mass, offset=load.offset, inertia=unit * load.inertia)

@@ -14,7 +14,7 @@ _EVERYWHERE = {
     "body": ("incline", "can", "load"),
     "frame": ("level",),
     "camera": ("side", "quarter", "overview"),
-    "geom": ("load", "board", "board_side"),
+    "geom": ("load", "board"),
     "mesh": ("can",),
     "material": ("planks", "grid"),
     "default": ("collision",),

@@ -1,48 +1,153 @@
 """The style that all plots share, and writing each plot as SVG and PNG."""
 
+import math
 import pathlib
-from collections.abc import Generator
+import re
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
 from cycler import cycler
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatter, NullFormatter
 
 from mjbeer.output import files
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 """M. Okabe and K. Ito's palette for colour-blind readers, without its yellow, which is hard to see on white."""
-_STYLE: Any = {
+GREY = "#666666"
+"""Colour of notes, and of lines that something is compared with: dark enough to be read on white."""
+THEORY: dict[str, Any] = {"color": "#C4C4C4", "linewidth": 5, "zorder": 1.5}
+"""A motion by exact theory: a wide pale line, on which the simulation's lies."""
+SIMULATED: dict[str, Any] = {"color": COLOURS[0]}
+"""A motion by MuJoCo."""
+PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
+"""An equation as it is printed in the paper, where that is wrong."""
+UNPHYSICAL: dict[str, Any] = {"color": "#8C8C8C", "linestyle": ":"}
+"""What cannot happen, as the motion of a can after it would have left the incline."""
+REFERENCE: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1.2}
+"""A level or a time that something is compared with."""
+
+STYLE: Any = {
     "axes.grid": True,
+    "axes.labelsize": 10.5,
     "axes.prop_cycle": cycler(color=COLOURS),
     "axes.spines.right": False,
     "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 11,
     "figure.constrained_layout.use": True,
-    "font.size": 11.0,
+    "font.sans-serif": ["DejaVu Sans", "Verdana"],  # where there is no DejaVu Sans, Verdana has the same widths
+    "font.size": 10.0,
     "grid.alpha": 0.3,
+    "legend.fontsize": 10,
     "legend.frameon": False,
     "svg.fonttype": "none",
     "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
 }
+"""Settings of matplotlib."""
+_TITLE, _SUBTITLE, _EDGE = 0.32, 0.24, 0.1
+"""Heights of the title's and the subtitle's lines, and their distance from the edge [inches]."""
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @contextmanager
 def chart(
-    path: pathlib.Path, rows: int = 1, columns: int = 1, width: float = 8, height: float = 5
+    path: pathlib.Path,
+    rows: int = 1,
+    columns: int = 1,
+    width: float = 8,
+    height: float = 5,
+    title: str = "",
+    subtitle: str = "",
 ) -> Generator[list[Axes]]:
     """Yield the axes to draw into, row by row; at the end write `path` with .svg and .png, whole or not at all.
 
-    `width` and `height` are the size of the whole plot [inches].
+    `width` and `height` are the size of the whole plot [inches]. The title says what is shown, and the subtitle, a
+    smaller line below it, of which scene.
 
     Raises:
       OutputError: if a file cannot be written.
     """
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(width, height))
-        yield list(figure.subplots(rows, columns, squeeze=False).flat)
+        used = _head(figure, title, subtitle)
+        figure.set_layout_engine(ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)))
+        panels = list(figure.subplots(rows, columns, squeeze=False).flat)
+        yield panels
+        for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
+            if isinstance(axis.get_major_formatter(), LogFormatter):
+                axis.set_major_formatter(FuncFormatter(_power))
+        named = {"Title": ": ".join(filter(None, (title, subtitle)))} if title else {}
         for kind in (".svg", ".png"):
-            metadata = {"Date": None} if kind == ".svg" else {}
+            metadata = {"Date": None, **named} if kind == ".svg" else {}
             with files.whole(path.with_name(path.name + kind)) as temporary:
                 figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
+                if kind == ".svg":
+                    temporary.write_text(_lighter(temporary.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **style: Any) -> None:
+    """Write a note or the name of a line, `offset` [points] to the right of and above a `place` in the data."""
+    style = {"color": GREY, "fontsize": 9.5, "va": "center"} | style
+    axes.annotate(text, place, offset, textcoords="offset points", **style)
+
+
+def ticks(axis: Axis, values: Sequence[float]) -> None:
+    """Mark these values on an axis and no others, and write them as plain numbers, on a logarithmic axis too."""
+    axis.set_major_locator(FixedLocator(list(values)))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", "\N{MINUS SIGN}")))
+    axis.set_minor_formatter(NullFormatter())
+
+
+def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = ()) -> None:
+    """Name what the axes show in one legend below the plot: their lines with a label, each name once, or `handles`."""
+    if not handles:
+        shown = [zip(*panel.get_legend_handles_labels(), strict=True) for panel in axes]
+        handles = list({name: handle for pairs in shown for handle, name in pairs}.values())
+    axes[0].figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
+
+
+def _head(figure: Figure, title: str, subtitle: str) -> float:
+    """Write title and subtitle at the top left, and return the height that they take [inches]."""
+    used = 0.0
+    large: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
+    small: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
+    for text, line, style in ((title, _TITLE, large), (subtitle, _SUBTITLE, small)):
+        if text:
+            place = (_EDGE / figure.get_figwidth(), 1 - (_EDGE / 2 + used) / figure.get_figheight())
+            figure.text(*place, text, ha="left", va="top", **style)
+            used += line
+    return used
+
+
+def _power(value: float, _: int | None) -> str:
+    """Return a power of ten as one text; matplotlib's own would set each digit by itself, which SVGs pay for."""
+    return "10" + str(round(math.log10(value))).translate(_RAISED)
+
+
+def _lighter(svg: str) -> str:
+    """Return an SVG without what costs room: digits below hundredths of a point, fonts and styles said again and again.
+
+    Names that nothing refers to go too: on a page with several plots, all would have the same.
+    """
+
+    def rounded(attribute: re.Match[str]) -> str:
+        return re.sub(r"-?\d+\.\d+", lambda number: f"{float(number[0]):.2f}".rstrip("0").rstrip("."), attribute[0])
+
+    def gathered(markers: re.Match[str]) -> str:
+        return f"<g {markers[2]}>{markers[1].replace(' ' + markers[2], '')}</g>"
+
+    used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', svg))
+    svg = re.sub(r' id="([^"]*)"', lambda name: name[0] if name[1] in used else "", svg)
+    svg = re.sub(r'\b(?:d|x|y)="[^"]*"', rounded, svg)
+    svg = re.sub(r'((?:\s*<use [^>]*?(style="[^"]*")/>)(?:\s*<use [^>]*?\2/>)+)', gathered, svg)
+    if fonts := re.search(r"font-family: [^;\"]*", svg):
+        svg = svg.replace(f"{fonts[0]}; ", "").replace("<svg ", f'<svg style="{fonts[0]}" ', 1)
+    return re.sub(r"\n\s+", "\n", svg)

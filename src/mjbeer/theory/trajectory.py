@@ -143,7 +143,7 @@ class Trajectory(Coordinates):
         height: int = 360,
         fps: float = 60,
         speed: float = 1.0,
-        camera: str = "side",
+        camera: str = "auto",
         progress: bool = True,
     ) -> Any:
         """Return a video of the motion, which a notebook shows; the arguments are those of `mjbeer.render`.

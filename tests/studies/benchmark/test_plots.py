@@ -5,20 +5,25 @@ import re
 
 import pytest
 
-from mjbeer.studies.benchmark import ablation, advice, plots
+from mjbeer.studies.benchmark import ablation, advice, overview, plots
 from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.cases import CASES
+from mjbeer.theory.words import in_words
+from tests.support import figures
 
 pytestmark = pytest.mark.slow
 
 
-def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path) -> None:
-    stored = Benchmark.load(advice.SHIPPED)
+def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stored, seen = Benchmark.load(advice.SHIPPED), figures.saved(monkeypatch)
     plots.draw(stored, tmp_path / "diagram")
+    overview.draw(stored, tmp_path / "overview")
+    assert [figures.faults(figure) for figure in seen] == [[], []]
+    assert max(file.stat().st_size for file in tmp_path.glob("*.svg")) < 150_000
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "diagram.svg").read_text())
     for case in stored.cases:
-        assert f"{case}: {CASES[case].story}" in texts
-    for label in ("RK4, contact", "DOP853 to a tolerance, reduced", "the best", "Euler as theory predicts", "heyoka"):
+        assert any(text.startswith(f"{case}: {in_words(CASES[case].scene)}") for text in texts)
+    for label in ("RK4, contact", "DOP853 to a tolerance, reduced", "the best of mjbeer", "heyoka", "SciPy LSODA"):
         assert label in texts
     assert any(text.startswith("DOP853 ") and text.endswith(" ms") for text in texts)
 

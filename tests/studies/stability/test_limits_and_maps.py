@@ -17,6 +17,7 @@ from mjbeer.predictions.linear_stability import accurate_limit
 from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow
 from mjbeer.studies.stability import limits, maps, plots, short_runs
 from mjbeer.studies.stability.short_runs import Plan, ShortRuns
+from tests.support import figures
 
 pytestmark = pytest.mark.slow
 
@@ -168,7 +169,8 @@ def test_tasks_are_told_apart() -> None:
     assert len(limits.tasks()) == 6 * (1 + 4 * 3) + 4
 
 
-def test_plots_are_drawn(measured_maps: list[dict], tmp_path: pathlib.Path) -> None:
+def test_plots_are_drawn(measured_maps: list[dict], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = figures.saved(monkeypatch)
     found = [limits.measure("sliding", "reduced", "Euler")]
     names = [line.partition(":")[0] for line in plots.draw(found, measured_maps[:1] + measured_maps[-1:], tmp_path)]
     assert sorted(each.name for each in tmp_path.iterdir()) == sorted(
@@ -176,6 +178,7 @@ def test_plots_are_drawn(measured_maps: list[dict], tmp_path: pathlib.Path) -> N
     )
     assert plots.LIMITS in names
     assert len(names) == 3
+    assert [figures.faults(figure) for figure in seen] == [[], [], []]
     assert "100.0%" in maps.table(measured_maps).markdown()
 
 

@@ -36,13 +36,13 @@ def draw(path: pathlib.Path) -> None:
 
 
 def _incline(axes: Axes) -> None:
-    """Draw the incline, the horizontal at its foot, and the angle alpha between them."""
+    """Draw the incline, the horizontal at its foot, and the angle α between them."""
     foot = _LENGTH * _DOWNHILL
     axes.plot(*np.transpose([-0.5 * _DOWNHILL, foot]), color="black", linewidth=2)
     axes.plot([foot[0] - 1.9, foot[0]], [foot[1], foot[1]], color="black", linewidth=1)
     angle = math.degrees(_INCLINE)
     axes.add_patch(Arc(tuple(foot), 3, 3, theta1=180 - angle, theta2=180, color=_LETTER))
-    _write(axes, "\N{GREEK SMALL LETTER ALPHA}", foot + np.array([-1.72, 0.2]))
+    _write(axes, "α", foot + np.array([-1.72, 0.2]))
 
 
 def _can(axes: Axes, axis: np.ndarray) -> None:

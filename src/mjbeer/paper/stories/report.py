@@ -4,19 +4,30 @@ import pathlib
 
 from rich.console import Console
 
+from mjbeer.drawing import studio
+from mjbeer.drawing.studio import Order
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
 from mjbeer.paper.stories import frozen, hopping, letters, massive_can, sliding
 from mjbeer.paper.stories.story import Story
 
 _CHAPTERS = (sliding, massive_can, frozen, hopping)
-_SIZE = (640, 360, 20)
-"""Width and height [pixels] and frames per second of a film: small, for there are ten of them."""
+_WIDTH, _HEIGHT, _FPS = 960, 540, 30
+"""Width and height [pixels] and pictures per second of a film: small, for there are ten of them."""
 
 
 def stories() -> list[Story]:
     """Return all stories, in the paper's order."""
     return [story for chapter in _CHAPTERS for story in chapter.stories()]
+
+
+def orders(folder: pathlib.Path) -> list[Order]:
+    """Return the films of the stories, to be drawn into a folder."""
+    return [
+        Order(story.film, folder / f"{story.name}.mp4", _WIDTH, _HEIGHT, _FPS)
+        for story in stories()
+        if story.film is not None
+    ]
 
 
 def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
@@ -31,20 +42,18 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
       RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
     from mjbeer.drawing import opengl
-    from mjbeer.drawing.video import render
 
-    drawn = stories()
-    names = [f"{story.name}.mp4" for story in drawn if films and story.film is not None]
-    missing = names if names and opengl.problem() else []
-    with files.whole(folder / "stories.md") as summary, progress_bar(console, len(drawn)) as begin:
+    drawn, filmed = stories(), orders(folder) if films else []
+    missing = [order.path.name for order in filmed] if filmed and opengl.problem() else []
+    with files.whole(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
-        letters.draw(folder / "letters")
-        for story in drawn:
-            begin(story.name)
-            story.draw(folder / story.name)
-            if films and story.film is not None and not missing:
-                file = folder / f"{story.name}.mp4"
-                render(story.film.trajectory(), file, *_SIZE, story.film.speed, progress=False)
+        with progress_bar(console, len(drawn)) as begin:
+            letters.draw(folder / "letters")
+            for story in drawn:
+                begin(story.name)
+                story.draw(folder / story.name)
+        if filmed and not missing:
+            studio.produce(filmed, console)
         summary.write_text(_summary(drawn, films, missing), encoding="utf-8")
     return missing
 

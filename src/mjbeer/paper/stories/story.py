@@ -4,7 +4,7 @@ import pathlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mjbeer.drawing.film import Film
+from mjbeer.drawing.film import Take
 
 
 @dataclass(frozen=True)
@@ -17,4 +17,4 @@ class Story:
     """What the plot and the film show."""
     draw: Callable[[pathlib.Path], None]
     """Writes the plot to a path, once with .svg and once with .png appended."""
-    film: Film | None = None
+    film: Take | None = None

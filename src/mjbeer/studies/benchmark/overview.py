@@ -11,6 +11,8 @@ from mjbeer.model.setting import DOP853, USUAL
 from mjbeer.output.plots import COLOURS, chart
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Benchmark
+from mjbeer.studies.cases import CASES
+from mjbeer.theory.words import in_degrees, in_words
 
 _CASES = ("frozen", "sliding")
 
@@ -31,11 +33,10 @@ class _Label:
 _CURVES = {
     Curve("reduced", "Euler", TIMESTEP): _Label("MuJoCo Euler", COLOURS[4], 1e-5, (6, 18), "right"),
     Curve("reduced", "RK4", TIMESTEP): _Label("MuJoCo RK4", COLOURS[1], 1e-9, (-9, -4), "right"),
-    Curve("reduced", DOP853, TIMESTEP): _Label("mjbeer: DOP853\naround MuJoCo", COLOURS[0], 1e-12, (9, 6), "left"),
+    Curve("reduced", DOP853, TIMESTEP): _Label("mjbeer: DOP853\naround MuJoCo", COLOURS[0], 1e-12, (11, 9), "left"),
     Curve("SciPy DOP853", "", TOLERANCE): _Label("SciPy DOP853", COLOURS[3], 1e-6, (9, 0), "left"),
     Curve("heyoka", "", TOLERANCE): _Label("heyoka", COLOURS[2], 1e-10, (9, 0), "left"),
 }
-_TITLES = {"frozen": "Beer frozen to its can, rocking", "sliding": "Beer that slides in its can, swinging"}
 _FLOOR = 1e-14
 
 
@@ -48,7 +49,9 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
     cases = [case for case in _CASES if case in study.cases]
     if not cases:
         return
-    with chart(path, columns=len(cases), width=5.2 * len(cases), height=4.4) as panels:
+    title = "The same motion, ever more exactly: what accuracy costs"
+    subtitle = f"each line: one tool, from coarse at its top to fine; {study.machine['processor']}"
+    with chart(path, columns=len(cases), width=5.2 * len(cases), height=5.2, title=title, subtitle=subtitle) as panels:
         for axes, case in zip(panels, cases, strict=True):
             _draw_case(axes, study, case)
 
@@ -71,5 +74,11 @@ def _draw_case(axes: Axes, study: Benchmark, case: str) -> None:
         axes.annotate(
             "as usually written", (1e3 * point.time, point.error), (8, 3), textcoords="offset points", fontsize=9
         )
-    axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 3, 30), title=_TITLES[case])
+    axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 3, 30), title=_title(case))
     axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of φ and u/a [rad]")
+
+
+def _title(case: str) -> str:
+    """Return the scene of a case and its start."""
+    start = CASES[case]
+    return f"{in_words(start.scene)}, from {in_degrees(start.phi0)}"

@@ -3,16 +3,19 @@
 import pathlib
 from typing import Any
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from mjbeer.model.setting import ROLLINGS, USUAL
-from mjbeer.output.plots import COLOURS, chart
+from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import CASES
+from mjbeer.theory.words import in_degrees, in_words
 
 _METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2}
 """Colours of the integrators."""
@@ -20,8 +23,8 @@ _LINES = {"reduced": ("-", "o"), "equality": ("--", "s"), "contact": (":", "^")}
 """Lines and markers of the ways of rolling."""
 _USUAL = {"equality, slide first": "X", "equality, hinge first": "P", "contact, defaults": "*"}
 """Markers of models as people usually write them."""
-_PEERS = "#777777"
-"""Colour of other tools."""
+_PEERS = ("v", "<", ">", "D", "p", "h", "8")
+"""Markers of other tools."""
 _FLOOR = 1e-15
 """Smaller errors [rad] are drawn here, since a logarithmic axis has no zero."""
 
@@ -35,21 +38,37 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
     cases = study.cases
     columns = min(2, len(cases))
     rows = -(-len(cases) // columns)
-    with chart(path, rows=rows, columns=columns, width=7.5 * columns, height=6.2 * rows + 1.4) as panels:
+    title = "Error against run time: how long a simulation takes, and how far it is from exact theory"
+    subtitle = (
+        "reduced: rolling is built into the coordinates; equality: a constraint of two joints; contact: friction. "
+        f"{study.machine['processor']}"
+    )
+    size: dict[str, Any] = {"width": 7.5 * columns, "height": 6.2 * rows + 2.5}
+    with chart(path, rows, columns, **size, title=title, subtitle=subtitle) as panels:
         for axes, case in zip(panels, cases, strict=False):
             _panel(axes, study, case)
         for axes in panels[len(cases) :]:
             axes.set_visible(False)
-        handles = {
-            label: line for axes in panels for line, label in zip(*axes.get_legend_handles_labels(), strict=True)
-        }
-        figure = panels[0].figure
-        figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=4, fontsize=10)
+        name_below(panels, 4, _legend(panels))
+
+
+def _legend(panels: list[Axes]) -> list[Artist]:
+    """Return the legend's entries in four columns: the ways of rolling, and what is not a model of mjbeer."""
+    named = {name: line for axes in panels for line, name in zip(*axes.get_legend_handles_labels(), strict=True)}
+    columns: dict[str, list[Artist]] = {way: [] for way in (*ROLLINGS, "other")}
+    for name, line in named.items():
+        columns[next((way for way in ROLLINGS if way in name), "other")].append(line)
+    for column in columns.values():  # ways of writing and the front come last
+        column.sort(key=lambda line: str(line.get_label()).startswith(("as usually", "the best")))
+    longest = max(len(column) for column in columns.values())
+    blank = Line2D([], [], linestyle="none", label=" ")
+    return [entry for column in columns.values() for entry in column + [blank] * (longest - len(column))]
 
 
 def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     """Draw the points of a case, the front, and the prediction for semi-implicit Euler."""
     points = study.of(case)
+    peers = sorted({point.way for point in study.points if point.way not in (*ROLLINGS, *USUAL)})
     for curve in dict.fromkeys(point.curve for point in points):
         times, errors = _coordinates([point for point in points if point.curve == curve])
         if curve.way in USUAL:
@@ -63,20 +82,15 @@ def _panel(axes: Axes, study: Benchmark, case: str) -> None:
         elif curve.way in ROLLINGS:
             _line(axes, curve, times=times, errors=errors)
         else:
-            axes.plot(times, errors, "-", color=_PEERS, linewidth=1, marker=".", markersize=4, label="other tools")
-            axes.annotate(
-                curve.way,
-                xy=(times[-1], errors[-1]),
-                xytext=(3, -9),
-                textcoords="offset points",
-                color="#555555",
-                fontsize=8,
-            )
+            marker = _PEERS[peers.index(curve.way) % len(_PEERS)]
+            axes.plot(times, errors, color=GREY, linewidth=1, marker=marker, markersize=4, label=curve.way)
     _front(axes, points)
     _prediction(axes, case, points)
-    axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 2, 20), title=f"{case}: {CASES[case].story}")
-    axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of phi and u/a [rad]")
-    axes.title.set_fontsize(11)
+    start = CASES[case]
+    axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 2, 20))
+    axes.minorticks_off()
+    axes.set_title(f"{case}: {in_words(start.scene)}, from φ = {in_degrees(start.phi0)}")
+    axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of φ and u/a [rad]")
 
 
 def _coordinates(points: list[Point]) -> tuple[list[float], list[float]]:
@@ -106,7 +120,14 @@ def _front(axes: Axes, points: list[Point]) -> None:
     best = frontier.front(frontier.ours(points))
     times, errors = _coordinates(best)
     axes.plot(
-        times, errors, color=COLOURS[2], linewidth=7, alpha=0.25, solid_capstyle="round", label="the best", zorder=1
+        times,
+        errors,
+        color=COLOURS[2],
+        linewidth=7,
+        alpha=0.25,
+        solid_capstyle="round",
+        label="the best of mjbeer",
+        zorder=1,
     )
     labelled = {}
     for level in frontier.LEVELS:
@@ -128,4 +149,6 @@ def _prediction(axes: Axes, case: str, points: list[Point]) -> None:
     slope = float(abs(euler_error(start.scene, start.times, start.phi0)).max())
     times = [1e3 * point.time for point in euler]
     style: dict[str, Any] = {"color": "#000000", "linewidth": 0.9, "linestyle": (0, (1, 1)), "zorder": 5}
-    axes.plot(times, [slope * point.value for point in euler], label="Euler as theory predicts", **style)
+    axes.plot(
+        times, [slope * point.value for point in euler], label="Euler, reduced: error as theory predicts", **style
+    )

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
-from mjbeer.output.plots import COLOURS, chart
+from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.studies.cases import CASES
@@ -26,7 +26,7 @@ _FLOOR = 1e-16
 _SEMI_IMPLICIT = "semi-implicit"
 _METHOD_COLOURS = dict(zip((_SEMI_IMPLICIT, *RUNGE_KUTTA), COLOURS, strict=False))
 """Colours of the plot of endurance; the semi-implicit integrators share one, because their drift is the same."""
-_MEANINGS = ("unstable", "stable, error above 1 %", "stable and accurate")
+MEANINGS = ("unstable", "stable, error above 1 %", "stable and accurate")
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def _usual(result: dict[str, Any]) -> bool:
     return result["family"] == "equality" and result["dampratio"] == 1 and result["written"] == "exact"
 
 
-_FIGURES = (
+FIGURES = (
     _Figure(
         name="stability-solref",
         columns=3,
@@ -73,7 +73,7 @@ _FIGURES = (
         name="stability-direct",
         columns=3,
         title="A constraint with a direct (negative) solref, which refsafe does not touch",
-        caption="Timestep against stiffness K of solref = (-K, -2 zeta sqrt(K)).",
+        caption="Timestep against stiffness K of solref = (−K, −2ζ√K).",
         holds=lambda result: result["family"] == "direct",
     ),
     _Figure(
@@ -98,7 +98,7 @@ _FIGURES = (
         holds=lambda result: result["family"] == "spring",
     ),
 )
-_VALUES = {
+VALUES = {
     "equality": "time constant of solref [s]",
     "contact": "time constant of solref [s]",
     "direct": "stiffness K of solref [1/s²]",
@@ -119,8 +119,8 @@ def draw(limits: list[dict[str, Any]], maps: list[dict[str, Any]], folder: Path)
     drawn = []
     if limits:
         _draw_limits(limits, folder / LIMITS)
-        drawn.append(f"{LIMITS}: largest timesteps of small swings, as omega h, against linear theory.")
-    for figure in _FIGURES:
+        drawn.append(f"{LIMITS}: largest timesteps of small swings, as ωh, against linear theory.")
+    for figure in FIGURES:
         shown = [result for result in maps if figure.holds(result)]
         if shown:
             _draw_maps(figure, shown, folder / figure.name)
@@ -131,7 +131,8 @@ def draw(limits: list[dict[str, Any]], maps: list[dict[str, Any]], folder: Path)
 def _draw_maps(figure: _Figure, maps: list[dict[str, Any]], path: Path) -> None:
     columns = min(figure.columns, len(maps))
     rows = math.ceil(len(maps) / columns)
-    with chart(path, rows, columns, max(3.5 * columns, 9), 3.1 * rows + 1.1) as panels:
+    size = {"width": max(3.5 * columns, 9.5), "height": 3.1 * rows + 1.5}
+    with chart(path, rows, columns, **size, title=figure.title, subtitle=figure.caption) as panels:
         for axes, result in zip(panels, maps, strict=False):
             _draw_map(axes, result)
         for axes in panels[len(maps) :]:
@@ -140,18 +141,16 @@ def _draw_maps(figure: _Figure, maps: list[dict[str, Any]], path: Path) -> None:
             if place + columns >= len(maps):
                 axes.set_xlabel("timestep h [s]")
             if place % columns == 0:
-                axes.set_ylabel(_VALUES[maps[place]["family"]])
-        whole = panels[0].figure
+                axes.set_ylabel(VALUES[maps[place]["family"]])
         handles: list[Artist] = [
-            Patch(facecolor=colour, label=name) for colour, name in zip(_CELLS, _MEANINGS, strict=True)
+            Patch(facecolor=colour, label=name) for colour, name in zip(_CELLS, MEANINGS, strict=True)
         ]
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": "white", "markeredgecolor": "black"}
         handles += [
             Line2D([], [], color="black", linewidth=1.6, label="limit of stability, theory"),
             Line2D([], [], markersize=5, label="the same, measured", **dots),
         ]
-        whole.legend(handles=handles, loc="outside lower center", ncols=5 if columns > 2 else 3, fontsize=10)
-        whole.suptitle(figure.title, fontsize=13)
+        name_below(panels, 5 if columns > 2 else 3, handles)
 
 
 def _draw_map(axes: Axes, result: dict[str, Any]) -> None:
@@ -161,6 +160,7 @@ def _draw_map(axes: Axes, result: dict[str, Any]) -> None:
         _edges(result["timesteps"]), _edges(result["values"]), cells, cmap=colours, vmin=0, vmax=2, rasterized=True
     )
     axes.set(xscale="log", yscale="log")
+    axes.minorticks_off()
     axes.grid(visible=False)
     first, last = result["timesteps"][0], result["timesteps"][-1]
     predicted, measured = (
@@ -196,7 +196,9 @@ def _draw_limits(limits: list[dict[str, Any]], path: Path) -> None:
     names = [name for name in (*INTEGRATORS, DOP853) if any(result["integrator"] == name for result in limits)]
     cases = [case for case in CASES if any(result["case"] == case for result in limits)]
     markers = dict(zip(ROLLINGS, "os^", strict=True))
-    with chart(path, width=10, height=6) as [axes]:
+    title = "How long may a timestep be? Limits of small swings, and linear theory"
+    subtitle = "reduced: rolling is built into the coordinates; equality: a constraint of two joints; contact: friction"
+    with chart(path, width=10, height=6.5, title=title, subtitle=subtitle) as [axes]:
         for place, name in enumerate(names):
             for limit in (linear_stability.stable_limit(name), linear_stability.accurate_limit(name)):
                 axes.plot([place - 0.45, place + 0.45], [limit] * 2, color="black", linewidth=1.2, zorder=1)
@@ -221,9 +223,9 @@ def _draw_limits(limits: list[dict[str, Any]], path: Path) -> None:
             Line2D([], [], color="black", label="linear theory of the scene"),
         ]
         axes.set_xticks(range(len(names)), names)
-        axes.set(yscale="log", ylabel="frequency of the swing times timestep, ωh", ylim=(1e-2, 12))
-        axes.set_title("How long may a timestep be? Limits of small swings, and what linear theory says", fontsize=13)
-        axes.figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=10)
+        axes.set(yscale="log", ylabel="frequency of the swing × timestep, ωh", ylim=(1e-2, 12))
+        axes.set_xlabel("integrator")
+        name_below([axes], 4, handles)
 
 
 def draw_endurance(results: Sequence[dict[str, Any]], path: Path) -> None:
@@ -237,7 +239,9 @@ def draw_endurance(results: Sequence[dict[str, Any]], path: Path) -> None:
         method = result["integrator"] if result["integrator"] in RUNGE_KUTTA else _SEMI_IMPLICIT
         lines.setdefault((method, result["steps"], result["name"]), []).append(result)
     styles = {method: iter(("-", "--", ":")) for method in _METHOD_COLOURS}
-    with chart(path, width=9, height=6.5) as (axes,):
+    title = "How much energy a swing gains or loses by being simulated"
+    subtitle = "swings of 1 rad of beer that slides in its can"
+    with chart(path, width=9, height=7, title=title, subtitle=subtitle) as (axes,):
         for (method, steps, name), runs in lines.items():
             shown = max(runs, key=lambda run: run["swings"])  # the lines of the similar integrators coincide with it
             law = " or ".join({run["law"] or "no law": None for run in runs})
@@ -248,7 +252,6 @@ def draw_endurance(results: Sequence[dict[str, Any]], path: Path) -> None:
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(_FLOOR, 2)
-        axes.set_xlabel("number of swings of 1 rad")
-        axes.set_ylabel("energy of the swing gained or lost, as a share of it")
-        axes.set_title("How much energy a swing gains or loses by being simulated")
-        axes.figure.legend(loc="outside lower center", fontsize=8)
+        axes.set_xlabel("number of swings")
+        axes.set_ylabel("energy gained or lost, share of the swing's")
+        name_below([axes], 1)

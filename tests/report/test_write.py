@@ -5,18 +5,22 @@ import math
 import os
 import pathlib
 import re
+from types import ModuleType
 
 import pytest
 
 from mjbeer.cli.app import main
-from mjbeer.drawing import opengl
+from mjbeer.drawing import encoder, opengl
+from mjbeer.drawing.film import Take
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import terminal
 from tests.support import stubs
+from tests.support.pages import Page
 
 SENTENCE = r"{} of {} checks and {} of {} rows of the audit passed, in \d+ s\n"
-FILMS = ("sliding", "frozen", "pendulum", "hoop")
-FILES = {"validation.json", "summary.md", "paper", *(f"{film}.{kind}" for film in FILMS for kind in ("mp4", "png"))}
+FILMS = ("race", "sliding", "frozen", "pendulum", "hoop")
+DRAWN = {f"{film}{end}" for film in FILMS for end in (".mp4", "-still.png")}
+FILES = {"validation.json", "index.html", "paper", *DRAWN}
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-4, 0), (1e-3, 0), (2e-3, 1), (math.nan, 1)])
@@ -99,7 +103,7 @@ def test_an_equation_that_fails_is_in_the_exit_status(
 
 
 @pytest.mark.parametrize("quick", [True, False])
-def test_a_report_has_the_table_and_four_scenes(
+def test_a_report_has_the_table_and_the_films(
     quick: bool, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=2e-5)
@@ -109,21 +113,23 @@ def test_a_report_has_the_table_and_four_scenes(
     assert set(os.listdir(folder)) == FILES
     content = json.loads((folder / "validation.json").read_text())
     assert [row["quantity"] for row in content["checks"]] == ["first", "second"]
-    summary = (folder / "summary.md").read_text()
-    assert "2 of 2 checks and 0 of 0 rows of the audit passed." in summary
-    assert "| first | a stub | 1.0e-05 | 1.0e-03 rad | none |" in summary
-    assert all(f"[![{film}]({film}.png)]({film}.mp4)" in summary for film in FILMS)
+    read = Page.of((folder / "index.html").read_text())
+    assert "2 of 2 checks and 0 of 0 rows of the audit passed." in [element.text for element in read.all("p")]
+    cells = [element.text for element in read.all("td")]
+    assert cells[cells.index("first") :][:5] == ["first", "a stub", "1.0e-05", "1.0e-03 rad", "none"]
+    shown = [element.attributes["aria-label"] for element in read.all("video")]
+    assert shown == [*(f"Film: {film}" for film in FILMS), *([] if quick else ["Film of the story: told"])]
     out, err = capsys.readouterr()
     assert out == ""
-    last = err.partition(f"the report is in {folder / 'summary.md'}\n")[2]
+    last = err.partition(f"the report is in {folder / 'index.html'}\n")[2]
     assert re.fullmatch(SENTENCE.format(2, 2, 0, 0), last)
     assert set(os.listdir(folder / "paper")) == {
         *("letters.svg", "letters.png", "stories.md", "told.svg"),
-        *([] if quick else ["told.mp4"]),
+        *([] if quick else ["told.mp4", "told-still.png"]),
     }
     gallery = [call for call in calls if call["path"].parent == folder]
-    assert len(gallery) == 8
-    assert {call["width"] for call in gallery if call["function"] == "render"} == {640 if quick else 1280}
+    assert [call["path"].stem for call in gallery] == list(FILMS)
+    assert {call["width"] for call in gallery} == {640 if quick else 1280}
 
 
 def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
@@ -132,7 +138,7 @@ def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
     stubs.validate(monkeypatch)
     calls = stubs.draw(monkeypatch)
     main(["report", "--quick", "--output", str(tmp_path)])
-    runs = {call["path"].stem: call["trajectory"] for call in calls}
+    runs = {call["path"].stem: call["film"].trajectory() for call in calls if isinstance(call["film"], Take)}
     kinds = {name: (run.scene.attachment, run.scene.load.fill is None) for name, run in runs.items()}
     assert kinds == {
         "sliding": ("sliding", False),
@@ -146,26 +152,40 @@ def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-5, 0), (2e-3, 1)])
-def test_without_opengl_a_report_has_all_but_films_and_says_so(
+@pytest.mark.parametrize("lacking", [opengl, encoder])
+def test_without_opengl_or_ffmpeg_a_report_has_all_but_films_and_says_so(
+    lacking: ModuleType,
     error: float,
     status: int,
     tmp_path: pathlib.Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    """A film of an earlier report goes, for it would not be of this one."""
     stubs.validate(monkeypatch, first=error)
     calls = stubs.draw(monkeypatch)
-    monkeypatch.setattr(opengl, "problem", lambda: "no OpenGL")
+    monkeypatch.setattr(lacking, "problem", lambda: "there is none")
+    (tmp_path / "hoop.mp4").write_text("of an earlier report")
     assert main(["report", "--output", str(tmp_path)]) == status
     assert not calls
-    assert set(os.listdir(tmp_path)) == {"validation.json", "summary.md", "paper"}
+    assert set(os.listdir(tmp_path)) == {"validation.json", "index.html", "paper"}
     assert set(os.listdir(tmp_path / "paper")) == {"letters.svg", "letters.png", "told.svg", "stories.md"}
-    line = opengl.missing([*(f"{film}.mp4" for film in FILMS), "paper/told.mp4"])
+    line = lacking.missing([*(f"{film}.mp4" for film in FILMS), "paper/told.mp4"])
     assert f"\n{line}\nthe report is in " in capsys.readouterr().err
-    summary = (tmp_path / "summary.md").read_text()
-    assert f"Films: {line}\n" in summary
-    assert "| first | a stub |" in summary
-    assert ".png" not in summary
+    read = Page.of((tmp_path / "index.html").read_text())
+    assert any(line in element.text for element in read.all("p"))
+    assert "first" in [element.text for element in read.all("td")]
+    assert not read.all("video")
+
+
+def test_an_ffmpeg_that_is_not_there_is_a_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert encoder.problem() is None
+    monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/nonexistent")
+    assert "/nonexistent" in str(encoder.problem())
+    assert encoder.missing(["a.mp4", "b.mp4"]) == (
+        "not drawn because ffmpeg does not start: a.mp4, b.mp4. Reinstall it (`pip install --force-reinstall "
+        "imageio-ffmpeg`), or name another in IMAGEIO_FFMPEG_EXE"
+    )
 
 
 def test_a_failed_check_is_in_the_report_and_in_its_exit_status(
@@ -174,9 +194,9 @@ def test_a_failed_check_is_in_the_report_and_in_its_exit_status(
     stubs.validate(monkeypatch, first=1e-5, second=2e-3)
     stubs.draw(monkeypatch)
     assert main(["report", "--output", str(tmp_path), "--verbose"]) == 1
-    summary = (tmp_path / "summary.md").read_text()
-    assert "1 of 2 checks and 0 of 0 rows of the audit passed." in summary
-    assert "| second | a stub | 2.0e-03 **FAIL** |" in summary
+    read = Page.of((tmp_path / "index.html").read_text())
+    assert "1 of 2 checks and 0 of 0 rows of the audit passed." in [element.text for element in read.all("p")]
+    assert "2.0e-03 FAIL" in [element.text for element in read.all("td")]
     out, err = capsys.readouterr()
     assert "second\ta stub\t2.0e-03\t1.0e-03 rad\tFAIL" in out
     *_, failure, last = err.splitlines()
@@ -184,16 +204,29 @@ def test_a_failed_check_is_in_the_report_and_in_its_exit_status(
     assert re.fullmatch(SENTENCE.format(1, 2, 0, 0), last + "\n")
 
 
-def test_what_was_written_before_a_failure_is_whole_and_has_no_summary(
+def test_what_was_written_before_a_failure_is_whole_and_has_no_page(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5)
     stubs.draw(monkeypatch, fail_at="pendulum.mp4")
-    (tmp_path / "summary.md").write_text("of an earlier report")
+    (tmp_path / "index.html").write_text("of an earlier report")
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: cannot draw pendulum.mp4\n")
-    assert set(os.listdir(tmp_path)) == {"validation.json", "sliding.mp4", "sliding.png", "frozen.mp4", "frozen.png"}
+    before = {f"{film}{end}" for film in ("race", "sliding", "frozen") for end in (".mp4", "-still.png")}
+    assert set(os.listdir(tmp_path)) == {"validation.json", "paper", *before}
     assert json.loads((tmp_path / "validation.json").read_text())["passed"] is True
+
+
+def test_a_folder_that_cannot_be_written_is_told_before_the_work(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.validate(monkeypatch, first=1e-5)
+    calls = stubs.draw(monkeypatch)
+    (tmp_path / "file").write_text("")
+    folder = tmp_path / "file" / "report"
+    assert main(["report", "--output", str(folder)]) == 2
+    assert capsys.readouterr().err == f"mjbeer: cannot write {folder / 'index.html'}: Not a directory\n"
+    assert not calls
 
 
 def test_a_check_that_cannot_be_measured_ends_the_report(
