@@ -25,7 +25,7 @@ from mjbeer.theory.words import in_words
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from mjbeer.drawing.cameras import Camera
+    from mjbeer.drawing.world.cameras import Camera
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
