@@ -9,13 +9,14 @@ import pytest
 
 from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, sliding
 from mjbeer.drawing import frames, video
-from mjbeer.drawing.cameras import CAMERAS, Camera
-from mjbeer.drawing.canvas import Canvas
-from mjbeer.drawing.display import Display, on_incline, scale
 from mjbeer.drawing.frames import Stage
-from mjbeer.drawing.look import Look
+from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay.sheet import Sheet
 from mjbeer.drawing.painter import Painter
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.world.cameras import CAMERAS, Camera
+from mjbeer.drawing.world.canvas import Canvas
+from mjbeer.drawing.world.display import Display, on_incline, scale
+from mjbeer.drawing.world.positions import coordinates
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.segment import segment
 
@@ -157,13 +158,13 @@ def test_motion_between_samples_is_of_fourth_order() -> None:
     errors = []
     for samples in (101, 201):
         coarse = exact(frozen(), np.linspace(0, 1, samples), 2.0)
-        errors.append(np.abs(frames.coordinates(coarse, times)[:, 1] - true.phi).max())
+        errors.append(np.abs(coordinates(coarse, times)[:, 1] - true.phi).max())
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
 
 
 def test_one_sample_is_a_still() -> None:
     still = exact(frozen(), np.array([0.0]), 1.0)
-    assert frames.coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
+    assert coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
 
 
 @pytest.mark.draws

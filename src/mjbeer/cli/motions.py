@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from mjbeer.cli.arguments import AnyScene, Motion, if_given, radians
-from mjbeer.drawing.cameras import Camera
+from mjbeer.drawing.world.cameras import Camera
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from functools import partial
 
 from mjbeer.drawing.film import Film, Take
-from mjbeer.drawing.look import Look
-from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.race import Race
+from mjbeer.drawing.runner import Runner
 from mjbeer.drawing.studio import Order
 from mjbeer.paper.stories import report as stories_report
 from mjbeer.simulation.simulate import simulate

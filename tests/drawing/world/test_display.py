@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mjbeer import Can, Scene, exact, frozen, hoop, simulate, sliding
-from mjbeer.drawing.display import Display, on_incline, scale
+from mjbeer.drawing.world.display import Display, on_incline, scale
 from mjbeer.theory.can import RADIUS
 from tests.support.scenes import METAL, SCENES, scenes
 

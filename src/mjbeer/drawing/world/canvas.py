@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.drawing import opengl
-from mjbeer.drawing.view import View
+from mjbeer.drawing.world.view import View
 from mjbeer.exceptions import RenderingError
 
 _NEAR, _FAR = 0.2, 20.0

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, exact, frozen, simulate, sliding
-from mjbeer.drawing import quantity
-from mjbeer.drawing.quantity import QUANTITIES
+from mjbeer.drawing.overlay import quantity
+from mjbeer.drawing.overlay.quantity import QUANTITIES
 
 TIMES = np.linspace(0, 1, 2001)
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, simulate
-from mjbeer.drawing.charts import charts
-from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.strip import Chart, Line, Strip, unbroken
+from mjbeer.drawing.overlay.charts import charts
+from mjbeer.drawing.overlay.sheet import Sheet
+from mjbeer.drawing.overlay.strip import Chart, Line, Strip, unbroken
 
 RED = (1.0, 0.0, 0.0)
 TIME = np.linspace(0, 2, 201)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, hoop, sliding
-from mjbeer.drawing.cameras import CAMERAS, Camera
-from mjbeer.drawing.display import on_incline, scale
-from mjbeer.drawing.frames import coordinates
-from mjbeer.drawing.shot import Shot
-from mjbeer.drawing.view import circle
+from mjbeer.drawing.world.cameras import CAMERAS, Camera
+from mjbeer.drawing.world.display import on_incline, scale
+from mjbeer.drawing.world.positions import coordinates
+from mjbeer.drawing.world.shot import Shot
+from mjbeer.drawing.world.view import circle
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 

@@ -7,11 +7,11 @@ from functools import cached_property
 
 import numpy as np
 
-from mjbeer.drawing import quantity
-from mjbeer.drawing.display import on_incline
-from mjbeer.drawing.look import Mark
-from mjbeer.drawing.sheet import INK, Sheet
-from mjbeer.drawing.view import View, circle
+from mjbeer.drawing.overlay import quantity
+from mjbeer.drawing.overlay.look import Mark
+from mjbeer.drawing.overlay.sheet import INK, Sheet
+from mjbeer.drawing.world.display import on_incline
+from mjbeer.drawing.world.view import View, circle
 from mjbeer.model.parts import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene

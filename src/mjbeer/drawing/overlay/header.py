@@ -3,9 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from mjbeer.drawing.look import Look
-from mjbeer.drawing.marks import LEGENDS
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay.marks import LEGENDS
+from mjbeer.drawing.overlay.sheet import Sheet
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import in_words
 

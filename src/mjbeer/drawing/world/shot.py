@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from mjbeer.drawing.cameras import Camera
-from mjbeer.drawing.display import on_incline, scale
-from mjbeer.drawing.view import View
+from mjbeer.drawing.world.cameras import Camera
+from mjbeer.drawing.world.display import on_incline, scale
+from mjbeer.drawing.world.view import View
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 

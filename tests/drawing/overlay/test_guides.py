@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, hoop
-from mjbeer.drawing import guides
-from mjbeer.drawing.display import Display, on_incline
-from mjbeer.drawing.guides import Board
-from mjbeer.drawing.shot import Shot
-from mjbeer.drawing.view import View
+from mjbeer.drawing.overlay import guides
+from mjbeer.drawing.overlay.guides import Board
+from mjbeer.drawing.world.display import Display, on_incline
+from mjbeer.drawing.world.shot import Shot
+from mjbeer.drawing.world.view import View
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from tests.support.drawn import Recorder

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mjbeer.drawing.quantity import QUANTITIES
-from mjbeer.drawing.strip import MUJOCO, Chart, Line
+from mjbeer.drawing.overlay.quantity import QUANTITIES
+from mjbeer.drawing.overlay.strip import MUJOCO, Chart, Line
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.exact import exact
 from mjbeer.theory.trajectory import Trajectory

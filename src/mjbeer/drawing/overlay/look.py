@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, Self
 
-from mjbeer.drawing.cameras import Camera
+from mjbeer.drawing.world.cameras import Camera
 from mjbeer.model import templates
 from mjbeer.theory.trajectory import Trajectory
 

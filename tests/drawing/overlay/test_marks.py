@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from mjbeer import Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
-from mjbeer.drawing.display import on_incline, scale
-from mjbeer.drawing.frames import coordinates
-from mjbeer.drawing.look import Mark
-from mjbeer.drawing.marks import LONGEST, Marks
-from mjbeer.drawing.shot import Shot
-from mjbeer.drawing.view import View
+from mjbeer.drawing.overlay.look import Mark
+from mjbeer.drawing.overlay.marks import LONGEST, Marks
+from mjbeer.drawing.world.display import on_incline, scale
+from mjbeer.drawing.world.positions import coordinates
+from mjbeer.drawing.world.shot import Shot
+from mjbeer.drawing.world.view import View
 from mjbeer.model.parts import WALL
 from mjbeer.theory.can import RADIUS
 from tests.support.drawn import Recorder

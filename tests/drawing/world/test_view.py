@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mjbeer.drawing.view import View, circle
+from mjbeer.drawing.world.view import View, circle
 
 # Rounding of a dozen operations on numbers of the size of the picture.
 ROUNDING = 1e-9

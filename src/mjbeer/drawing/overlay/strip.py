@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.overlay.sheet import Sheet
 
 MUJOCO = (0.0, 0.447, 0.698)
 """Colour of a simulation's line, where there is one only."""

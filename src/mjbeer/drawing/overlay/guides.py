@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from mjbeer.drawing.display import on_incline, scale
-from mjbeer.drawing.sheet import Box, Sheet, overlap
-from mjbeer.drawing.view import View
+from mjbeer.drawing.overlay.sheet import Box, Sheet, overlap
+from mjbeer.drawing.world.display import on_incline, scale
+from mjbeer.drawing.world.view import View
 from mjbeer.theory.scene import Scene
 
 _DARK = (0.12, 0.16, 0.2)
