@@ -65,7 +65,7 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
         lift_dot=rest,
     )
     drawn = frames.draw(still, times, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"))
-    stage = Stage.of(still, times, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"), 1.0)
+    stage = Stage.of(still, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"), 1.0)
     poses = np.stack([u, phis, rolls], axis=1)
     return [Seen(picture, stage, pose) for picture, pose in zip(drawn, poses, strict=True)]
 
@@ -123,7 +123,7 @@ def test_the_wall_fills_the_picture(camera: Camera, incline: float) -> None:
 def test_what_a_still_camera_does_not_draw_anew_is_the_same() -> None:
     """A picture of the whole, and one of the empty board with the can in its place, differ by rounding only."""
     moved = motion()
-    stage = Stage.of(moved, moved.time, *SIZE, PLAIN, 1.0)
+    stage = Stage.of(moved, *SIZE, PLAIN, 1.0)
     assert stage.shot.still
     display, pictures = Display.of([moved.scene], *stage.reach), []
     with Canvas(display.model, *stage.pixels) as canvas:

@@ -50,7 +50,7 @@ def draw(
 def _draw(
     trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
 ) -> Generator[np.ndarray]:
-    stage = Stage.of(trajectory, times, width, height, look, speed)
+    stage = Stage.of(trajectory, width, height, look, speed)
     display = stage.display()
     with Canvas(display.model, width, stage.pixels[1]) as canvas:
         painter = Painter(canvas, display, stage.shot.still)
@@ -75,12 +75,11 @@ class Stage:
     pixels: tuple[int, int]
     """Width and height of the scene [pixels]."""
     unit: float
+    """Unit of length of the sheet [pixels]."""
 
     @classmethod
-    def of(
-        cls, trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
-    ) -> "Stage":
-        """Return the stage for the pictures of a trajectory at some times [s]."""
+    def of(cls, trajectory: Trajectory, width: int, height: int, look: Look, speed: float) -> "Stage":
+        """Return the stage for pictures of a trajectory of a width and a height [pixels]."""
         scene, unit = trajectory.scene, height / UNITS
         header = Header(look, trajectory, speed, unit)
         lasts = len(trajectory.time) > 1
