@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, sliding
+from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, simulate, sliding
 from mjbeer.drawing import frames, video
 from mjbeer.drawing.frames import Stage
 from mjbeer.drawing.overlay.look import Look
@@ -193,3 +193,26 @@ def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytes
     assert len(closed) == 1
     video.frame(motion(), 0.1, 64, 36)
     assert len(closed) == 2
+
+
+@pytest.mark.draws
+@pytest.mark.parametrize("size", [(2, 2), (16, 16), (400, 40), (60, 400)])
+def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
+    assert video.frame(motion(), 0.2, *size).shape == (size[1], size[0], 3)
+
+
+@pytest.mark.draws
+@pytest.mark.parametrize(
+    "moved",
+    [
+        simulate(frozen(gravity=0.0), 0.5, 1.0, 1.0, rolling="contact"),
+        exact(sliding(), np.linspace(0, 0.5, 51), 1.0, 1e4, many_turns=True),
+        exact(frozen(), np.linspace(0, 1e-9, 20), 1.0),
+        exact(frozen(), np.linspace(0, 1e6, 2000), 1.0, many_turns=True),
+        exact(frozen(), np.linspace(1, 2, 20), 1.0),
+    ],
+    ids=["weightless", "fast", "short", "long", "late"],
+)
+def test_a_motion_of_any_kind_can_be_drawn(moved: Trajectory) -> None:
+    middle = float(moved.time[len(moved.time) // 2])
+    assert np.ptp(video.frame(moved, middle, 320, 180)) > 200

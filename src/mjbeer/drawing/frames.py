@@ -25,6 +25,8 @@ from mjbeer.theory.trajectory import Trajectory
 
 _STRIP = 10
 """Height of the charts below a picture, in units."""
+_NARROW = 24
+"""Width up to which a picture has no charts below, in units."""
 _FINE = 2000
 """Points of a path."""
 
@@ -82,8 +84,8 @@ class Stage:
         """Return the stage for pictures of a trajectory of a width and a height [pixels]."""
         scene, unit = trajectory.scene, height / UNITS
         header = Header(look, trajectory, speed, unit)
-        lasts = len(trajectory.time) > 1
-        below = round(_STRIP * unit) if lasts and look.strips else 0
+        has_room = len(trajectory.time) > 1 and width > _NARROW * unit
+        below = round(_STRIP * unit) if has_room and look.strips else 0
         pixels = (width, height - header.height - below)
         fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
         positions = coordinates(trajectory, fine)
