@@ -27,7 +27,7 @@ def _of_take(take: Take, count: int) -> list[str]:
     trajectory = take.trajectory()
     look = take.chosen(trajectory)
     times = np.linspace(trajectory.time[0], trajectory.time[-1], count)
-    stage = Stage.of(trajectory, times, *_SIZE, look, take.speed)
+    stage = Stage.of(trajectory, *_SIZE, look, take.speed)
     display, found = stage.display(), []
     for time, now in zip(times, coordinates(trajectory, times), strict=True):
         stage.sheet.boxes.clear()

@@ -25,6 +25,8 @@ from mjbeer.theory.trajectory import Trajectory
 
 _STRIP = 10
 """Height of the charts below a picture, in units."""
+_NARROW = 24
+"""Width up to which a picture has no charts below, in units."""
 _FINE = 2000
 """Points of a path."""
 
@@ -50,7 +52,7 @@ def draw(
 def _draw(
     trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
 ) -> Generator[np.ndarray]:
-    stage = Stage.of(trajectory, times, width, height, look, speed)
+    stage = Stage.of(trajectory, width, height, look, speed)
     display = stage.display()
     with Canvas(display.model, width, stage.pixels[1]) as canvas:
         painter = Painter(canvas, display, stage.shot.still)
@@ -75,16 +77,15 @@ class Stage:
     pixels: tuple[int, int]
     """Width and height of the scene [pixels]."""
     unit: float
+    """Unit of length of the sheet [pixels]."""
 
     @classmethod
-    def of(
-        cls, trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
-    ) -> "Stage":
-        """Return the stage for the pictures of a trajectory at some times [s]."""
+    def of(cls, trajectory: Trajectory, width: int, height: int, look: Look, speed: float) -> "Stage":
+        """Return the stage for pictures of a trajectory of a width and a height [pixels]."""
         scene, unit = trajectory.scene, height / UNITS
         header = Header(look, trajectory, speed, unit)
-        lasts = len(trajectory.time) > 1
-        below = round(_STRIP * unit) if lasts and look.strips else 0
+        has_room = len(trajectory.time) > 1 and width > _NARROW * unit
+        below = round(_STRIP * unit) if has_room and look.strips else 0
         pixels = (width, height - header.height - below)
         fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
         positions = coordinates(trajectory, fine)

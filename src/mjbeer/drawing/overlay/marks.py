@@ -112,8 +112,9 @@ class Marks:
     def _lengths(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the lengths of the arrows of N and F [radii], positive away from the incline and up it."""
         normal, friction = quantity.forces(self.scene, self.trajectory)
-        largest = np.percentile(np.hypot(normal, friction), _RARE) / (self.scene.mass * self.scene.gravity)
-        length = min(_WEIGHT, LONGEST / max(largest, _FAINT)) / (self.scene.mass * self.scene.gravity)
+        weight = quantity.weight(self.scene)
+        largest = np.percentile(np.hypot(normal, friction), _RARE) / weight
+        length = min(_WEIGHT, LONGEST / max(largest, _FAINT)) / weight
         return length * normal, length * friction
 
     def _phi(self, pen: "_Pen", time: float, now: np.ndarray) -> None:

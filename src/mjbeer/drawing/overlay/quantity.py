@@ -9,6 +9,8 @@ import numpy as np
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.scene import Scene
 
+_EARTH = 9.81
+"""Gravity on earth [m/s^2]."""
 _INTERVALS = 200
 """Number of intervals of a motion over which forces are averaged."""
 
@@ -56,7 +58,7 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
     motion: a stiff contact trembles, which a single step would show and an eye would not. The friction is positive up
     the incline.
     """
-    load, weight = scene.load.mass * scene.load.offset, scene.mass * scene.gravity
+    load, heavy = scene.load.mass * scene.load.offset, scene.mass * scene.gravity
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
     along = scene.mass * motion.u_dot - load * np.cos(motion.phi) * motion.phi_dot
     half = np.ptp(motion.time) / _INTERVALS / 2
@@ -67,12 +69,17 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
         values = np.interp(last, motion.time, momentum) - np.interp(first, motion.time, momentum)
         return values / (last - first)
 
-    normal = weight * math.cos(scene.incline) + change(across)
-    return normal, weight * math.sin(scene.incline) - change(along)
+    normal = heavy * math.cos(scene.incline) + change(across)
+    return normal, heavy * math.sin(scene.incline) - change(along)
+
+
+def weight(scene: Scene) -> float:
+    """Return the weight of can and load [N], in which forces are drawn; without gravity, that on earth."""
+    return scene.mass * (scene.gravity or _EARTH)
 
 
 def _normal(scene: Scene, motion: Coordinates) -> np.ndarray:
-    return forces(scene, motion)[0] / (scene.mass * scene.gravity)
+    return forces(scene, motion)[0] / weight(scene)
 
 
 QUANTITIES = {

@@ -109,8 +109,8 @@ class Sheet:
         box = self.box(place, words, size, anchor, bold)
         left, top = int(box[0]), int(box[1])
         if halo:
-            self._blend(left - _EDGE, top - _EDGE, _letters(words, round(size), bold, _EDGE), (1.0, 1.0, 1.0))
-        self._blend(left, top, _letters(words, round(size), bold, 0), to_rgb(colour))
+            self._blend(left - _EDGE, top - _EDGE, _letters(words, max(1, round(size)), bold, _EDGE), (1.0, 1.0, 1.0))
+        self._blend(left, top, _letters(words, max(1, round(size)), bold, 0), to_rgb(colour))
         self.boxes.append(box)
         return box
 
@@ -123,7 +123,7 @@ class Sheet:
         bold: bool = False,
     ) -> Box:
         """Return the box that a text would have."""
-        height, width = _letters(words, round(size), bold, 0).shape
+        height, width = _letters(words, max(1, round(size)), bold, 0).shape
         left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
         return left, top, left + width, top + height
 
