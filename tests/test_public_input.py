@@ -22,7 +22,7 @@ from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, exact, frozen, req
 from mjbeer.drawing import encoder, frames, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Integrator, Rolling, Setting, Softness
 from mjbeer.paper.looping import loop
 from mjbeer.require import shown
 from mjbeer.theory.scene import ATTACHMENTS
@@ -241,7 +241,7 @@ def test_exact_theory_answers_or_refuses(scene: Scene, phi0: float, phi_dot0: fl
     STARTS,
     MAGNITUDES,
     st.sampled_from(ROLLINGS),
-    st.sampled_from((*INTEGRATORS, DOP853)),
+    st.sampled_from((*INTEGRATORS, *OWN)),
     MAGNITUDES,
 )
 def test_a_simulation_answers_or_refuses(

@@ -14,7 +14,7 @@ from mjbeer.cli.arguments import Common, Frozen, Hoop, Integrator, Motion, Pendu
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS
 
 UNITS = {
     "phi0": "degrees", "phi-dot0": "degrees/s", "incline": "degrees", "duration": "s", "timestep": "s",
@@ -86,7 +86,7 @@ def test_the_defaults_are_those_of_python() -> None:
 
 def test_the_names_are_those_of_python() -> None:
     assert get_args(Rolling) == ROLLINGS
-    assert get_args(Integrator) == (*INTEGRATORS, DOP853)
+    assert get_args(Integrator) == (*INTEGRATORS, *OWN)
 
 
 def test_every_option_arrives() -> None:

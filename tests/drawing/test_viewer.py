@@ -174,6 +174,7 @@ def test_a_slow_machine_does_not_fall_behind_for_ever() -> None:
     ("arguments", "error", "message"),
     [
         ({"integrator": "DOP853"}, UnsupportedError, "DOP853 is mjbeer's integrator, not MuJoCo's; view with one of"),
+        ({"integrator": "GaussJackson"}, UnsupportedError, "GaussJackson is mjbeer's integrator, not MuJoCo's; view"),
         ({"speed": 0.0}, ParameterError, "speed must be greater than 0, got 0.0"),
         ({"phi0": math.nan}, ParameterError, "phi0 must be a finite number"),
         ({"rolling": "gears"}, ParameterError, "rolling must be one of"),

@@ -178,7 +178,10 @@ def test_what_mujoco_does_not_compile_is_no_traceback(monkeypatch: pytest.Monkey
     ("arguments", "message"),
     [
         ({"rolling": "sliding"}, "rolling must be one of 'reduced', 'equality', 'contact'; got 'sliding'"),
-        ({"integrator": "RK5"}, "'Euler', 'implicit', 'implicitfast', 'discrete', 'RK4', 'DOP853'; got 'RK5'"),
+        (
+            {"integrator": "RK5"},
+            "'Euler', 'implicit', 'implicitfast', 'discrete', 'RK4', 'DOP853', 'GaussJackson'; got 'RK5'",
+        ),
         ({"timestep": 0}, r"timestep must be greater than 0 \[s\], got 0"),
         ({"timestep": math.nan}, "timestep must be a finite number"),
         ({"friction": -1}, "friction must be greater than 0, got -1"),

@@ -17,7 +17,7 @@ from mjbeer.model import state
 from mjbeer.model.build import compose
 from mjbeer.model.engine import library
 from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS, Setting
+from mjbeer.model.setting import INTEGRATORS, OWN, Setting
 from tests.support.scenes import METAL, SCENES
 
 pytestmark = pytest.mark.slow
@@ -165,9 +165,12 @@ def test_the_precision_that_mujoco_writes_with_is_restored(digits: int, tmp_path
         c._mjPRIVATE__set_xml_precision(before)
 
 
-def test_dop853_is_refused_by_name(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(UnsupportedError, match="DOP853 is mjbeer's integrator, not MuJoCo's; export with one of Euler"):
-        export(frozen(), tmp_path / "model.xml", integrator="DOP853")
+@pytest.mark.parametrize("name", OWN)
+def test_an_integrator_of_mjbeer_s_is_refused_by_name(name: str, tmp_path: pathlib.Path) -> None:
+    with pytest.raises(
+        UnsupportedError, match=f"{name} is mjbeer's integrator, not MuJoCo's; export with one of Euler"
+    ):
+        export(frozen(), tmp_path / "model.xml", rolling="reduced", integrator=name)
     assert not os.listdir(tmp_path)
 
 

@@ -31,6 +31,16 @@ def test_noise_is_undecided() -> None:
     assert str(convergence(STEPS, noise)) == "undecided"
 
 
+def test_the_order_of_close_rungs_is_fitted_to_all_of_them() -> None:
+    """As of a multistep method, whose rungs scatter by a factor of 1.5 about the line; no coarser ladder is fitted."""
+    scatter = 1.5 ** np.array([1, -1, -1, 1, 1, -1, 1, -1, 1, -1])
+    steps = 0.016 / 2.0 ** (np.arange(10) / 4)
+    found = convergence(steps, 0.1 * (steps / steps[0]) ** 13 * scatter)
+    assert found.order == pytest.approx(13, abs=0.05 * 13)
+    assert convergence(STEPS, 0.1 * (STEPS / STEPS[0]) ** 3 * scatter).order is None
+    assert convergence(steps[:7], 0.1 * (steps[:7] / steps[0]) ** 13 * scatter[:7]).order is None
+
+
 def test_a_plateau_of_large_errors_is_no_floor() -> None:
     """Motions that have lost their phase differ by some radians, whatever the timestep."""
     assert convergence(STEPS, [2.0, 1.9, 2.1, 2.0, 1.8, 1.0, 0.1, 0.01, 0.001, 1e-4]).kind != "floored"

@@ -163,7 +163,7 @@ class Motion:
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
     integrator: Annotated[Integrator | None, if_given(Integrator, "RK4, or DOP853 with a tolerance")] = None
-    """Integrator: one of MuJoCo's, by its name in MJCF, or DOP853, a Runge-Kutta method of order 8."""
+    """Integrator: one of MuJoCo's, by its name in MJCF, DOP853 (Runge-Kutta, order 8) or GaussJackson (multistep)."""
     timestep: float = 1e-3
     """Timestep; if a tolerance is given, the interval between samples [s]."""
     tolerance: Annotated[float | None, if_given(float, "none")] = None

@@ -10,7 +10,7 @@ from mjbeer.drawing.window import require_window
 from mjbeer.exceptions import RenderingError, UnsupportedError
 from mjbeer.model.build import finish
 from mjbeer.model.present import CAMERA, START, present
-from mjbeer.model.setting import DOP853, FRICTION, INTEGRATORS, Integrator, Rolling, Setting, supported
+from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting, supported
 from mjbeer.theory.scene import Scene
 
 _SPACE = 32
@@ -86,9 +86,9 @@ def view(
       UnsupportedError: if MuJoCo cannot have such a model.
       RenderingError: if no window can be opened.
     """
-    if integrator == DOP853:
+    if integrator in OWN:
         raise UnsupportedError(
-            f"DOP853 is mjbeer's integrator, not MuJoCo's; view with one of {', '.join(INTEGRATORS)}"
+            f"{integrator} is mjbeer's integrator, not MuJoCo's; view with one of {', '.join(INTEGRATORS)}"
         )
     rolling = rolling or ("equality" if supported(scene, "equality") else "reduced")
     setting = Setting(rolling, integrator, timestep, friction=friction)

@@ -10,7 +10,7 @@ from mjbeer import require
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import appearance, constrained, reduced, templates
 from mjbeer.model.inertia import mass_unit
-from mjbeer.model.setting import DOP853, FRICTION, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import DOP853, FRICTION, GAUSS_JACKSON, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.theory.scene import Scene
 
 _INTEGRATORS = {
@@ -19,7 +19,8 @@ _INTEGRATORS = {
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
     "RK4": mujoco.mjtIntegrator.mjINT_RK4,
-    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # not used: DOP853 steps by itself
+    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # not used: mjbeer's own integrators step by themselves
+    GAUSS_JACKSON: mujoco.mjtIntegrator.mjINT_RK4,
 }
 _DISABLE = mujoco.mjtDisableBit
 # No scene needs these stages. Autoreset must go: it would hide a divergence by starting again.

@@ -49,9 +49,10 @@ def export(
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
         raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
     wanted = setting.Setting(rolling, integrator, timestep, friction=friction)
-    if wanted.integrator == setting.DOP853:
+    if wanted.integrator in setting.OWN:
         raise UnsupportedError(
-            f"DOP853 is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(setting.INTEGRATORS)}"
+            f"{wanted.integrator} is mjbeer's integrator, not MuJoCo's; export with one of "
+            f"{', '.join(setting.INTEGRATORS)}"
         )
     softness = setting.TUNED
     if require.boolean("portable", portable):

@@ -9,13 +9,17 @@ from mjbeer.theory.scene import Scene
 
 Rolling = Literal["reduced", "equality", "contact"]
 MujocoIntegrator = Literal["Euler", "implicit", "implicitfast", "discrete", "RK4"]
-Integrator = Literal[MujocoIntegrator, "DOP853"]
+Integrator = Literal[MujocoIntegrator, "DOP853", "GaussJackson"]
 ROLLINGS: tuple[Rolling, ...] = get_args(Rolling)
 """The ways in which a can is made to roll; see `Setting.rolling`."""
 INTEGRATORS: tuple[MujocoIntegrator, ...] = get_args(MujocoIntegrator)
 """The names of MuJoCo's own integrators, as in MJCF."""
 DOP853 = "DOP853"
-"""The name of mjbeer's integrator of eighth order."""
+"""The name of mjbeer's Runge-Kutta method, of eighth order."""
+GAUSS_JACKSON = "GaussJackson"
+"""The name of mjbeer's multistep method, for motions without constraints and damping."""
+OWN = (DOP853, GAUSS_JACKSON)
+"""The names of mjbeer's own integrators, which step by themselves and have samples at any time."""
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 _LEAST_FRICTION = 1e-5
@@ -114,7 +118,7 @@ class Setting:
     rolling: Rolling = "reduced"
     """"reduced" (no constraint), "equality" (a joint equality) or "contact" (a cylinder on a plane)."""
     integrator: Integrator = "RK4"
-    """One of `INTEGRATORS`, or "DOP853"; with a tolerance it is not used."""
+    """One of `INTEGRATORS` or `OWN`, "GaussJackson" only with "reduced"; with a tolerance it is not used."""
     timestep: float = 1e-3
     """Timestep [s]; with a tolerance it is the sampling interval."""
     tolerance: float | None = None
@@ -125,13 +129,18 @@ class Setting:
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
-        require.choice("integrator", self.integrator, (*INTEGRATORS, DOP853))
+        require.choice("integrator", self.integrator, (*INTEGRATORS, *OWN))
         require.store(
             self,
             timestep=require.positive("timestep", self.timestep, "s"),
             friction=require.positive("friction", self.friction),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
         )
+        if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
+            raise ParameterError(
+                f"{GAUSS_JACKSON} would be unstable with a constraint: rolling must be 'reduced' with it, got "
+                f"{self.rolling!r}; {DOP853} takes any"
+            )
         if self.friction < _LEAST_FRICTION:
             raise ParameterError(
                 f"friction must be at least {_LEAST_FRICTION:g}, MuJoCo's smallest (mjMINMU), got {self.friction!r}"

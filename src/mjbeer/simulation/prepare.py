@@ -7,8 +7,9 @@ import numpy as np
 
 from mjbeer.model import state
 from mjbeer.model.build import compile_model
-from mjbeer.model.setting import DOP853, Setting
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, Setting
 from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import Solution, Solver, tuning
@@ -23,8 +24,9 @@ whole number. So no rate of rotation has the same phase at the ends of both part
 class Prepared:
     """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
 
-    If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with DOP853. The two runs of
-    a motion, even and uneven, then have no timestep in common by which both could be wrong alike.
+    If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
+    integrators. The two runs of a motion, even and uneven, then have no timestep in common by which both could be wrong
+    alike.
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
@@ -34,15 +36,17 @@ class Prepared:
     def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
         self.scene, self.setting = scene, setting
         self._step = setting.timestep * (_GREATER if uneven else 1)
-        """Timestep to which constraints are tuned, and that of DOP853."""
+        """Timestep to which constraints are tuned, and that of mjbeer's own integrators."""
         if setting.tolerance is not None:
             timestep = tuning(scene, setting.rolling, setting.timestep)
             self.model = compile_model(scene, replace(setting, integrator=DOP853, timestep=timestep))
-            self._method: Solver | Integrator | Stepper = Solver(self.model, scene)
+            self._method: Solver | Integrator | GaussJackson | Stepper = Solver(self.model, scene)
             return
         self.model = compile_model(scene, replace(setting, timestep=self._step))
         if setting.integrator == DOP853:
             self._method = Integrator(self.model)
+        elif setting.integrator == GAUSS_JACKSON:
+            self._method = GaussJackson(self.model)
         else:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else ())
@@ -64,7 +68,7 @@ class Prepared:
             assert self.setting.tolerance is not None
             return self._method.run(start, times, self.setting.tolerance, math.inf if friction is None else friction)
         recorder = None if friction is None else Recorder(self.model, self.scene, friction)
-        if isinstance(self._method, Integrator):
+        if isinstance(self._method, Integrator | GaussJackson):
             states = self._method.run(start, times, self._step, recorder=recorder)
         else:
             steps = np.rint(times / self.setting.timestep).astype(np.int64)

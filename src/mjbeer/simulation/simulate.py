@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, UntrustedWarning
-from mjbeer.model.setting import DOP853, FRICTION, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import DOP853, FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import doubts
@@ -41,10 +41,11 @@ def simulate(
     """Return the motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
 
     The motion starts at `phi0` [rad] with `phi_dot0` [rad/s], and the axis as in `exact`. `rolling`, `friction` and
-    `softness` are those of `build`. `integrator` is one of MuJoCo's five, RK4 if it is not given, or "DOP853", a method
-    of eighth order around MuJoCo's forward dynamics; `timestep` [s] is fixed. Samples are at every timestep, or at
-    `times` [s] from 0 on, which must be multiples of the timestep unless the integrator is DOP853. Samples at every
-    timestep end with the first multiple of the timestep at or after `duration`.
+    `softness` are those of `build`. `integrator` is one of MuJoCo's five, RK4 if it is not given, "DOP853" or
+    "GaussJackson", methods of higher order around MuJoCo's forward dynamics. GaussJackson takes fewer evaluations for
+    errors below 1e-6 rad, and has only "reduced" rolling. `timestep` [s] is fixed. Samples are at every timestep, or at
+    `times` [s] from 0 on, which with MuJoCo's integrators must be multiples of the timestep. Samples at every timestep
+    end with the first multiple of the timestep at or after `duration`.
 
     With a `tolerance` [rad] the integrator is DOP853, which chooses its own steps. The run is repeated until the
     error of phi and u/a over the whole motion is below the tolerance, relative to the angle where that exceeds 1 rad;
@@ -135,7 +136,7 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
         raise ParameterError(
             f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.shown(times[-1])} s"
         )
-    if setting.integrator == DOP853:
+    if setting.integrator in OWN:
         return times
     steps = np.rint(ratios)
     off = np.flatnonzero(np.abs(ratios - steps) > _ON_A_STEP * ratios)

@@ -1,5 +1,6 @@
 """Orders of convergence and floors, read off the errors of runs at ever finer timesteps (a ladder of rungs)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,12 @@ _FLAT = 0.5
 """A rung is at the floor if no later rung has less than this share of its error."""
 _NO_FLOOR = 1e-2
 """Errors above this [rad] are not taken for a floor: on a motion that far off, rungs may agree by chance."""
+_SURE = 0.05
+"""Largest standard error of a fitted order, over the order, where local orders do not agree."""
+_MANY, _DECADES = 8, 6
+"""Fewest rungs, and fewest decades of errors, of such a fit: by chance no noise falls that far that evenly."""
+_CLOSE = 1.5
+"""Largest ratio of two timesteps in such a fit. Further apart, the local orders of a method that has one agree."""
 _TOO_LARGE = 0.3
 """Errors above this [rad] are too large to be proportional to a power of the timestep."""
 
@@ -56,7 +63,8 @@ class Convergence:
     kind: str
     """"converging", "floored" or "undecided"."""
     order: float | None = None
-    """Order fitted to the longest run of rungs whose local orders agree, before the floor if there is one."""
+    """Order fitted to the rungs before the floor if there is one: to the longest run of them whose local orders agree,
+    or else to all, if their errors fall by decades along one line."""
     floor: float | None = None
     """The least error at the floor [rad]."""
     since: float | None = None
@@ -75,6 +83,10 @@ def convergence(steps: ArrayLike, errors: ArrayLike) -> Convergence:
     The order is fitted to the longest run of at least four rungs whose local orders, log(e1/e2)/log(h1/h2), are
     within 0.1 of their mean; of two runs of equal length, to the finer. A floor needs two further rungs whose error is
     at least half as large.
+
+    The error of a multistep method is the sum of many terms of either sign, so that the local orders of rungs close to
+    each other scatter. Without a run that agrees the order is fitted to all rungs, if they are close, eight or more,
+    and over six decades of errors, and the standard error of the order is below a twentieth of it.
     """
     steps, errors = np.asarray(steps, dtype=float), np.asarray(errors, dtype=float)
     finite = np.isfinite(errors) & (errors > 0)
@@ -95,7 +107,7 @@ def _floor(errors: np.ndarray) -> int | None:
 
 
 def _order(steps: np.ndarray, errors: np.ndarray) -> float | None:
-    """Return the fitted order, or None if no four rungs in a row agree."""
+    """Return the order fitted to rungs in a row that agree, or else to all; None if neither is an order."""
     best: tuple[int, int, float] | None = None
     for first in range(len(steps)):
         for last in range(first + _RUNGS, len(steps) + 1):
@@ -107,4 +119,14 @@ def _order(steps: np.ndarray, errors: np.ndarray) -> float | None:
                 slope = float(np.polyfit(log_steps, log_errors, 1)[0])
                 if best is None or (last - first, first) >= best[:2]:
                     best = (last - first, first, slope)
-    return None if best is None else best[2]
+    return _overall(steps, errors) if best is None else best[2]
+
+
+def _overall(steps: np.ndarray, errors: np.ndarray) -> float | None:
+    """Return the order fitted to all rungs, or None if they are few, far apart or not along a line."""
+    small = errors < _TOO_LARGE
+    steps, errors = np.log(steps[small]), np.log(errors[small])
+    if len(steps) < _MANY or np.ptp(errors) < _DECADES * math.log(10) or np.diff(steps).min() < -math.log(_CLOSE):
+        return None
+    (slope, _), covariance = np.polyfit(steps, errors, 1, cov=True)
+    return float(slope) if covariance[0, 0] ** 0.5 < _SURE * slope else None

@@ -3,14 +3,15 @@
 import math
 from dataclasses import dataclass, replace
 
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, USUAL, Setting, supported
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, USUAL, Setting, supported
 from mjbeer.studies.cases import INTERVAL
 from mjbeer.theory.scene import Scene
 
 TIMESTEP, TOLERANCE = "timestep", "tolerance"
 _COARSEST, _RUNGS = 16e-3, 10
 _COARSEST_DOP853, _RUNGS_DOP853 = 128e-3, 15
-"""Coarsest timestep [s] of a ladder, and its number of timesteps; of DOP853 here, of MuJoCo's integrators above."""
+_COARSEST_GAUSS_JACKSON, _RUNGS_GAUSS_JACKSON = 32e-3, 29
+"""Coarsest timestep [s] of a ladder, and its number of timesteps; those of MuJoCo's integrators come first."""
 _QUICK_RUNGS = 6
 
 
@@ -44,11 +45,13 @@ def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
     """Return the curves of mjbeer's own models, each with its timesteps [s] or tolerances [rad], coarsest first.
 
     MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger one and halves it
-    in two rungs. With `quick`, the timesteps of MuJoCo's integrators end at 0.5 ms, and those of DOP853 halve in one
-    rung; tolerances are a factor of 1000 apart.
+    in two rungs, and GaussJackson, whose error falls by four decades in a halving, halves it in four. With `quick`, the
+    timesteps of MuJoCo's integrators end at 0.5 ms, those of DOP853 halve in one rung and those of GaussJackson in
+    two; tolerances are a factor of 1000 apart.
     """
     steps = tuple(_COARSEST / 2**k for k in range(_QUICK_RUNGS if quick else _RUNGS))
     large = tuple(_COARSEST_DOP853 / 2 ** (k / 2) for k in range(0, _RUNGS_DOP853, 2 if quick else 1))
+    dense = tuple(_COARSEST_GAUSS_JACKSON / 2 ** (k / 4) for k in range(0, _RUNGS_GAUSS_JACKSON, 2 if quick else 1))
     allowed = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
     ladders: dict[Curve, tuple[float, ...]] = {}
     for way in ROLLINGS:
@@ -57,6 +60,7 @@ def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
         ladders |= {Curve(way, integrator, TIMESTEP): steps for integrator in INTEGRATORS}
         ladders[Curve(way, DOP853, TIMESTEP)] = large
         ladders[Curve(way, DOP853, TOLERANCE)] = allowed
+    ladders[Curve("reduced", GAUSS_JACKSON, TIMESTEP)] = dense
     for name, setting in USUAL.items():
         if supported(scene, setting.rolling):
             ladders[Curve(name, setting.integrator, TIMESTEP)] = (setting.timestep,)

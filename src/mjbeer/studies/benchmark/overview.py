@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from matplotlib.axes import Axes
 
-from mjbeer.model.setting import DOP853, USUAL
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, USUAL
 from mjbeer.output.plots import COLOURS, chart
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Benchmark
@@ -34,6 +34,7 @@ _CURVES = {
     Curve("reduced", "Euler", TIMESTEP): _Label("MuJoCo Euler", COLOURS[4], 1e-5, (6, 18), "right"),
     Curve("reduced", "RK4", TIMESTEP): _Label("MuJoCo RK4", COLOURS[1], 1e-9, (-9, -4), "right"),
     Curve("reduced", DOP853, TIMESTEP): _Label("mjbeer: DOP853\naround MuJoCo", COLOURS[0], 1e-12, (11, 9), "left"),
+    Curve("reduced", GAUSS_JACKSON, TIMESTEP): _Label("mjbeer:\nGauss-Jackson", COLOURS[6], 1e-12, (-9, 3), "right"),
     Curve("SciPy DOP853", "", TOLERANCE): _Label("SciPy DOP853", COLOURS[3], 1e-6, (9, 0), "left"),
     Curve("heyoka", "", TOLERANCE): _Label("heyoka", COLOURS[2], 1e-10, (9, 0), "left"),
 }
@@ -62,12 +63,13 @@ def _draw_case(axes: Axes, study: Benchmark, case: str) -> None:
         on_curve = [point for point in points if point.curve == curve and point.error < 1]
         times = [1e3 * point.time for point in on_curve]
         errors = [max(point.error, _FLOOR) for point in on_curve]
+        if not times:
+            continue
         axes.plot(times, errors, marker=".", color=label.colour)
-        if times:
-            nearest = min(range(len(errors)), key=lambda rung: abs(math.log(errors[rung] / label.error)))
-            place = (times[nearest], errors[nearest])
-            style: dict[str, Any] = {"color": label.colour, "fontsize": 9, "ha": label.side, "va": "center"}
-            axes.annotate(label.name, place, label.offset, textcoords="offset points", **style)
+        nearest = min(range(len(errors)), key=lambda rung: abs(math.log(errors[rung] / label.error)))
+        place = (times[nearest], errors[nearest])
+        style: dict[str, Any] = {"color": label.colour, "fontsize": 9, "ha": label.side, "va": "center"}
+        axes.annotate(label.name, place, label.offset, textcoords="offset points", **style)
     usual = [point for point in points if point.way in USUAL]
     axes.plot([1e3 * point.time for point in usual], [point.error for point in usual], "k*", markersize=9)
     for point in usual[:1]:

@@ -17,7 +17,7 @@ from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import CASES
 from mjbeer.theory.words import in_degrees, in_words
 
-_METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2}
+_METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2, "GaussJackson": 6}
 """Colours of the integrators."""
 _LINES = {"reduced": ("-", "o"), "equality": ("--", "s"), "contact": (":", "^")}
 """Lines and markers of the ways of rolling."""

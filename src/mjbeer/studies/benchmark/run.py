@@ -77,8 +77,8 @@ def _curves(case: Case, peers: dict[str, Peer], quick: bool) -> dict[Curve, tupl
 
 
 def _climb(case: Case, curve: Curve, values: Sequence[float], peer: Peer | None) -> Iterator[Rung]:
-    """Measure and yield the rungs of a ladder, down to its floor or to its second failure."""
-    truth, failures = case.truth(), 0
+    """Measure and yield the rungs of a ladder, down to its floor or to its second failure after a rung that ran."""
+    truth, failures, ran = case.truth(), 0, False
     steps: list[float] = []
     errors: list[float] = []
     for value in values:
@@ -87,15 +87,16 @@ def _climb(case: Case, curve: Curve, values: Sequence[float], peer: Peer | None)
         try:
             rung.measure(truth)
         except MjbeerError as error:
-            point.failure, failures = str(error), failures + 1
+            point.failure, failures = str(error), failures + ran
         else:
+            ran = True
             if aligned(value) or curve.knob != TIMESTEP:
                 steps.append(value)
                 errors.append(point.error)
         yield rung
         # Not for tolerances: the error may stay the same over some decades where the timesteps are finer than needed.
         floored = curve.knob == TIMESTEP and len(errors) >= _ENOUGH and convergence(steps, errors).kind == "floored"
-        if floored or (failures > 1 and errors):
+        if floored or failures > 1:
             return
 
 

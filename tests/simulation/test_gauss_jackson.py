@@ -1,0 +1,247 @@
+"""The multistep integrator: its weights against published ones, its order, samples, start, and what it refuses."""
+
+import math
+from fractions import Fraction
+
+import mujoco
+import numpy as np
+import pytest
+
+from mjbeer import exact, frozen, pendulum, simulate, sliding
+from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
+from mjbeer.model.build import build
+from mjbeer.model.setting import ROLLINGS
+from mjbeer.model.state import read, start
+from mjbeer.simulation import gauss_jackson_kernel
+from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.gauss_jackson import GaussJackson
+from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
+from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.recorder import Recorder
+from mjbeer.studies.convergence import observed_order
+from mjbeer.theory.measure import distance
+from mjbeer.theory.scene import Scene
+from tests.support.scenes import SCENES
+
+# E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I: table III.1.1 (Adams-Bashforth),
+# table III.1.2 (Adams-Moulton), and section III.10 (Stormer's and Cowell's methods).
+PUBLISHED = {
+    (1, -1): "1 1/2 5/12 3/8 251/720 95/288 19087/60480 5257/17280 1070017/3628800",
+    (1, 0): "1 -1/2 -1/12 -1/24 -19/720 -3/160 -863/60480 -275/24192 -33953/3628800",
+    (2, -1): "1 0 1/12 1/12 19/240 3/40 863/12096 275/4032",
+    (2, 0): "1 -1 1/12 0 -1/240 -1/240 -221/60480 -19/6048",
+}
+
+
+@pytest.mark.parametrize(("power", "back"), PUBLISHED)
+def test_coefficients_of_differences_are_the_published_ones(power: int, back: int) -> None:
+    published = [Fraction(term) for term in PUBLISHED[power, back].split()]
+    assert series(power, back, len(published)) == published
+
+
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize("back", [-1, 0, COUNT // 2])
+def test_weights_are_exact_for_polynomials_of_twelfth_degree(power: int, back: int) -> None:
+    """What the formulas give for a = t^n, less the same with a step more, is exact: the sums then drop out.
+
+    The last acceleration is at t = 0, the step is 1, and v = t^(n+1)/(n+1), q = t^(n+2)/((n+1)(n+2)).
+    """
+    chosen = weights(power, back)
+    for degree in range(COUNT):
+
+        def formula(end: int, degree: int = degree) -> float:
+            return float(chosen @ np.arange(end - COUNT + 1.0, end + 1) ** degree)
+
+        def truth(at: int, degree: int = degree) -> Fraction:
+            moved = Fraction(at - back) ** (degree + power)
+            return moved / (degree + 1) / (1 if power == 1 else degree + 2)
+
+        if power == 1:  # a first difference leaves the newest acceleration of the first sum
+            found, right = formula(1) - formula(0) + 1.0, truth(1) - truth(0)
+        else:  # a second difference leaves a_n of the second sum, and (1 + back) (a_n - a_(n-1)) of the first
+            found = formula(1) - 2 * formula(0) + formula(-1) + 1.0 - (1 + back) * (1.0 - 0.0**degree)
+            right = truth(1) - 2 * truth(0) + truth(-1)
+        rounding = 8 * np.finfo(float).eps * float(np.abs(chosen).sum()) * float(COUNT) ** degree
+        assert found == pytest.approx(float(right), abs=rounding, rel=1e-14)
+
+
+def errors(scene: Scene, phi0: float, steps: np.ndarray, times: np.ndarray) -> list[float]:
+    """The largest errors of phi and u/a [rad] with some timesteps [s]."""
+    model = build(scene)
+    begin, truth = start(model, scene, phi0, 0.0), exact(scene, times, phi0)
+    return [
+        distance(read(model, scene, GaussJackson(model).run(begin, times, float(step)), times), truth, scene.can.radius)
+        for step in steps
+    ]
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum()])
+def test_the_error_falls_with_order_thirteen(scene: Scene) -> None:
+    """From 1e-3 to 1e-12 rad. Terms of either sign meet in the error, so that rungs scatter: by 1 in the order."""
+    steps = 0.2 / scene.frequency() / 2.0 ** (np.arange(15) / 4)
+    found = np.array(errors(scene, 1.0, steps, np.linspace(0, 2, 65)))
+    fitted = (found < 1e-3) & (found > 1e-12)
+    assert fitted.sum() >= 7
+    assert found.min() < 1e-12
+    assert observed_order(steps[fitted], found[fitted]) == pytest.approx(13, abs=1)
+
+
+@pytest.mark.parametrize(("name", "phi0"), [("sliding", 3.0), ("frozen", math.pi), ("pendulum", 1.0), ("hoop", 0.5)])
+def test_a_quarter_millisecond_errs_like_rounding(name: str, phi0: float) -> None:
+    """Near the top a swing amplifies the rounding of its start by a thousand, and a roll-down by the angle squared."""
+    assert errors(SCENES[name], phi0, np.array([2.5e-4]), np.linspace(0, 2, 9))[0] < 3e-12
+
+
+def test_fewer_evaluations_than_dop853_for_the_same_error() -> None:
+    """To 1e-11 rad, with those of the start: by a factor of 1.8 or more."""
+    for scene in (sliding(), frozen()):
+        model, times = build(scene), np.linspace(0, 2, 9)
+        begin, truth = start(model, scene, 0.5, 0.0), exact(scene, times, 0.5)
+        taken = []
+        for method, ladder in ((GaussJackson(model), range(200, 640, 8)), (Integrator(model), range(80, 400, 8))):
+            counts = []
+            for steps in ladder:
+                states = method.run(begin, times, timestep=2 / steps)
+                if distance(read(model, scene, states, times), truth, scene.can.radius) < 1e-11:
+                    counts.append(method.evaluations)
+            taken.append(min(counts))
+        assert 1.8 * taken[0] < taken[1]
+
+
+def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
+    """The polynomial of the last accelerations is that of the method, so that it adds next to nothing."""
+    scene, step = frozen(), 5e-3
+    model = build(scene)
+    begin, at = start(model, scene, 1.0, 0.0), step * np.arange(401)
+    between = np.sort(np.random.default_rng(3).uniform(0, 2, 1000))
+    worst = []
+    for times in (at, between):
+        found = read(model, scene, GaussJackson(model).run(begin, times, step), times)
+        truth = exact(scene, times, 1.0)
+        worst.append(np.abs(found.phi - truth.phi).max())
+        # The rates err by the frequency, 13/s, times the error of phi, or by that of an overtone: the fourth at most.
+        assert np.abs(found.phi_dot - truth.phi_dot).max() < 4 * 13 * worst[-1]
+    assert 1e-12 < worst[0] < 1e-10
+    assert worst[1] < 1.1 * worst[0]
+
+
+def test_the_first_steps_have_samples_too() -> None:
+    scene = sliding()
+    model = build(scene)
+    times = np.linspace(0, 12e-3, 50)
+    states = GaussJackson(model).run(start(model, scene, 1.0, 0.0), times, 1e-3)
+    assert (states[0] == start(model, scene, 1.0, 0.0)).all()
+    assert np.abs(read(model, scene, states, times).phi - exact(scene, times, 1.0).phi).max() < 1e-14
+
+
+def test_samples_and_records_change_no_bit() -> None:
+    scene = frozen()
+    model = build(scene)
+    begin, step = start(model, scene, 1.0, 0.0), 1e-3
+    integrator, ends = GaussJackson(model), []
+    for samples, recorder in ((2, None), (2, None), (301, None), (2, Recorder(model, scene))):
+        ends.append(integrator.run(begin, np.linspace(0, 1.5, samples), step, recorder)[-1])
+    assert all((end == ends[0]).all() for end in ends)
+
+
+def test_long_runs_are_taken_in_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over three blocks, with a recorder that sees every step once."""
+    scene, step = frozen(), 1e-3
+    model = build(scene)
+    recorder, seen = Recorder(model, scene), list[list[np.ndarray]]()
+    monkeypatch.setattr(
+        recorder,
+        "add_smooth",
+        lambda times, states, slopes: seen.append([part.copy() for part in (times, states, slopes)]),
+    )
+    times = step * np.arange(3 * gauss_jackson_kernel.BLOCK)
+    integrator = GaussJackson(model)
+    found = integrator.run(start(model, scene, 1.0, 0.0), times, step, recorder)
+    steps, states, slopes = (np.concatenate(part) for part in zip(*seen, strict=True))
+    assert steps == pytest.approx(times, rel=1e-15)
+    assert (states[COUNT:] == found[COUNT:]).all()
+    assert (slopes[:, 0] == states[:, 1]).all()
+    accelerations = scene.oscillator.acceleration(states[:, 0], states[:, 1])
+    assert slopes[:, 1] == pytest.approx(accelerations, rel=1e-12, abs=1e-10)
+    # Six steps of DOP853 with samples in them, the accelerations of the start, and two evaluations a step.
+    after = len(times) - COUNT + gauss_jackson_kernel.LAG
+    assert integrator.evaluations == 1 + 6 * 15 + COUNT + 2 * after
+    assert np.abs(found[:, 0] - exact(scene, times, 1.0).phi).max() < 1e-11
+
+
+def test_rounding_does_not_add_up() -> None:
+    """Over 300,000 steps, in which u/a becomes 23,000 rad. Sums that forget their rounding err by 60 of this one's."""
+    rounding = np.spacing(23e3)
+    assert errors(sliding(), 1.0, np.array([1e-4]), np.linspace(0, 30, 31))[0] < 4 * rounding
+
+
+@pytest.mark.parametrize("last", [0, 3, 12, 13])
+def test_a_record_ends_with_its_run(monkeypatch: pytest.MonkeyPatch, last: int) -> None:
+    """Also if it is shorter than the steps that start it."""
+    model = build(frozen())
+    recorder, seen = Recorder(model, frozen()), list[float]()
+    monkeypatch.setattr(recorder, "add_smooth", lambda times, states, slopes: seen.extend(times))
+    GaussJackson(model).run(start(model, frozen(), 1.0, 0.0), 1e-3 * np.arange(last + 1), 1e-3, recorder)
+    assert seen == pytest.approx(list(1e-3 * np.arange(last + 1)), rel=1e-15)
+
+
+def test_a_run_of_simulate_judges_itself() -> None:
+    run = simulate(sliding(), 2.0, 1.0, integrator="GaussJackson", timestep=5e-3)
+    error = np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max()
+    assert run.trusted
+    assert run.integrator == "GaussJackson"
+    assert run.error_estimate is not None
+    assert error <= run.error_estimate < 10 * error
+    assert run.record.swing_error < 1e-5
+
+
+@pytest.mark.parametrize("timestep", [9e-3, 11e-3, 13e-3, 16e-3, 30e-3])
+def test_a_timestep_that_is_too_large_is_seen(timestep: float) -> None:
+    """Rolling down turns faster and faster, and the method becomes unstable in the middle of the run."""
+    with pytest.raises(DivergenceError, match="diverged at t = "):
+        simulate(frozen(), 2.0, math.pi, integrator="GaussJackson", timestep=timestep)
+
+
+@pytest.mark.parametrize("rolling", [way for way in ROLLINGS if way != "reduced"])
+def test_constraints_are_refused(rolling: str) -> None:
+    with pytest.raises(ParameterError, match=f"rolling must be 'reduced' with it, got '{rolling}'; DOP853 takes any"):
+        simulate(frozen(), 1.0, 1.0, rolling=rolling, integrator="GaussJackson")
+    with pytest.raises(UnsupportedError, match="smooth motions only, and this model has constraints"):
+        GaussJackson(build(frozen(), rolling))
+
+
+@pytest.mark.parametrize("place", ["dof_damping", "tendon_damping"])
+def test_damping_is_refused(place: str) -> None:
+    model = build(frozen())
+    getattr(model, place)[:] = 1e-3
+    with pytest.raises(UnsupportedError, match="undamped motions only, and this model has damping"):
+        GaussJackson(model)
+
+
+def test_quaternions_are_refused() -> None:
+    free = mujoco.MjModel.from_xml_string(
+        "<mujoco><option><flag constraint='disable'/></option>"
+        "<worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
+    )
+    with pytest.raises(ValueError, match="only slide and hinge joints"):
+        GaussJackson(free)
+
+
+def test_a_start_that_is_not_finite_is_a_divergence() -> None:
+    with pytest.raises(DivergenceError, match="no longer finite"):
+        GaussJackson(build(frozen())).run(np.array([1.0, 1e300]), np.array([0.0, 1.0]), timestep=1e-3)
+
+
+def test_a_timestep_whose_square_is_nothing_is_refused() -> None:
+    with pytest.raises(DivergenceError, match="could not start: its sums are not finite"):
+        GaussJackson(build(frozen())).run(np.array([1.0, 0.0]), np.array([0.0, 1e-170]), timestep=1e-170)
+
+
+def test_a_tolerance_is_not_its_own() -> None:
+    with pytest.raises(ParameterError, match="only DOP853 keeps a tolerance, got integrator 'GaussJackson'"):
+        simulate(frozen(), 1.0, 1.0, integrator="GaussJackson", tolerance=1e-6)
+
+
+def test_prepared_takes_it_by_its_name() -> None:
+    run = simulate(frozen(), 0.1, 1.0, integrator="GaussJackson", timestep=1e-3)
+    assert isinstance(Prepared(run.scene, run.setting)._method, GaussJackson)
