@@ -167,10 +167,10 @@ class Second:
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
-    prepared = Prepared(scene, setting)
     along, samples = _way(times, setting)
-    solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
-    way = prepared.coordinates(solution.states, along)
+    with Prepared.lent(scene, setting) as prepared:
+        solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
+        way = prepared.coordinates(solution.states, along)
     assert solution.record is not None
     return Run(
         **{name: array[samples] for name, array in vars(way).items()},

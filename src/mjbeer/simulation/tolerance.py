@@ -75,9 +75,9 @@ class Solution:
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
+    def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData | None = None) -> None:
         self._model, self._scene = model, scene
-        self._integrator, self._scale = Integrator(model), scales(model, scene)
+        self._integrator, self._scale = Integrator(model, data), scales(model, scene)
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
