@@ -9,6 +9,7 @@ from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
 from mjbeer.model.state import places
 from mjbeer.simulation import dop853_kernel
+from mjbeer.simulation.compiling import told
 from mjbeer.simulation.recorder import Recorder
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
@@ -73,7 +74,7 @@ class Integrator:
         self.evaluations, status = 0, dop853_kernel.BLOCK_END
         rows = dop853_kernel.KEPT if recorder else 0
         kept = np.empty(rows), np.empty((rows, self._size)), np.empty((rows, self._size))
-        with quiet(), untimed():
+        with told(dop853_kernel.advance), quiet(), untimed():
             while status == dop853_kernel.BLOCK_END:
                 status, place, evaluations, count = dop853_kernel.advance(
                     pointers=self._pointers,

@@ -7,6 +7,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
+from mjbeer.simulation.compiling import told
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepping_kernel import advance
 
@@ -47,7 +48,7 @@ class Stepper:
         if recorder:
             recorder.add(np.zeros(1), start[None])
         last = int(samples[-1])
-        with quiet(), untimed():
+        with told(advance), quiet(), untimed():
             for first in range(0, last, _BLOCK):
                 block = self._states[: min(_BLOCK, last - first)]
                 count = advance(address("mj_step"), self._addresses, data._address, self._views, block)
