@@ -253,7 +253,6 @@ def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
     """
     radius = scene.can.radius
-    slides = np.array([model.joint(i).type[0] == mujoco.mjtJoint.mjJNT_SLIDE for i in range(model.njnt)])
-    positions = np.where(slides, radius, 1.0)
+    positions = np.where(model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE, radius, 1.0)
     rate = np.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
     return np.concatenate([positions, positions * rate])
