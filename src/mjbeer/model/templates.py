@@ -1,6 +1,8 @@
 """Finds and reads the MJCF templates, of which a model takes only the looks, never the mechanics."""
 
+import os
 import pathlib
+import re
 
 import mujoco
 
@@ -23,6 +25,8 @@ _EVERYWHERE = {
 _WITH_BEER: dict[str, tuple[str, ...]] = {"mesh": ("load",)}
 _FURTHER = {"sliding": _WITH_BEER, "frozen": _WITH_BEER}
 """The elements that mjbeer addresses by name in some templates only."""
+_INCLUDE = re.compile(rb"""<include\s+file\s*=\s*["']([^"']*)["']""")
+"""What names another file in a template."""
 _BODIES = {"incline": "world", "can": "incline", "load": "can"}
 """The bodies, with the parent of each."""
 _MECHANISM = {
@@ -59,6 +63,29 @@ def name(scene: Scene) -> str:
     if scene.attachment == "sliding":
         return "pendulum" if scene.load.fill is None else "sliding"
     return "hoop" if scene.load.fill is None else "frozen"
+
+
+def contents(template: str) -> tuple[bytes, ...]:
+    """Return the bytes of a template and of the files that it includes; those that cannot be read are left out.
+
+    As long as these are the same, so is what `read` returns.
+    """
+    place = str(folder())
+    waiting: list[str] = [os.path.join(place, f"{template}.xml")]
+    found: dict[str, bytes] = {}
+    while waiting:
+        path = waiting.pop()
+        if path in found:
+            continue
+        try:
+            with open(path, "rb", buffering=0) as file:
+                found[path] = file.read()
+        except (OSError, ValueError):
+            continue
+        for name in _INCLUDE.findall(found[path]):
+            included = os.fsdecode(name)
+            waiting += {os.path.join(place, included), os.path.join(os.path.dirname(path), included)}
+    return (place.encode(), *found.values())
 
 
 def read(template: str) -> mujoco.MjSpec:

@@ -21,19 +21,19 @@ class GaussJackson:
 
     A step is two evaluations, where DOP853 has twelve and steps that are three times as large. The method has almost no
     room on the side of damped motions: a damping or a constraint that decays within a few timesteps would make it
-    unstable.
+    unstable. Without `data` of the model, in its initial state, it makes its own.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
       ValueError: if the model has joints other than slides and hinges.
     """
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
         if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONSTRAINT:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
         if model.dof_damping.any() or model.tendon_damping.any():
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
-        self._starter, self._size = Integrator(model), model.nv
+        self._starter, self._size = Integrator(model, data), model.nv
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 

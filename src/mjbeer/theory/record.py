@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from mjbeer.theory.conserved import energy, kinetic_energy
+from mjbeer.theory.conserved import kinetic_energy, potential_energy
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import rolling_forces
 from mjbeer.theory.scene import Scene
@@ -47,6 +47,7 @@ class Record:
         self._by_rates = self._by_angles = 0.0
         self._kinetic = self._energy_change = self._swing_change = self._axis_change = 0.0
         self._first: Coordinates | None = None
+        self._at_first: tuple[float, float] | None = None
         self._last: Coordinates | None = None
         self._last_margin: tuple[float, float] | None = None
 
@@ -155,13 +156,15 @@ class Record:
         return self._axis_change / max(self.scene.can.radius, self.rolled)
 
     def _add_energies(self, motion: Coordinates, first: Coordinates) -> None:
-        oscillator, total = self.scene.oscillator, energy(self.scene, motion)
-        self._energy_change = _largest(self._energy_change, total - energy(self.scene, first))
-        self._kinetic = _largest(self._kinetic, kinetic_energy(self.scene, motion))
+        oscillator, kinetic = self.scene.oscillator, kinetic_energy(self.scene, motion)
+        total = kinetic + potential_energy(self.scene, motion)
         swing = oscillator.inertia(motion.phi) * motion.phi_dot**2 / 2
-        at_first = oscillator.inertia(first.phi) * first.phi_dot**2 / 2
+        if self._at_first is None:  # this piece begins with the first sample
+            self._at_first = float(total[0]), float(swing[0])
+        self._energy_change = _largest(self._energy_change, total - self._at_first[0])
+        self._kinetic = _largest(self._kinetic, kinetic)
         self.swing = _largest(self.swing, swing)
-        change = swing - at_first - oscillator.drop(motion.phi, float(first.phi[0]))
+        change = swing - self._at_first[1] - oscillator.drop(motion.phi, float(first.phi[0]))
         self._swing_change = _largest(self._swing_change, change)
 
 
