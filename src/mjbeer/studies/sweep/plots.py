@@ -21,8 +21,10 @@ def plot(sweep: Sweep, name: str) -> Axes:
     require.choice("name", name, sweep.names)
     if sweep.plan.paired or len(sweep.shape) not in (1, 2):
         raise ParameterError(f"a plot needs a sweep over one or two parameters, got {sweep.over}")
+    # A notebook makes matplotlib interactive with the first figure, which the context would undo at its end.
+    figure = plt.figure(figsize=(7, 4.5), layout="constrained")
     with mpl.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(7, 4.5))
+        axes = figure.subplots()
         draw(sweep, name, axes)
         figure.suptitle(f"{sweep.about['make']}, {sweep.about['end [s]']:.6g} s", fontsize=STYLE["axes.titlesize"])
     return axes
