@@ -1,4 +1,4 @@
-# make report: validate, and draw the four scenes into report/.   make test: all checks.
+# make report: validate, draw the scenes, and write one page, report/index.html.   make test: all checks.
 # Both set themselves up in .venv; the second time that takes a second. Without OpenGL, neither draws films.
 .DEFAULT_GOAL := help
 PYTHON ?= python3
@@ -6,7 +6,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: help report test quick search portability lint clean
+.PHONY: help report test quick search portability renders lint clean
 
 help:
 	@sed -n '1,2p' $(MAKEFILE_LIST)
@@ -28,6 +28,10 @@ search: $(STAMP)
 # What other tools make of portable exports, as docs/portability.md has it: 3 GB in build/, and an hour.
 portability: $(STAMP)
 	$(BIN)/python -m tests.support.others
+
+# The films that the documents show, as animated pictures: half a minute.
+renders: $(STAMP)
+	$(BIN)/python -m mjbeer.report.gallery renders
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -13,7 +13,7 @@ import pytest
 from mjbeer.drawing import opengl
 from mjbeer.model import templates
 from mjbeer.studies.benchmark.peers.installed import absent
-from tests.support import screen
+from tests.support import browser, screen
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED"):
     os.environ.pop(each, None)
@@ -30,16 +30,19 @@ def pytest_configure(config: pytest.Config) -> None:
     """
     if os.environ.get("MJBEER_EVERYTHING") and not hasattr(config, "workerinput"):  # and not once more in each worker
         lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]
-        lacking += [reason for reason in (_no_opengl(), screen.problem()) if reason]
+        lacking += [reason for reason in (_no_opengl(), screen.problem(), browser.problem()) if reason]
         if lacking:
             raise pytest.UsageError("MJBEER_EVERYTHING is set, and not all is here:\n" + "\n".join(lacking))
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Skip a test that draws where nothing can be drawn, and one that opens windows where there is no screen."""
+    """Skip a test that draws where nothing can be drawn, one that opens windows where there is no screen, and one that
+    needs a browser where there is none."""
     if item.get_closest_marker("draws") and _no_opengl():
         pytest.skip(f"no OpenGL; this brings it to Debian and Ubuntu: {opengl.INSTALL}")
     if item.get_closest_marker("views") and (reason := screen.problem()):
+        pytest.skip(reason)
+    if item.get_closest_marker("browses") and (reason := browser.problem()):
         pytest.skip(reason)
 
 

@@ -6,7 +6,7 @@ import pytest
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.race import Race
 from mjbeer.paper.stories import report
-from mjbeer.report_films import FILMS
+from mjbeer.report.films import FILMS
 from tests.support.labels import faults
 
 ALL: dict[str, tuple[Film, float]] = {

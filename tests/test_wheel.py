@@ -102,7 +102,13 @@ def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> N
     assert len(modules) > 10
     expected = {f"mjbeer/{each.as_posix()}" for each in templates} | {each.as_posix() for each in modules}
     packaged = {name for name in names if name.startswith("mjbeer/")}
-    assert packaged == expected | {"mjbeer/py.typed", "mjbeer/studies/benchmark/study.json"}
+    studies = {f"mjbeer/studies/{name}.json" for name in ("benchmark/study", "stability/maps")}
+    report = CHECKOUT / "src" / "mjbeer" / "report"
+    page = {
+        each.relative_to(CHECKOUT / "src").as_posix() for each in (*report.glob("web/*"), *report.glob("vendored/*"))
+    }
+    assert len(page) == 8
+    assert packaged == expected | studies | page | {"mjbeer/py.typed"}
 
 
 def metadata(wheel: pathlib.Path) -> Message:

@@ -21,6 +21,7 @@ from mjbeer.cli.figures import Figures
 from mjbeer.drawing import views
 from mjbeer.studies.benchmark import advice
 from mjbeer.studies.benchmark.points import Benchmark
+from tests.support import stubs
 
 pytestmark = pytest.mark.slow
 
@@ -247,3 +248,20 @@ def test_the_console_script_passes_on_the_exit_status() -> None:
     assert done.stderr.splitlines() == [
         "mjbeer: fill (height of the beer over the can's diameter) must be in (0, 1], got 2.0"
     ]
+
+
+@pytest.mark.parametrize(("speed", "noted"), [("1", True), ("0.5", False)])
+def test_a_film_in_which_a_can_turns_too_fast_for_the_eye_is_noted(
+    speed: str,
+    noted: bool,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """In 2 s with g sin(10 degrees) a massless can of 33 mm comes to 103 rad/s, which is 99 degrees in 1/60 s."""
+    stubs.draw(monkeypatch)
+    words = ["render", "sliding", "--phi0", "0", "--speed", speed, "--output", str(tmp_path / "film.mp4")]
+    assert main(words) == 0
+    err = capsys.readouterr().err
+    assert ("note: can or load turn by up to 99 degrees from picture to picture" in err) == noted
+    assert ("--speed 0.6 shows it better" in err) == noted

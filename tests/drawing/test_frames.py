@@ -7,15 +7,16 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, sliding
+from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, simulate, sliding
 from mjbeer.drawing import frames, video
-from mjbeer.drawing.cameras import CAMERAS, Camera
-from mjbeer.drawing.canvas import Canvas
-from mjbeer.drawing.display import Display, on_incline, scale
 from mjbeer.drawing.frames import Stage
-from mjbeer.drawing.look import Look
+from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay.sheet import Sheet
 from mjbeer.drawing.painter import Painter
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.world.cameras import CAMERAS, Camera
+from mjbeer.drawing.world.canvas import Canvas
+from mjbeer.drawing.world.display import Display, on_incline, scale
+from mjbeer.drawing.world.positions import coordinates
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.segment import segment
 
@@ -64,7 +65,7 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
         lift_dot=rest,
     )
     drawn = frames.draw(still, times, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"))
-    stage = Stage.of(still, times, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"), 1.0)
+    stage = Stage.of(still, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"), 1.0)
     poses = np.stack([u, phis, rolls], axis=1)
     return [Seen(picture, stage, pose) for picture, pose in zip(drawn, poses, strict=True)]
 
@@ -122,7 +123,7 @@ def test_the_wall_fills_the_picture(camera: Camera, incline: float) -> None:
 def test_what_a_still_camera_does_not_draw_anew_is_the_same() -> None:
     """A picture of the whole, and one of the empty board with the can in its place, differ by rounding only."""
     moved = motion()
-    stage = Stage.of(moved, moved.time, *SIZE, PLAIN, 1.0)
+    stage = Stage.of(moved, *SIZE, PLAIN, 1.0)
     assert stage.shot.still
     display, pictures = Display.of([moved.scene], *stage.reach), []
     with Canvas(display.model, *stage.pixels) as canvas:
@@ -157,13 +158,13 @@ def test_motion_between_samples_is_of_fourth_order() -> None:
     errors = []
     for samples in (101, 201):
         coarse = exact(frozen(), np.linspace(0, 1, samples), 2.0)
-        errors.append(np.abs(frames.coordinates(coarse, times)[:, 1] - true.phi).max())
+        errors.append(np.abs(coordinates(coarse, times)[:, 1] - true.phi).max())
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
 
 
 def test_one_sample_is_a_still() -> None:
     still = exact(frozen(), np.array([0.0]), 1.0)
-    assert frames.coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
+    assert coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
 
 
 @pytest.mark.draws
@@ -192,3 +193,26 @@ def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytes
     assert len(closed) == 1
     video.frame(motion(), 0.1, 64, 36)
     assert len(closed) == 2
+
+
+@pytest.mark.draws
+@pytest.mark.parametrize("size", [(2, 2), (16, 16), (400, 40), (60, 400)])
+def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
+    assert video.frame(motion(), 0.2, *size).shape == (size[1], size[0], 3)
+
+
+@pytest.mark.draws
+@pytest.mark.parametrize(
+    "moved",
+    [
+        simulate(frozen(gravity=0.0), 0.5, 1.0, 1.0, rolling="contact"),
+        exact(sliding(), np.linspace(0, 0.5, 51), 1.0, 1e4, many_turns=True),
+        exact(frozen(), np.linspace(0, 1e-9, 20), 1.0),
+        exact(frozen(), np.linspace(0, 1e6, 2000), 1.0, many_turns=True),
+        exact(frozen(), np.linspace(1, 2, 20), 1.0),
+    ],
+    ids=["weightless", "fast", "short", "long", "late"],
+)
+def test_a_motion_of_any_kind_can_be_drawn(moved: Trajectory) -> None:
+    middle = float(moved.time[len(moved.time) // 2])
+    assert np.ptp(video.frame(moved, middle, 320, 180)) > 200

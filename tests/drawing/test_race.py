@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, exact, frozen, simulate, sliding
-from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.race import Race
+from mjbeer.drawing.runner import Runner
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 

@@ -163,7 +163,7 @@ def test_mujoco_is_as_new_as_is_required() -> None:
 def test_every_model_is_there_and_has_a_picture() -> None:
     assert {path.stem for path in FOLDER.glob("*.xml")} == {*NAMES, "shared", "incline"}
     for name in NAMES:
-        assert f"(../renders/{name}.png)" in TEXT
+        assert f"(../renders/{name}.webp)" in TEXT
         assert f"`{name}.xml`" in TEXT
 
 

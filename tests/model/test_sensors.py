@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, build, frozen, hoop, pendulum, sliding
-from mjbeer.drawing.display import Display
+from mjbeer.drawing.world.display import Display
 from mjbeer.model import sensors, templates
 from mjbeer.model.present import present
 from mjbeer.model.setting import ROLLINGS, Setting

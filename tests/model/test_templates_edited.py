@@ -12,7 +12,7 @@ import pytest
 
 from mjbeer import MjbeerError, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import main
-from mjbeer.drawing.display import Display
+from mjbeer.drawing.world.display import Display
 from mjbeer.exceptions import TemplateError, UnsupportedError
 from mjbeer.model import appearance, state, templates
 from mjbeer.model.export import export

@@ -5,11 +5,12 @@ from itertools import combinations
 import numpy as np
 
 from mjbeer.drawing.film import Film, Take
-from mjbeer.drawing.frames import Stage, coordinates
+from mjbeer.drawing.frames import Stage
+from mjbeer.drawing.overlay.sheet import Box, Sheet, overlap
 from mjbeer.drawing.painter import outline
 from mjbeer.drawing.race import Race
-from mjbeer.drawing.sheet import Box, Sheet, overlap
-from mjbeer.drawing.view import View
+from mjbeer.drawing.world.positions import coordinates
+from mjbeer.drawing.world.view import View
 
 _SIZE = (960, 540)
 
@@ -26,7 +27,7 @@ def _of_take(take: Take, count: int) -> list[str]:
     trajectory = take.trajectory()
     look = take.chosen(trajectory)
     times = np.linspace(trajectory.time[0], trajectory.time[-1], count)
-    stage = Stage.of(trajectory, times, *_SIZE, look, take.speed)
+    stage = Stage.of(trajectory, *_SIZE, look, take.speed)
     display, found = stage.display(), []
     for time, now in zip(times, coordinates(trajectory, times), strict=True):
         stage.sheet.boxes.clear()

@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from mjbeer import exact, sliding
-from mjbeer.drawing import opengl, studio, video, viewer
+from mjbeer.drawing import encoder, opengl, studio, video, viewer
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
@@ -84,7 +84,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
 
     A viewer is closed as soon as it would open.
 
-    There is OpenGL then, or so it seems, and the paper has a single story, whose plot is a text file too.
+    There are OpenGL and ffmpeg then, or so it seems, and the paper has a single story, whose plot is a text file too.
     """
     calls: list[dict[str, Any]] = []
 
@@ -110,11 +110,12 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
                 raise RenderingError(f"cannot draw {fail_at}")
             files.write(order.path, "film")
             files.write(order.path.with_name(f"{order.path.stem}-still.png"), "still")
-            calls.append({"function": "produce", "film": order.film, "path": order.path})
+            calls.append({"function": "produce", "film": order.film, "path": order.path, "width": order.width})
 
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
     monkeypatch.setattr(studio, "produce", produce)
     monkeypatch.setattr(opengl, "problem", lambda: None)
+    monkeypatch.setattr(encoder, "problem", lambda: None)
     monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     monkeypatch.setattr(viewer, "require_window", lambda: None)
     monkeypatch.setattr(viewer, "_play", lambda player: None)

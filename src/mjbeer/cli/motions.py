@@ -1,12 +1,15 @@
 """The commands about one motion: simulate, render and export."""
 
+import math
 import pathlib
 from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
+
 from mjbeer.cli.arguments import AnyScene, Motion, if_given, radians
-from mjbeer.drawing.cameras import Camera
+from mjbeer.drawing.world.cameras import Camera
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal
@@ -14,6 +17,12 @@ from mjbeer.output.terminal import say
 
 if TYPE_CHECKING:
     from mjbeer.cli.figures import Figures
+    from mjbeer.theory.trajectory import Trajectory
+
+_FPS = 60
+"""Pictures per second of a video."""
+_TURN = 1.0
+"""Largest turn from picture to picture [rad] that the eye can follow well: a sixth of a circle."""
 
 
 @dataclass(frozen=True)
@@ -71,11 +80,13 @@ class Render(Motion):
 
         trajectory = self.simulate()
         _warn(Figures(trajectory, self.friction))
+        _warn_of_turns(trajectory, self.speed)
         render(
             trajectory,
             self.output,
             width=self.width,
             height=self.height,
+            fps=_FPS,
             speed=self.speed,
             camera=self.camera,
         )
@@ -125,6 +136,18 @@ class Export:
         )
         say(f"wrote {self.output}")
         return 0
+
+
+def _warn_of_turns(trajectory: "Trajectory", speed: float) -> None:
+    """Say how slowly a motion must be shown in which can or load turn too far from picture to picture."""
+    fastest = max(float(np.abs(rate).max()) for rate in (trajectory.roll_dot, trajectory.phi_dot))
+    turn = fastest * speed / _FPS
+    if turn > _TURN:
+        say(
+            f"note: can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture, which deceives "
+            f"the eye; --speed {speed * _TURN / turn:.1g} shows it better",
+            "yellow",
+        )
 
 
 def _warn(figures: "Figures") -> None:

@@ -47,9 +47,9 @@ class Validate:
 
 @dataclass(frozen=True)
 class Report:
-    """Validate, draw the four scenes and the paper's stories, and write a summary.
+    """Validate, draw the scenes and the paper's stories, and write a page that shows it all.
 
-    The exit status is 1 if a check fails. Without OpenGL there are no films.
+    The exit status is 1 if a check fails. Without OpenGL or ffmpeg there are no films.
     """
 
     output: pathlib.Path = pathlib.Path("report")
@@ -57,19 +57,20 @@ class Report:
     quick: bool = False
     """Draw smaller videos with fewer frames, and no films for the paper's scenarios."""
     verbose: bool = False
-    """Also print the tables of the validation, which are in the summary."""
+    """Also print the tables of the validation, which are on the page."""
 
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
-        from mjbeer import report
+        from mjbeer.report.write import write
         from mjbeer.studies.validation import tables
 
         began = time.perf_counter()
-        validation, missing = report.write(self.output, self.quick, STDERR)
+        validation, not_drawn = write(self.output, self.quick, STDERR)
         if self.verbose:
             show(tables.validation(validation.results), tables.audit(validation.findings))
-        _tell(missing)
-        say(f"the report is in {self.output / 'summary.md'}")
+        if not_drawn:
+            say(not_drawn, "yellow")
+        say(f"the report is in {self.output / 'index.html'}")
         return _conclude(validation, began)
 
 
@@ -128,6 +129,8 @@ class Stability:
     """Run the whole study: all integrators, finer maps, 20000 random runs, a million swings; takes forty minutes."""
     quick: bool = False
     """Make 250 random runs instead of 3000; takes two minutes."""
+    maps: bool = False
+    """Make only the maps of timestep and stiffness, but all 40 of them, and fine; takes three minutes."""
     json: bool = False
     """Print the results as JSON."""
 
@@ -135,14 +138,16 @@ class Stability:
         """Run the command and return its exit status: 0, or 1 if a check failed.
 
         Raises:
-          ParameterError: if the study is to be both long and quick.
+          ParameterError: if more than one of long, quick and maps is asked for.
         """
         from mjbeer.studies.stability import report, tables
         from mjbeer.studies.stability import run as stability
 
-        if self.long and self.quick:
-            raise ParameterError("--long and --quick exclude each other: take one of them, or neither")
-        extent = "long" if self.long else "quick" if self.quick else "usual"
+        asked = [extent for extent in ("long", "quick", "maps") if getattr(self, extent)]
+        if len(asked) > 1:
+            options = " and ".join(f"--{extent}" for extent in asked)
+            raise ParameterError(f"{options} exclude each other: take one of them, or neither")
+        extent = asked[0] if asked else "usual"
         with files.locked(self.output):
             study = stability.conduct(self.output, extent, STDERR)
             report.write(study, self.output)
@@ -167,11 +172,13 @@ class Paper:
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
+        from mjbeer.drawing import opengl
         from mjbeer.paper.stories import report
 
         missing = report.write(self.output, self.films, STDERR)
         say(f"the stories are in {self.output / 'stories.md'}")
-        _tell(missing)
+        if missing:
+            say(opengl.missing(missing), "yellow")
         return 0
 
 
@@ -184,11 +191,3 @@ def _conclude(validation: "Validation", began: float) -> int:
     style = "green" if validation.passed else "red"
     say(f"{tables.sentence(validation)}, in {time.perf_counter() - began:.0f} s", style)
     return 0 if validation.passed else _FAILED
-
-
-def _tell(missing: list[str]) -> None:
-    """Say which films were not drawn for lack of OpenGL, if any, and what brings them, on a line."""
-    from mjbeer.drawing import opengl
-
-    if missing:
-        say(opengl.missing(missing), "yellow")

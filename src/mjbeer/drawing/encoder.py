@@ -4,7 +4,8 @@ import errno
 import os
 import pathlib
 import signal
-from collections.abc import Iterable
+import subprocess
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,24 @@ _COLOURS = "-vf scale=out_color_matrix=bt709:out_range=tv"
 """HD colours (BT.709), which players expect of a picture this size; the default is those of SD television."""
 _DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 """Errors of the disk. ffmpeg prints the system's message for them."""
+_REMEDY = "Reinstall it (`pip install --force-reinstall imageio-ffmpeg`), or name another in IMAGEIO_FFMPEG_EXE"
+
+
+def problem() -> str | None:
+    """Return why no video can be encoded here, or None if ffmpeg starts."""
+    import imageio_ffmpeg
+
+    try:
+        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-version"]
+        subprocess.run(command, capture_output=True, stdin=subprocess.DEVNULL, check=True)
+    except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
+        return str(error)
+    return None
+
+
+def missing(films: Sequence[str]) -> str:
+    """Return the line that names the films that are missing because there is no ffmpeg, and what brings it."""
+    return f"not drawn because ffmpeg does not start: {', '.join(films)}. {_REMEDY}"
 
 
 def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
@@ -87,5 +106,4 @@ def _error(status: int, messages: str) -> Exception:
 
 
 def _failure(reason: str) -> RenderingError:
-    remedy = "Reinstall it (`pip install --force-reinstall imageio-ffmpeg`), or name another in IMAGEIO_FFMPEG_EXE"
-    return RenderingError(f"ffmpeg did not write the video: {reason}\n{remedy}")
+    return RenderingError(f"ffmpeg did not write the video: {reason}\n{_REMEDY}")

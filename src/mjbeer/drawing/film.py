@@ -9,7 +9,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.drawing import frames
-from mjbeer.drawing.look import Look
+from mjbeer.drawing.overlay.look import Look
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
 

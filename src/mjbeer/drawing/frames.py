@@ -4,30 +4,29 @@ from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer import require
-from mjbeer.drawing import guides
-from mjbeer.drawing.canvas import Canvas
-from mjbeer.drawing.charts import charts
-from mjbeer.drawing.display import Display, scale
-from mjbeer.drawing.header import Header
-from mjbeer.drawing.look import Look
-from mjbeer.drawing.marks import Marks
+from mjbeer.drawing.overlay import guides
+from mjbeer.drawing.overlay.charts import charts
+from mjbeer.drawing.overlay.header import Header
+from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay.marks import Marks
+from mjbeer.drawing.overlay.sheet import Sheet
+from mjbeer.drawing.overlay.strip import Strip
 from mjbeer.drawing.painter import Painter
-from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.shot import Shot
-from mjbeer.drawing.strip import Strip
+from mjbeer.drawing.size import UNITS, whole
+from mjbeer.drawing.world.canvas import Canvas
+from mjbeer.drawing.world.display import Display, scale
+from mjbeer.drawing.world.positions import coordinates
+from mjbeer.drawing.world.shot import Shot
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-_LARGEST = 4096
-"""Largest width and height [pixels] that H.264 encoders support."""
-UNITS = 36
-"""Height of a picture in units, which all sizes in it are multiples of."""
 _STRIP = 10
 """Height of the charts below a picture, in units."""
+_NARROW = 24
+"""Width up to which a picture has no charts below, in units."""
 _FINE = 2000
 """Points of a path."""
 
@@ -50,22 +49,10 @@ def draw(
     return _draw(trajectory, times, width=width, height=height, look=look, speed=speed)
 
 
-def whole(name: str, pixels: float) -> int:
-    """Return a number of pixels as an integer.
-
-    Raises:
-      ParameterError: if it is not a whole number, not positive, or larger than encoders support.
-    """
-    number = require.positive(name, pixels)
-    if number % 1 != 0 or number > _LARGEST:
-        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.shown(pixels)}")
-    return int(number)
-
-
 def _draw(
     trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
 ) -> Generator[np.ndarray]:
-    stage = Stage.of(trajectory, times, width, height, look, speed)
+    stage = Stage.of(trajectory, width, height, look, speed)
     display = stage.display()
     with Canvas(display.model, width, stage.pixels[1]) as canvas:
         painter = Painter(canvas, display, stage.shot.still)
@@ -90,16 +77,15 @@ class Stage:
     pixels: tuple[int, int]
     """Width and height of the scene [pixels]."""
     unit: float
+    """Unit of length of the sheet [pixels]."""
 
     @classmethod
-    def of(
-        cls, trajectory: Trajectory, times: np.ndarray, width: int, height: int, look: Look, speed: float
-    ) -> "Stage":
-        """Return the stage for the pictures of a trajectory at some times [s]."""
+    def of(cls, trajectory: Trajectory, width: int, height: int, look: Look, speed: float) -> "Stage":
+        """Return the stage for pictures of a trajectory of a width and a height [pixels]."""
         scene, unit = trajectory.scene, height / UNITS
         header = Header(look, trajectory, speed, unit)
-        lasts = len(trajectory.time) > 1
-        below = round(_STRIP * unit) if lasts and look.strips else 0
+        has_room = len(trajectory.time) > 1 and width > _NARROW * unit
+        below = round(_STRIP * unit) if has_room and look.strips else 0
         pixels = (width, height - header.height - below)
         fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
         positions = coordinates(trajectory, fine)
@@ -129,16 +115,3 @@ class Stage:
         self.header.draw(self.sheet, time)
         if self.strip is not None:
             self.strip.draw(self.sheet, time, self.top + self.pixels[1])
-
-
-def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
-    """Return u [m], phi [rad], roll [rad] and lift [m] at some times [s], shape (times, 4).
-
-    Between two samples each is the cubic that has the samples' values and rates. Its error falls as the fourth power
-    of the interval, so that the motion looks smooth even with 20 samples per second.
-    """
-    samples = np.stack([trajectory.u, trajectory.phi, trajectory.roll, trajectory.lift], axis=1)
-    if len(samples) == 1:
-        return np.repeat(samples, len(times), axis=0)
-    rates = np.stack([trajectory.u_dot, trajectory.phi_dot, trajectory.roll_dot, trajectory.lift_dot], axis=1)
-    return CubicHermiteSpline(trajectory.time, samples, rates)(times)

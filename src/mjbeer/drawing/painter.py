@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.drawing.canvas import Canvas
-from mjbeer.drawing.display import Display, on_incline, scale
-from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.view import View, circle
+from mjbeer.drawing.overlay.sheet import Sheet
+from mjbeer.drawing.world.canvas import Canvas
+from mjbeer.drawing.world.display import Display, on_incline, scale
+from mjbeer.drawing.world.view import View, circle
 from mjbeer.theory.can import RADIUS
 
 _RIM = 1.12

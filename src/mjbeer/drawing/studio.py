@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import warnings
 from collections.abc import Sequence
 from concurrent.futures import Future, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -14,7 +15,7 @@ from PIL import Image
 
 from mjbeer.drawing import video
 from mjbeer.drawing.film import Film
-from mjbeer.exceptions import RenderingError
+from mjbeer.exceptions import RenderingError, UntrustedWarning
 from mjbeer.output import files, processes
 from mjbeer.output.terminal import progress_bar
 
@@ -85,6 +86,7 @@ _drawn: list[Synchronized] = []
 def _prepare(drawn: Synchronized) -> None:
     """Prepare a process for drawing."""
     _drawn.append(drawn)
+    warnings.simplefilter("ignore", UntrustedWarning)  # films show on purpose what cannot be trusted
     os.environ["LP_NUM_THREADS"] = "1"  # more threads of Mesa would only wait for each other's cores
 
 

@@ -9,10 +9,11 @@ import numpy as np
 from PIL import Image
 
 from mjbeer import require
-from mjbeer.drawing import encoder, frames
-from mjbeer.drawing.cameras import CAMERAS, Camera
+from mjbeer.drawing import encoder
 from mjbeer.drawing.film import Reel, reel
-from mjbeer.drawing.look import Look
+from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.size import whole
+from mjbeer.drawing.world.cameras import CAMERAS, Camera
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
@@ -57,7 +58,7 @@ def write(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    width, height = frames.whole("width", width), frames.whole("height", height)
+    width, height = whole("width", width), whole("height", height)
     for name, pixels in (("width", width), ("height", height)):
         if pixels % 2 != 0:
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")

@@ -25,7 +25,7 @@ from mjbeer.theory.words import in_words
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from mjbeer.drawing.cameras import Camera
+    from mjbeer.drawing.world.cameras import Camera
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
@@ -93,8 +93,10 @@ def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
 
     require.boolean("theory", theory)
     scene, time = trajectory.scene, trajectory.time
+    # A notebook makes matplotlib interactive with the first figure, which the context would undo at its end.
+    figure = plt.figure(figsize=(8, 5), layout="constrained")
     with mpl.rc_context(STYLE):
-        figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(8, 5))
+        above, below = figure.subplots(2, 1, sharex=True)
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
             start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}

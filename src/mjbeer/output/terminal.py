@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 
 import rich.console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mjbeer.exceptions import OutputError
 from mjbeer.output.table import Table
@@ -22,8 +22,8 @@ class Console(rich.console.Console):
 
 _BAR = 20
 """Columns of a progress bar itself."""
-_COUNTED = 20
-"""Columns for the count and the time beside the bar, with the gaps between."""
+_COUNTED = 34
+"""Columns for the count and the times beside the bar, with the gaps between."""
 STDOUT = Console()
 STDERR = Console(stderr=True)
 
@@ -58,14 +58,15 @@ def say(text: str, style: str = "") -> None:
 def progress_bar(console: rich.console.Console | None, total: int) -> Generator[Callable[[str], None]]:
     """Yield a function to be called at the start of each of `total` pieces of work, with the name of the piece.
 
-    The bar shows the name, how many pieces have been started, and the time since the block began. No bar is shown if
-    `console` is None or not a terminal.
+    The bar shows the name, how many pieces have been started, the time since the block began, and the time left at the
+    present pace. No bar is shown if `console` is None or not a terminal.
     """
     counted = TextColumn("{task.completed}/{task.total}")
-    columns = TextColumn("{task.description}", markup=False), BarColumn(bar_width=_BAR), counted
+    name, bar = TextColumn("{task.description}", markup=False), BarColumn(bar_width=_BAR)
+    times = TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left")
     hidden = console is None or not console.is_terminal
     longest = 0 if console is None else max(0, console.width - _BAR - _COUNTED)
-    with Progress(*columns, TimeElapsedColumn(), console=console, transient=True, disable=hidden) as progress:
+    with Progress(name, bar, counted, *times, console=console, transient=True, disable=hidden) as progress:
         task = progress.add_task("", total=total)
         yield lambda name: progress.update(task, description=name[:longest], advance=1)
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
 from mjbeer.drawing.film import Take
-from mjbeer.drawing.look import Look, Mark
+from mjbeer.drawing.overlay.look import Look, Mark
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import (
     COLOURS,

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from mjbeer.drawing.film import Take
-from mjbeer.drawing.look import Look
+from mjbeer.drawing.overlay.look import Look
 from mjbeer.model.setting import FRICTION
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, UNPHYSICAL, chart, name_below, note, ticks
 from mjbeer.paper.equations import hopping

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from mjbeer.drawing.film import Take
-from mjbeer.drawing.look import Look
+from mjbeer.drawing.overlay.look import Look
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, SIMULATED, THEORY, chart, name_below, note, ticks
 from mjbeer.paper.equations import segment

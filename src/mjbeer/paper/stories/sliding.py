@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mjbeer.drawing.film import Take
-from mjbeer.drawing.look import Look, Mark
+from mjbeer.drawing.overlay.look import Look, Mark
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import (
     COLOURS,

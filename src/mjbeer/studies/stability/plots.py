@@ -26,7 +26,7 @@ _FLOOR = 1e-16
 _SEMI_IMPLICIT = "semi-implicit"
 _METHOD_COLOURS = dict(zip((_SEMI_IMPLICIT, *RUNGE_KUTTA), COLOURS, strict=False))
 """Colours of the plot of endurance; the semi-implicit integrators share one, because their drift is the same."""
-_MEANINGS = ("unstable", "stable, error above 1 %", "stable and accurate")
+MEANINGS = ("unstable", "stable, error above 1 %", "stable and accurate")
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def _usual(result: dict[str, Any]) -> bool:
     return result["family"] == "equality" and result["dampratio"] == 1 and result["written"] == "exact"
 
 
-_FIGURES = (
+FIGURES = (
     _Figure(
         name="stability-solref",
         columns=3,
@@ -98,7 +98,7 @@ _FIGURES = (
         holds=lambda result: result["family"] == "spring",
     ),
 )
-_VALUES = {
+VALUES = {
     "equality": "time constant of solref [s]",
     "contact": "time constant of solref [s]",
     "direct": "stiffness K of solref [1/s²]",
@@ -120,7 +120,7 @@ def draw(limits: list[dict[str, Any]], maps: list[dict[str, Any]], folder: Path)
     if limits:
         _draw_limits(limits, folder / LIMITS)
         drawn.append(f"{LIMITS}: largest timesteps of small swings, as ωh, against linear theory.")
-    for figure in _FIGURES:
+    for figure in FIGURES:
         shown = [result for result in maps if figure.holds(result)]
         if shown:
             _draw_maps(figure, shown, folder / figure.name)
@@ -141,9 +141,9 @@ def _draw_maps(figure: _Figure, maps: list[dict[str, Any]], path: Path) -> None:
             if place + columns >= len(maps):
                 axes.set_xlabel("timestep h [s]")
             if place % columns == 0:
-                axes.set_ylabel(_VALUES[maps[place]["family"]])
+                axes.set_ylabel(VALUES[maps[place]["family"]])
         handles: list[Artist] = [
-            Patch(facecolor=colour, label=name) for colour, name in zip(_CELLS, _MEANINGS, strict=True)
+            Patch(facecolor=colour, label=name) for colour, name in zip(_CELLS, MEANINGS, strict=True)
         ]
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": "white", "markeredgecolor": "black"}
         handles += [

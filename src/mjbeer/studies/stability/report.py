@@ -1,9 +1,10 @@
 """Writes the stability study: its runs as CSV, its plots, and a summary with the tables."""
 
+import datetime
 import pathlib
 
 from mjbeer.output import files
-from mjbeer.studies.stability import plots, tables
+from mjbeer.studies.stability import plots, stored, tables
 from mjbeer.studies.stability.run import Stability
 
 _READ = """
@@ -29,20 +30,24 @@ _ENDURANCE = (
 
 
 def write(study: Stability, folder: pathlib.Path) -> None:
-    """Write runs.csv, the plots, and at the end summary.md into a folder.
+    """Write runs.csv, maps.json, the plots, and at the end summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     files.write(folder / "runs.csv", tables.runs(study))
-    plots.draw_endurance(study.of("endurance"), folder / "stability-endurance")
-    pictures = [*plots.draw(study.of("limits"), study.of("maps"), folder), _ENDURANCE]
+    files.write(folder / "maps.json", stored.to_json(study, datetime.date.today()))
+    pictures = plots.draw(study.of("limits"), study.of("maps"), folder)
+    if study.of("endurance"):
+        plots.draw_endurance(study.of("endurance"), folder / "stability-endurance")
+        pictures.append(_ENDURANCE)
     lines = ["# mjbeer: stability", "", f"{_verdict(study)}", _READ]
-    lines += [tables.verdicts(study).markdown()]
+    first, *others = tables.tables(study)
+    lines += [first.markdown()]
     for name, caption in (picture.split(": ", 1) for picture in pictures):
         lines += [f"![{name}]({name}.svg)", "", f"{caption[0].upper()}{caption[1:]}", ""]
-    lines += [table.markdown() for table in tables.tables(study)[1:]]
-    lines += [tables.catalogue(study).markdown(), tables.reasons(study).markdown()]
+    others += [table for table in (tables.catalogue(study), tables.reasons(study)) if table.rows]
+    lines += [table.markdown() for table in others]
     files.write(folder / "summary.md", "\n".join(lines))
 
 

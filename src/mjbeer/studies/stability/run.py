@@ -38,12 +38,15 @@ class Stability(Study):
         return names
 
 
-EXTENTS = ("quick", "usual", "long")
-"""How much a study measures: only the last one runs everything; the first two differ in the number of random runs."""
+OPTIONS = {"quick": "quick", "usual": "", "long": "long", "maps": "maps"}
+"""How much a study measures, and the option that asks for it: "long" runs everything, "maps" nothing but all maps, and
+the other two differ in the number of random runs."""
 
 
 def tasks(extent: str) -> list[Task]:
-    """Return all tasks of a study of this extent."""
+    """Return all tasks of a study of this extent, one of `OPTIONS`."""
+    if extent == "maps":
+        return maps.tasks()
     sample = extent != "long"
     return [
         *laws.tasks(),

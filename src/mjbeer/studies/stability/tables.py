@@ -17,15 +17,16 @@ _RUN = ("kind", "case", "setting", "verdict", "error", "admitted", "says", "expe
 
 
 def tables(study: Stability) -> list[Table]:
-    """Return the tables for the terminal; those with a line for result case appear only in the summary."""
-    return [
+    """Return the tables for the terminal that have a row; those with a line a case appear only in the summary."""
+    shown = (
         verdicts(study),
         laws(study),
         limits.table(study.of("limits")),
         maps.table(study.of("maps")),
         *search.tables(study.of("search")),
         endurance(study),
-    ]
+    )
+    return [table for table in shown if table.rows]
 
 
 def verdicts(study: Stability) -> Table:

@@ -1,0 +1,174 @@
+"""Lines, arrows and texts drawn over a picture, with smooth edges."""
+
+import math
+from collections.abc import Sequence
+from functools import cache, lru_cache
+
+import numpy as np
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.colors import to_rgb
+from matplotlib.font_manager import FontProperties, findfont
+from matplotlib.path import Path
+from matplotlib.transforms import Affine2D, Bbox
+from PIL import Image, ImageDraw, ImageFont
+
+Colour = str | tuple[float, float, float]
+"""A colour as matplotlib takes it."""
+Box = tuple[float, float, float, float]
+"""Left, top, right and bottom [pixels]."""
+
+INK = "#1f2933"
+"""Colour of texts and of lines that explain."""
+_EDGE = 2
+"""Width of the white edge around a text that may lie on anything [pixels]."""
+_HEAD = 3.2
+"""Length of an arrow's head, in widths of its line."""
+
+
+class Sheet:
+    """A picture to draw on with matplotlib's renderer; places are (column, row) from its upper left corner [pixels]."""
+
+    def __init__(self, width: int, height: int) -> None:
+        self._renderer = RendererAgg(width, height, 72)  # at 72 dots per inch a point is a pixel
+        self._pixels = np.asarray(self._renderer.buffer_rgba())
+        self._pixels[:] = 255
+        self._flip = Affine2D().scale(1, -1).translate(0, height)
+        self.width, self.height = width, height
+        self.boxes: list[Box] = []
+        """The boxes of all texts since this list was last emptied."""
+        self._clip: Box | None = None
+
+    def put(self, picture: np.ndarray, left: int = 0, top: int = 0) -> None:
+        """Put a picture of shape (height, width, 3), uint8, on the sheet, with its upper left corner at a place."""
+        rows, columns, _ = picture.shape
+        self._pixels[top : top + rows, left : left + columns, :3] = picture
+
+    def blank(self, left: int, top: int, right: int, bottom: int) -> None:
+        """Make a part of the sheet white."""
+        self._pixels[top:bottom, left:right] = 255
+
+    def picture(self) -> np.ndarray:
+        """Return a copy of what is on the sheet, shape (height, width, 3), uint8."""
+        return np.ascontiguousarray(self._pixels[:, :, :3])
+
+    def clip(self, box: Box | None) -> None:
+        """Draw only within a box from now on, or everywhere."""
+        self._clip = box
+
+    def line(
+        self, places: np.ndarray, width: float, colour: Colour = INK, alpha: float = 1.0, dashes: Sequence[float] = ()
+    ) -> None:
+        """Draw a line through places of shape (n, 2); `dashes` are lengths on and off, in widths of the line."""
+        pen = self._pen(width, colour, alpha)
+        if dashes:
+            pen.set_dashes(0, [width * length for length in dashes])
+        self._renderer.draw_path(pen, Path(places), self._flip)
+
+    def area(self, places: np.ndarray, colour: tuple[float, float, float], alpha: float = 1.0) -> None:
+        """Fill the polygon with corners at places of shape (n, 2)."""
+        pen = self._pen(0, colour, alpha)
+        self._renderer.draw_path(pen, Path(places, closed=False), self._flip, (*colour, alpha))
+
+    def disc(self, place: np.ndarray, radius: float, colour: tuple[float, float, float]) -> None:
+        """Draw a disc with a white rim."""
+        pen = self._pen(radius / 3, "white", 1.0)
+        self._renderer.draw_path(
+            pen, Path.unit_circle(), Affine2D().scale(radius).translate(*place) + self._flip, colour
+        )
+
+    def arrow(self, tail: np.ndarray, head: np.ndarray, width: float, colour: tuple[float, float, float]) -> None:
+        """Draw an arrow; one shorter than its head is drawn as a smaller arrow."""
+        way = np.asarray(head) - tail
+        length = float(np.hypot(*way))
+        if length < 1:
+            return
+        width = min(width, length / _HEAD)
+        along = way / length
+        across = np.array([-along[1], along[0]])
+        neck = head - _HEAD * width * along
+        shape = [
+            tail + across * width / 2, neck + across * width / 2, neck + across * 1.5 * width, head,
+            neck - across * 1.5 * width, neck - across * width / 2, tail - across * width / 2,
+        ]  # fmt: skip
+        self.area(np.array(shape), colour)
+
+    def text(
+        self,
+        place: np.ndarray | tuple[float, float],
+        words: str,
+        size: float,
+        colour: Colour = INK,
+        anchor: tuple[float, float] = (0.0, 0.5),
+        bold: bool = False,
+        halo: bool = False,
+    ) -> Box:
+        """Write a text and return its box. `anchor` is the point of the box that lies at the place: (0, 0) upper left.
+
+        With a `halo` the text has a white edge, so that it can be read on anything.
+        """
+        box = self.box(place, words, size, anchor, bold)
+        left, top = int(box[0]), int(box[1])
+        if halo:
+            self._blend(left - _EDGE, top - _EDGE, _letters(words, max(1, round(size)), bold, _EDGE), (1.0, 1.0, 1.0))
+        self._blend(left, top, _letters(words, max(1, round(size)), bold, 0), to_rgb(colour))
+        self.boxes.append(box)
+        return box
+
+    def box(
+        self,
+        place: np.ndarray | tuple[float, float],
+        words: str,
+        size: float,
+        anchor: tuple[float, float] = (0.0, 0.5),
+        bold: bool = False,
+    ) -> Box:
+        """Return the box that a text would have."""
+        height, width = _letters(words, max(1, round(size)), bold, 0).shape
+        left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
+        return left, top, left + width, top + height
+
+    def _blend(self, left: int, top: int, mask: np.ndarray, colour: tuple[float, float, float]) -> None:
+        """Mix a colour into the picture where a mask says how much of it, with its upper left corner at a place."""
+        rows, columns = mask.shape
+        under = self._pixels[max(0, top) : max(0, top + rows), max(0, left) : max(0, left + columns), :3]
+        high, low = max(0, -top), max(0, -left)
+        part = mask[high : high + under.shape[0], low : low + under.shape[1], None]
+        under[:] = under + part * (255 * np.array(colour, np.float32) - under)
+
+    def _pen(self, width: float, colour: Colour, alpha: float):
+        pen = self._renderer.new_gc()
+        pen.set_linewidth(width)
+        pen.set_foreground(colour)
+        pen.set_alpha(alpha)
+        pen.set_capstyle("round")
+        pen.set_joinstyle("round")
+        pen.set_snap(False)  # what moves must not jump from pixel to pixel
+        if self._clip is not None:
+            left, top, right, bottom = self._clip
+            pen.set_clip_rectangle(Bbox([[left, self.height - bottom], [right, self.height - top]]))
+        return pen
+
+
+def overlap(one: Box, other: Box) -> bool:
+    """Return whether two boxes have a point in common."""
+    return min(one[2], other[2]) > max(one[0], other[0]) and min(one[3], other[3]) > max(one[1], other[1])
+
+
+@lru_cache(1000)
+def _letters(words: str, size: int, bold: bool, edge: int) -> np.ndarray:
+    """Return how much of each pixel the letters of a text and an `edge` [pixels] around them cover, from 0 to 1.
+
+    The array is as high as a line, so that texts beside each other stand on one line.
+    """
+    font = _font(size, bold)
+    ascent, descent = font.getmetrics()
+    width = math.ceil(font.getlength(words))
+    image = Image.new("L", (width + 2 * edge, ascent + descent + 2 * edge))
+    ImageDraw.Draw(image).text((edge, edge), words, fill=255, font=font, stroke_width=edge)
+    return np.asarray(image, np.float32) / 255
+
+
+@cache
+def _font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
+    """Return matplotlib's own font, which is the same everywhere and has the Greek letters."""
+    return ImageFont.truetype(findfont(FontProperties(weight="bold" if bold else "normal")), size)

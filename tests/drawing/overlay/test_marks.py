@@ -1,0 +1,118 @@
+"""What is drawn at the can is what it says: the angle, the paths, the forces, and even acceleration."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mjbeer import Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.drawing.overlay.look import Mark
+from mjbeer.drawing.overlay.marks import LONGEST, Marks
+from mjbeer.drawing.world.display import on_incline, scale
+from mjbeer.drawing.world.positions import coordinates
+from mjbeer.drawing.world.shot import Shot
+from mjbeer.drawing.world.view import View
+from mjbeer.model.parts import WALL
+from mjbeer.theory.can import RADIUS
+from tests.support.drawn import Recorder
+
+TIMES = np.linspace(0, 0.5, 501)
+PIXELS = (1280, 430)
+PLANE = -0.06
+# Rounding of places of some hundred pixels; the arcs are polygons, whose ends are exact.
+ROUNDING = 1e-6
+
+
+def drawn(motion: Trajectory, kind: Mark, time: float) -> tuple[Recorder, View, np.ndarray]:
+    """Draw a mark, and return the sheet, the view, and the coordinates at that time."""
+    positions = coordinates(motion, TIMES)
+    view = Shot.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
+    (now,) = coordinates(motion, np.array([time]))
+    sheet = Recorder(*PIXELS)
+    Marks(motion, (kind,), PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
+    return sheet, view, now
+
+
+def place(motion: Trajectory, view: View, along: float, height: float) -> np.ndarray:
+    """Return where a point of the incline's plane is seen, given in the scene's metres."""
+    x, z = on_incline(motion.scene, along * scale(motion.scene), height * scale(motion.scene))
+    return view.pixel(np.array([x, PLANE, z]))
+
+
+def direction(line: np.ndarray) -> float:
+    """Return the direction of a line in the picture [rad], counter-clockwise from the right."""
+    right, down = line[-1] - line[0]
+    return math.atan2(-down, right)
+
+
+def differ(one: float, other: float) -> float:
+    return abs(math.remainder(one - other, 2 * math.pi))
+
+
+@pytest.mark.parametrize("make", [frozen, sliding, pendulum, hoop])
+@pytest.mark.parametrize("phi", [-3.0, -1.0, -0.1, 0.1, 1.0, 3.0, 10.0])
+def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float) -> None:
+    """One line is along the incline, or across it over a bob; the other is turned by phi, clockwise."""
+    motion = exact(make(), TIMES, phi, many_turns=True)
+    sheet, _, _ = drawn(motion, "phi", 0.0)
+    first, second, arc = sheet.lines
+    along = -motion.scene.incline + (math.pi / 2 if motion.scene.load.fill is None else 0.0)
+    assert min(differ(direction(first), along), differ(direction(first), along + math.pi)) < ROUNDING
+    assert differ(direction(second), direction(first) - phi) < ROUNDING
+    centre = np.array([arc[0], arc[-1]]) - [first[0], second[0]]
+    assert differ(direction(np.array([np.zeros(2), centre[0]])), direction(first)) < ROUNDING
+    assert differ(direction(np.array([np.zeros(2), centre[1]])), direction(second)) < ROUNDING
+    assert sheet.words == ["φ"]
+
+
+@pytest.mark.parametrize("make", [frozen, sliding, pendulum, hoop])
+def test_paths_are_those_of_fig_3(make: Any) -> None:
+    motion = exact(make(), TIMES, 2.0)
+    sheet, view, (u, phi, roll, _) = drawn(motion, "paths", 0.3)
+    rim, centre = sheet.lines
+    a, b = motion.scene.can.radius, motion.scene.load.offset
+    load = place(motion, view, u - b * math.sin(phi), a - b * math.cos(phi))
+    assert centre[-1] == pytest.approx(load, abs=ROUNDING)
+    assert sheet.discs[0] == pytest.approx(load, abs=ROUNDING)
+    assert rim[-1] == pytest.approx(place(motion, view, u + a * math.sin(roll), a + a * math.cos(roll)), abs=ROUNDING)
+    start = motion.u[0] - b * math.sin(2.0), a - b * math.cos(2.0)
+    assert centre[0] == pytest.approx(place(motion, view, *start), abs=ROUNDING)
+
+
+def test_forces_push_the_can_where_it_touches_the_incline() -> None:
+    motion = exact(frozen(), TIMES, 2.0)
+    sheet, view, (u, *_) = drawn(motion, "forces", 0.1)
+    (tail, head), (start, end) = sheet.arrows
+    assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)  # under the drawn wall
+    assert differ(direction(np.array([tail, head])), math.pi / 2 - motion.scene.incline) < ROUNDING
+    normal, friction = (float(np.interp(0.1, TIMES, force)) for force in (motion.forces.normal, motion.forces.friction))
+    # Friction is positive up the incline, which is to the left.
+    assert differ(direction(np.array([start, end])), math.pi * (friction > 0) - motion.scene.incline) < ROUNDING
+    lengths = np.hypot(*(head - tail)), np.hypot(*(end - start))
+    assert lengths[1] / lengths[0] == pytest.approx(abs(friction) / normal, rel=0.02)  # means over 2.5 ms
+    radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
+    assert lengths[0] <= LONGEST * radius * (1 + 1e-9)
+    assert sheet.words == ["N", "F"]
+
+
+def test_in_the_air_there_are_no_forces() -> None:
+    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, times=np.linspace(0, 1, 1001))
+    flying = run.time[np.argmax(run.lift)]
+    positions = coordinates(run, TIMES)
+    view = Shot.fit(run.scene, "fixed", run.time, run.u, run.lift, PLANE, PIXELS).view(0.0)
+    sheet = Recorder(*PIXELS)
+    Marks(run, ("forces",), PLANE, TIMES, positions).draw(sheet, view, 0, flying, coordinates(run, [flying])[0])
+    assert sheet.arrows == []
+    assert sheet.words == []
+
+
+def test_the_ghost_is_where_even_acceleration_has_it() -> None:
+    """s = g sin(alpha) t^2/2 in a massless can, eq. (9); the can itself is b sin(phi) ahead."""
+    motion = exact(sliding(), TIMES, 1.0)
+    sheet, view, (u, phi, _, _) = drawn(motion, "ghost", 0.4)
+    ring = sheet.lines[0]
+    middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
+    even = 9.81 * math.sin(motion.scene.incline) * 0.4**2 / 2
+    assert middle == pytest.approx(place(motion, view, even, 0.033), abs=0.2)  # a polygon of 48 corners
+    assert u - even == pytest.approx(motion.scene.load.offset * math.sin(phi))

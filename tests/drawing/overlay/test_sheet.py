@@ -1,0 +1,76 @@
+"""Lines, arrows and texts are where they are put, and only there."""
+
+import numpy as np
+import pytest
+
+from mjbeer.drawing.overlay.sheet import Sheet
+
+
+def dark(sheet: Sheet) -> np.ndarray:
+    """Rows and columns of the pixels that are at least half covered by black, shape (2, pixels)."""
+    return np.stack(np.nonzero(sheet.picture().max(axis=2) < 128))
+
+
+def test_a_line_is_where_it_is_put() -> None:
+    sheet = Sheet(60, 40)
+    sheet.line(np.array([[10.0, 20.5], [50.0, 20.5]]), 3, "black")
+    rows, columns = dark(sheet)
+    assert (rows.min(), rows.max()) == (19, 21)
+    assert (columns.min(), columns.max()) == (9, 50)  # with round ends
+
+
+def test_an_arrow_ends_where_it_points() -> None:
+    sheet = Sheet(60, 80)
+    sheet.arrow(np.array([30.0, 10.0]), np.array([30.0, 70.0]), 4, (0.0, 0.0, 0.0))
+    rows, columns = dark(sheet)
+    assert rows.min() == 10
+    assert 67 <= rows.max() <= 70
+    assert columns.mean() == pytest.approx(29.5, abs=0.1)
+    widest = rows[np.argmax(np.abs(columns - 30))]
+    assert 55 <= widest <= 58  # its head
+    assert columns.max() - columns.min() == pytest.approx(12, abs=1)
+
+
+def test_an_arrow_of_no_length_is_not_drawn() -> None:
+    sheet = Sheet(20, 20)
+    sheet.arrow(np.array([10.0, 10.0]), np.array([10.0, 10.4]), 4, (0.0, 0.0, 0.0))
+    assert len(dark(sheet)[0]) == 0
+
+
+@pytest.mark.parametrize("anchor", [(0.0, 0.0), (1.0, 0.5), (0.5, 1.0)])
+def test_a_text_is_in_its_box(anchor: tuple[float, float]) -> None:
+    sheet = Sheet(200, 100)
+    left, top, right, bottom = sheet.text((100, 50), "φ = 60°", 20, "black", anchor=anchor)
+    assert (left, top) == pytest.approx((100 - anchor[0] * (right - left), 50 - anchor[1] * (bottom - top)), abs=0.5)
+    rows, columns = dark(sheet)
+    assert len(rows) > 50
+    assert left <= columns.min()
+    assert columns.max() < right
+    assert top <= rows.min()
+    assert rows.max() < bottom
+    assert sheet.boxes == [(left, top, right, bottom)]
+
+
+def test_a_text_over_the_edge_is_cut_off() -> None:
+    sheet = Sheet(40, 30)
+    sheet.text((-10, -5), "long text that does not fit", 20, "black")
+    assert len(dark(sheet)[0]) > 20
+
+
+def test_a_halo_makes_a_text_readable_on_black() -> None:
+    sheet = Sheet(100, 40)
+    sheet.put(np.zeros((40, 100, 3), np.uint8))
+    sheet.text((10, 20), "N", 24, "black", halo=True)
+    assert (sheet.picture() > 200).any()
+    assert (sheet.picture()[:, 60:] == 0).all()
+
+
+def test_nothing_is_drawn_outside_of_a_clip() -> None:
+    sheet = Sheet(60, 40)
+    sheet.clip((20, 10, 40, 30))
+    sheet.line(np.array([[0.0, 20.0], [60.0, 20.0]]), 3, "black")
+    _, columns = dark(sheet)
+    assert (columns.min(), columns.max()) == (20, 39)
+    sheet.clip(None)
+    sheet.line(np.array([[0.0, 20.0], [60.0, 20.0]]), 3, "black")
+    assert len(dark(sheet)[0]) > 100

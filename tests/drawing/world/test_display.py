@@ -1,0 +1,134 @@
+"""Whatever made a trajectory, the display model shows can and load where theory has them."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mjbeer import Can, Scene, exact, frozen, hoop, simulate, sliding
+from mjbeer.drawing.world.display import Display, on_incline, scale
+from mjbeer.theory.can import RADIUS
+from tests.support.scenes import METAL, SCENES, scenes
+
+# Rounding of a few products, relative to the distances in play.
+ROUNDING = 1e-12
+ROLLINGS = ("reduced", "equality", "contact")
+MOTIONS = [
+    *((name, rolling) for name in SCENES for rolling in ROLLINGS if not (name == "sliding" and rolling != "reduced")),
+    *((name, "exact") for name in SCENES),
+]
+
+
+def in_incline(scene: Scene, point: np.ndarray) -> tuple[float, float]:
+    """Distance down the incline and height over it, in the scene's metres, of a point of the drawn world."""
+    sine, cosine = math.sin(scene.incline), math.cos(scene.incline)
+    x, _, z = point / scale(scene)
+    return x * cosine - z * sine, x * sine + z * cosine
+
+
+def check(display: Display, number: int, u: float, phi: float, roll: float, lift: float) -> None:
+    """Check that a can of a posed display is where it should be."""
+    scene, data, prefix = display.scenes[number], display.data, f"{number}-" if number else ""
+    a, b = scene.can.radius, scene.load.offset
+    close = pytest.approx
+    tolerance = ROUNDING * (abs(u) + abs(lift) + a) * (1 + abs(phi))
+    # Paper's Fig. 3: the axis at (u, 0), the load's centre of mass at (u - b sin phi, -b cos phi).
+    axis = data.body(f"{prefix}can").xpos
+    assert in_incline(scene, axis) == close((u, a + lift), abs=tolerance)
+    assert axis[1] == close(display.lanes[number], abs=ROUNDING)
+    load = data.body(f"{prefix}load")
+    centre = load.xpos + load.xmat.reshape(3, 3) @ [0, 0, -b * scale(scene)]
+    assert in_incline(scene, centre) == close((u - b * math.sin(phi), a + lift - b * math.cos(phi)), abs=tolerance)
+    # What was on top of the can where it has not rolled goes downhill from there.
+    can = data.body(f"{prefix}can")
+    top = can.xpos + can.xmat.reshape(3, 3) @ [0, 0, RADIUS]
+    expected = u + a * math.sin(roll), a + lift + a * math.cos(roll)
+    assert in_incline(scene, top) == close(expected, abs=tolerance * (1 + abs(roll)))
+
+
+@pytest.mark.parametrize(("name", "rolling"), MOTIONS)
+def test_every_kind_of_trajectory(name: str, rolling: str) -> None:
+    scene = SCENES[name]
+    if rolling == "exact":
+        moved = exact(scene, np.linspace(0, 0.5, 6), 2.0)
+    else:
+        moved = simulate(scene, 0.5, 2.0, rolling=rolling, times=0.1 * np.arange(6))
+    display = Display.of([scene], 0, 1)
+    for position in np.stack([moved.u, moved.phi, moved.roll, moved.lift], axis=1):
+        display.pose(position[None])
+        check(display, 0, *position)
+
+
+@pytest.mark.slow
+@settings(max_examples=50, deadline=None, derandomize=True)
+@given(scenes(), *(st.floats(-10, 10),) * 4)
+def test_any_scene_anywhere(scene: Scene, turns: float, phi: float, roll: float, height: float) -> None:
+    a = scene.can.radius
+    phi = roll if scene.attachment == "frozen" else phi
+    display = Display.of([scene], 0, 1)
+    display.pose(np.array([[turns * a, phi, roll, height * a]]))
+    check(display, 0, turns * a, phi, roll, height * a)
+
+
+def test_cans_side_by_side_are_posed_by_themselves() -> None:
+    """Of another kind each, on one board that is as wide as all lanes."""
+    scenes = [sliding(0.1, can=METAL), frozen(0.1, can=METAL, fill=0.9), frozen(0.1, can=METAL)]
+    display = Display.of(scenes, 0, 1, apart=0.2, lines=(0.0, 0.5))
+    positions = np.array([[0.1, 0.5, 3.0, 0.0], [0.2, 1.0, 1.0, 0.01], [0.3, 7.0, 7.0, 0.0]])
+    display.pose(positions)
+    for number, position in enumerate(positions):
+        check(display, number, *position)
+    assert display.lanes == [0.0, 0.2, 0.4]
+    board, line = display.model.geom("board"), display.model.geom("line1")
+    assert (board.pos[1] - board.size[1], board.pos[1] + board.size[1]) == pytest.approx((-0.075, 0.475))
+    assert in_incline(scenes[0], display.data.geom("line1").xpos)[0] == pytest.approx(0.5)
+    assert line.size[1] == display.model.geom("board").size[1]
+
+
+def test_each_can_has_a_label_of_its_colour() -> None:
+    display = Display.of([sliding(can=METAL), frozen(can=METAL)], 0, 1, apart=0.2)
+    display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)])
+    assert display.model.mat("label").rgba.tolist() == [1, 0, 0, 1]
+    assert display.model.mat("1-label").rgba.tolist() == [0, 0, 1, 1]
+
+
+def test_hidden_cans_are_out_of_sight() -> None:
+    display = Display.of([sliding(), frozen()], 0, 1, apart=0.2)
+    display.hide()
+    for name in ("can", "1-can"):
+        assert display.data.body(name).xpos[2] > 100
+
+
+@pytest.mark.parametrize("radius", [1e-6, 1e-3, 1.0, 100.0])
+def test_size_does_not_show(radius: float) -> None:
+    """The same geoms and vertices for a can of 1 um as for one of 100 m."""
+    one = Display.of([sliding(can=Can.massless(0.05, 0.1))], 0, 1).model
+    other = Display.of([sliding(can=Can.massless(radius, 2 * radius))], 0, 1).model
+    for field in ("geom_pos", "geom_size", "mesh_vert", "mat_texrepeat", "body_pos"):
+        assert np.allclose(getattr(one, field), getattr(other, field), rtol=1e-6, atol=1e-9), field
+    assert one.stat.extent == pytest.approx(other.stat.extent)
+
+
+def test_masses_do_not_matter() -> None:
+    """Nor gravity: a massless can, which MuJoCo would not move, and a heavy one on the moon look the same."""
+    light = Display.of([sliding()], 0, 1).model
+    heavy = Display.of([sliding(can=METAL, density=1e4, gravity=1.6)], 0, 1).model
+    assert np.array_equal(light.geom_pos, heavy.geom_pos)
+    assert np.array_equal(light.body_mass, heavy.body_mass)
+
+
+def test_a_hop_is_upwards() -> None:
+    display = Display.of([hoop()], 0, 1)
+    seen = []
+    for lift in (0.0, 0.03):
+        display.pose(np.array([[0.1, 1.0, 1.0, lift]]))
+        seen.append(display.data.body("can").xpos.copy())
+    assert seen[1] - seen[0] == pytest.approx([0, 0, 0.03 * scale(hoop())], abs=1e-15)
+
+
+def test_a_point_of_the_incline_is_where_it_was() -> None:
+    scene = frozen(0.4)
+    x, z = on_incline(scene, 0.7, 0.2)
+    assert in_incline(scene, np.array([x, 0.0, z]) * scale(scene)) == pytest.approx((0.7, 0.2))

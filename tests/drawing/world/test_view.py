@@ -1,0 +1,72 @@
+"""Where points are in a picture: a plane across the can's axis is seen as it is, and plumb lines are plumb."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mjbeer.drawing.world.view import View, circle
+
+# Rounding of a dozen operations on numbers of the size of the picture.
+ROUNDING = 1e-9
+CENTRE = np.array([0.3, -0.06, 0.1])
+METRES = np.array([0.8, 0.45])
+PIXELS = (1600, 900)
+VIEW = View.facing(CENTRE, METRES, distance=2.0, above=0.1, pixels=PIXELS)
+coordinates = st.floats(-1, 1)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(coordinates, coordinates)
+def test_a_plane_across_the_axis_is_a_map_to_scale(x: float, z: float) -> None:
+    """2000 pixels for a metre in each direction, whatever the eye's height is."""
+    place = VIEW.pixel(CENTRE + np.array([x, 0.0, z]))
+    assert place == pytest.approx([800 + 2000 * x, 450 - 2000 * z], abs=ROUNDING * 2000)
+    assert VIEW.scale(CENTRE + np.array([x, 0.0, z])) == pytest.approx(2000)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(coordinates, st.floats(-0.5, 2), coordinates, coordinates)
+def test_plumb_lines_are_plumb_and_level_lines_level(x: float, y: float, low: float, high: float) -> None:
+    plumb = VIEW.pixel(np.array([[x, y, low], [x, y, high]]))
+    level = VIEW.pixel(np.array([[low, y, x], [high, y, x]]))
+    assert plumb[0, 0] == pytest.approx(plumb[1, 0], abs=ROUNDING * 2000)
+    assert level[0, 1] == pytest.approx(level[1, 1], abs=ROUNDING * 2000)
+
+
+def test_what_is_behind_is_smaller_and_nearer_to_the_eye() -> None:
+    ring = np.insert(circle(0.033), 1, 0.0, axis=1)
+    near, far = (VIEW.pixel(np.array([0.4, y, 0.1]) + ring) for y in (CENTRE[1], CENTRE[1] + 0.5))
+    assert np.ptp(far[:, 0]) == pytest.approx(np.ptp(near[:, 0]) * 2.0 / 2.5)
+    eye = VIEW.pixel(np.array([VIEW.eye[0], 0.0, VIEW.eye[2]]))
+    distances = [np.hypot(*(ends.mean(axis=0) - eye)) for ends in (near, far)]
+    assert distances[1] == pytest.approx(distances[0] * 2.0 / 2.5, rel=1e-3)  # the mean of a ring repeats one point
+
+
+@settings(max_examples=50, deadline=None, derandomize=True)
+@given(coordinates, coordinates, coordinates, st.integers(0, 700), st.integers(0, 400))
+def test_a_crop_shows_the_same_at_the_same_place(x: float, y: float, z: float, left: int, top: int) -> None:
+    point = np.array([x, y, z])
+    crop = VIEW.crop(left, top, left + 300, top + 200)
+    assert crop.pixels == (300, 200)
+    assert crop.pixel(point) == pytest.approx(VIEW.pixel(point) - [left, top], abs=1e-7)
+
+
+def test_a_box_holds_what_it_is_asked_for_and_nothing_outside_of_the_picture() -> None:
+    ring = CENTRE + np.insert(circle(0.0999), 1, 0.0, axis=1)
+    assert VIEW.box(ring) == (600, 250, 1000, 650)
+    assert VIEW.box(ring, margin=2.5) == (597, 247, 1003, 653)
+    assert VIEW.box(ring + np.array([0.4, 0, 0])) == (1400, 250, 1600, 650)
+
+
+@pytest.mark.parametrize("pixels", [(400, 300), (300, 400), (1200, 100)])
+def test_a_view_towards_points_just_holds_them(pixels: tuple[int, int]) -> None:
+    points = np.random.default_rng(1).uniform(-1, 1, (50, 3))
+    view = View.towards(np.array([0.5, -6.0, 4.0]), points, pixels, margin=0.0)
+    places = view.pixel(points)
+    assert (places > -1e-6).all()
+    assert (places < np.array(pixels) + 1e-6).all()
+    assert max(np.ptp(places, axis=0) / pixels) == pytest.approx(1.0)
+    assert view.axes @ view.axes.T == pytest.approx(np.eye(3), abs=1e-12)
+    assert np.linalg.det(view.axes) == pytest.approx(1.0)  # no mirror
+    assert view.axes[0][2] == 0  # upright

@@ -1,0 +1,110 @@
+"""A small report: films of a second, plots that are nearly empty, and made-up numbers; and the elements of a page."""
+
+import html.parser
+import pathlib
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from PIL import Image
+
+from mjbeer import exact, frozen
+from mjbeer.drawing import encoder
+from mjbeer.drawing.film import Take
+from mjbeer.paper.audit.claim import CORRECTED, Finding
+from mjbeer.paper.misprints import FORMULAS
+from mjbeer.paper.stories import report as stories_report
+from mjbeer.paper.stories.story import Story
+from mjbeer.report import films
+from mjbeer.studies.check import Result
+from mjbeer.studies.validation.run import Validation
+
+PLOT = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30"><rect width="5" height="5"/></svg>'
+SIZE = (64, 36, 10)
+"""Width and height [pixels] and frames per second of the films, which last a second."""
+
+
+def validation(misprints: slice = slice(None)) -> Validation:
+    """A validation with two checks, the second of which failed, and a finding for each misprint, or for some."""
+    checks = [Result(name, "a <stub>", error, 1e-3, "rad", "phi_0^2") for name, error in (("fine", 1e-6), ("bad", 0.5))]
+    findings = [
+        Finding(
+            equation, quantity, CORRECTED, "a witness", printed=0.0127 * (place + 1), right=1.7e-9 * (place + 1),
+            bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
+        )
+        for place, (equation, quantity) in enumerate(FORMULAS)
+    ]  # fmt: skip
+    return Validation(checks, findings[misprints])
+
+
+def stories() -> list[Story]:
+    """Two stories, of which the first has a film."""
+    film = Take(partial(exact, frozen(), np.array([0.0, 1.0]), 1.0), speed=1.0)
+    return [
+        Story("told", "A story of phi_0.", lambda path: None, film),
+        Story("still", "A plot.", lambda path: None),
+    ]
+
+
+def fill(folder: pathlib.Path, encoded: bool = False) -> None:
+    """Write the files that a page shows into a folder: films are `encoded`, or else a few letters."""
+    (folder / "paper").mkdir()
+    for name in ("letters", *(story.name for story in stories_report.stories())):
+        (folder / "paper" / f"{name}.svg").write_text(PLOT)
+    for name in (*films.FILMS, *(f"paper/{story.name}" for story in stories_report.stories() if story.film)):
+        if encoded:
+            width, height, fps = SIZE
+            shades = np.linspace(0, 255, fps).astype(np.uint8)
+            encoder.encode((np.full((height, width, 3), one) for one in shades), folder / f"{name}.mp4", *SIZE)
+        else:
+            (folder / f"{name}.mp4").write_text(f"film {name}")
+        Image.new("RGB", SIZE[:2], "navy").save(folder / f"{name}-still.png")
+
+
+@dataclass
+class Element:
+    """An element of a page: its name, its attributes, and all the text in it."""
+
+    name: str
+    attributes: dict[str, str]
+    text: str = ""
+
+
+@dataclass
+class Page(html.parser.HTMLParser):
+    """The elements of a page, in the order in which they begin."""
+
+    elements: list[Element] = field(default_factory=list)
+    open: list[Element] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        super().__init__()
+
+    @classmethod
+    def of(cls, text: str) -> "Page":
+        """Read a page."""
+        page = cls()
+        page.feed(text)
+        page.close()
+        assert not page.open, [element.name for element in page.open]
+        return page
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        element = Element(tag, {name: value or "" for name, value in attrs})
+        self.elements.append(element)
+        if tag not in ("meta", "link", "img", "source", "input", "mspace", "br"):
+            self.open.append(element)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append(Element(tag, {name: value or "" for name, value in attrs}))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop().name == tag, tag
+
+    def handle_data(self, data: str) -> None:
+        for element in self.open:
+            element.text += data
+
+    def all(self, *names: str) -> list[Element]:
+        """The elements of some names."""
+        return [element for element in self.elements if element.name in names]
