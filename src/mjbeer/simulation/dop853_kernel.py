@@ -31,7 +31,7 @@ KEPT = _BLOCK + 1
 _LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _slope(pointers, views, state, out):
     """Write the time derivative of a state to `out`."""
     functions, model, data = pointers
@@ -47,7 +47,7 @@ def _slope(pointers, views, state, out):
         out[n + i] = qacc[i]
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _combine(weights, count, slopes, out):
     """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
     for i in range(out.size):
@@ -158,7 +158,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
     return status, (time, step, sample, steps, before), evaluations, row
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     """Return the first step [s], by Hairer's algorithm in section II.4.
 
@@ -184,7 +184,7 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _error(state, new, slopes, step, tolerance, scale, five, three):
     """Return the estimated error of a step over the tolerated one."""
     fifth = third = 0.0
@@ -198,7 +198,7 @@ def _error(state, new, slopes, step, tolerance, scale, five, three):
     return abs(step) * fifth / size if size > 0 else 0.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _prepare(pointers, views, state, new, slopes, step, work, weights):
     """Write the coefficients of the continuous output over the last step to `weights`."""
     for row in range(3):
@@ -217,7 +217,7 @@ def _prepare(pointers, views, state, new, slopes, step, work, weights):
             weights[3 + k, i] *= step
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _interpolate(state, weights, part, out):
     """Write the state after the fraction `part` of a step from `state` to `out`."""
     for i in range(state.size):
