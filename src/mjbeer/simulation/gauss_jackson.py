@@ -6,6 +6,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError, UnsupportedError
 from mjbeer.model.engine import quiet, untimed
 from mjbeer.simulation import gauss_jackson_kernel
+from mjbeer.simulation.compiling import told
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson_weights import COUNT
 from mjbeer.simulation.recorder import Recorder
@@ -61,7 +62,7 @@ class GaussJackson:
         place, status = (timestep, COUNT - 1, begun), gauss_jackson_kernel.BLOCK_END
         rows = gauss_jackson_kernel.BLOCK if recorder else 0
         kept = np.empty(rows), np.empty((rows, 2 * size)), np.empty((rows, 2 * size))
-        with quiet(), untimed():
+        with told(gauss_jackson_kernel.advance), quiet(), untimed():
             gauss_jackson_kernel.begin(pointers, views, states, slopes, timestep, sums, history)
             self.evaluations = self._starter.evaluations + COUNT
             if not np.isfinite(sums).all():  # the position over the square of the timestep overflows, or a force does

@@ -38,6 +38,8 @@ class Record:
         """Largest distance of the axis from its start [m]."""
         self.fastest = 0.0
         """Largest rate of the load, |phi_dot| [rad/s]."""
+        self.lowest_normal = math.inf
+        """Smallest normal force that rolling needed [N]; negative where the incline would have to pull."""
         self.needed = 0.0
         """Largest friction coefficient that rolling needed; infinite where the incline would have to pull."""
         self.fails_at = math.inf
@@ -88,8 +90,8 @@ class Record:
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray) -> None:
         """Add the normal and friction forces that rolling needs at times [s], where the motion has phi and phi_dot."""
         forces = rolling_forces(self.scene, phi, phi_dot)
-        needed = forces.needed
-        self.needed = _largest(self.needed, needed)
+        self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
+        self.needed = _largest(self.needed, forces.needed)
         if not math.isinf(self.fails_at):
             return
         margin = forces.normal
