@@ -70,7 +70,7 @@ class GaussJackson:
             if recorder:
                 reached = 1 + int(
                     np.searchsorted(first, times[-1])
-                )  # what comes after the last sample is not the run's
+                )  # what comes after it is not the run's
                 recorder.add_smooth(first[:reached], states[:reached], slopes[:reached])
             while status == gauss_jackson_kernel.BLOCK_END:
                 status, place, taken, rows = gauss_jackson_kernel.advance(

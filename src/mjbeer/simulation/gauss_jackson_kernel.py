@@ -148,7 +148,7 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
     return status, (step, steps, sample), taken, row
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _interpolate(sums, history, end, back, step, out):
     """Write the state `back` steps before the last acceleration to `out`: a polynomial of the last ones, twice summed.
 
