@@ -68,9 +68,7 @@ class GaussJackson:
             if not np.isfinite(sums).all():  # the position over the square of the timestep overflows, or a force does
                 raise DivergenceError(f"GaussJackson could not start: its sums are not finite at t = {first[-1]:.6g} s")
             if recorder:
-                reached = 1 + int(
-                    np.searchsorted(first, times[-1])
-                )  # what comes after it is not the run's
+                reached = 1 + int(np.searchsorted(first, times[-1]))  # what comes after it is not the run's
                 recorder.add_smooth(first[:reached], states[:reached], slopes[:reached])
             while status == gauss_jackson_kernel.BLOCK_END:
                 status, place, taken, rows = gauss_jackson_kernel.advance(

@@ -85,7 +85,7 @@ def _add(sums, row, i, term):
     sums[row, i] = total
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def advance(pointers, views, sums, history, times, samples, place, kept):
     """Take up to a block of steps, and return the status, the new place and the numbers of steps taken and rows kept.
 
@@ -148,7 +148,7 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
     return status, (step, steps, sample), taken, row
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def _interpolate(sums, history, end, back, step, out):
     """Write the state `back` steps before the last acceleration to `out`: a polynomial of the last ones, twice summed.
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, MjbeerError, NoEquilibriumError, ToleranceError
-from mjbeer.model.setting import DOP853, Setting
+from mjbeer.model.setting import OWN, Setting
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.studies.sweep.quantities import ALWAYS, ASKED, DIVERGED, NO_VALUE, NOT_REACHED, REFUSED, WELL
 from mjbeer.theory.scene import Scene
@@ -123,7 +123,7 @@ def _told(error: Exception) -> str:
 def _times(work: Work, scene: Scene) -> np.ndarray:
     """Return the times of the samples of a run [s]: its end, and a swing's if it is to be measured."""
     setting, end = work.setting, work.end
-    stepped = setting.tolerance is None and setting.integrator != DOP853
+    stepped = setting.tolerance is None and setting.integrator not in OWN
     if work.functions:  # as simulate has them: at every timestep
         times = setting.timestep * np.arange(1 + math.floor(end / setting.timestep * (1 + 1e-12)))
         return times if times[-1] >= end * (1 - 1e-12) else np.append(times, end)
