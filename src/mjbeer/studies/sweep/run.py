@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import DOP853, FRICTION, Integrator, Rolling, Setting
+from mjbeer.model.setting import DOP853, FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output.terminal import STDERR, progress_bar
 from mjbeer.simulation.run import Run
 from mjbeer.studies.sweep import files
@@ -167,7 +167,7 @@ def _end(duration: float, setting: Setting) -> float:
             f"a duration of {duration!r} s has too many timesteps of {setting.timestep!r} s for a sweep: at most "
             f"{_MOST_STEPS:g}"
         )
-    if setting.integrator == DOP853:
+    if setting.integrator in OWN:
         return duration
     nearest = round(steps)
     on_a_step = nearest > 0 and abs(steps - nearest) <= 1e-10 * steps
