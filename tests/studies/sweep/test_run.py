@@ -1,5 +1,6 @@
 """A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact theory."""
 
+import contextlib
 import math
 import pathlib
 from collections.abc import Callable
@@ -13,7 +14,7 @@ import mjbeer
 from mjbeer import Can, Scene, Trajectory, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import AngleWarning, OutputError, ParameterError
 from mjbeer.output import processes
-from mjbeer.studies.sweep import chunks, work
+from mjbeer.studies.sweep import chunks, run, work
 from mjbeer.studies.sweep.arrays import Sweep
 from mjbeer.studies.sweep.plan import Plan
 from mjbeer.studies.sweep.quantities import DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
@@ -137,6 +138,7 @@ def test_every_scene_is_within_its_tolerance_of_exact_theory() -> None:
         ({"duration": 1e9}, "too many timesteps of 0.001 s for a sweep: at most 1e.09"),
         ({"quantity": "perod"}, "quantity must be one of .*did you mean 'period'"),
         ({"quantity": [3]}, "quantity must be a name or a function of a trajectory, got 3"),
+        ({"quantity": highest, "duration": 2e3}, "samples at every timestep, at most 1000000: a duration of 2000.0 s"),
         ({"executor": 4}, "executor must be a concurrent.futures.Executor, got 4"),
         ({"output": "map.txt"}, "name must end in .npz, got 'map.txt'"),
         ({"make": 3}, "make must be a function that returns a scene, got 3"),
@@ -241,6 +243,44 @@ def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path: pathlib.Path, monke
     other = sweep_of_sliding(output=path, phi_dot0=1.0)  # another sweep begins anew
     assert not same(other, whole)
     assert len(counted) == 2 * kept.size - done
+
+
+def test_an_output_that_cannot_be_written_is_refused_before_anything_runs(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ran: list[object] = []
+    monkeypatch.setattr(work, "integrate", lambda *arguments: ran.append(arguments))
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputError):
+        sweep_of_sliding(output=tmp_path / "file" / "map.npz")
+    assert not ran
+
+
+def test_an_interruption_between_two_chunks_leaves_no_work_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Chunks that wait for a thread are given up, and what was measured is not lost."""
+    monkeypatch.setattr(chunks, "_FIRST", 2)
+    monkeypatch.setattr(chunks, "_CHUNK", 1e-9)  # then of one scene each, all of which are handed out
+    started, measure, percent = [], chunks.measure, iter(range(100))
+
+    def counting(*arguments: Any) -> work.Measured:
+        started.append(arguments)
+        return measure(*arguments)
+
+    def interrupt(_: str) -> None:
+        if next(percent) == 5:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(chunks, "measure", counting)
+    monkeypatch.setattr(run, "progress_bar", lambda *_: contextlib.nullcontext(interrupt))
+    with pytest.raises(KeyboardInterrupt):
+        mjbeer.sweep(sliding, 0.5, 1.0, tolerance=1e-6, fill=np.linspace(0.1, 0.9, 90))
+    assert len(started) < 45
+
+
+def test_what_goes_wrong_inside_of_a_run_is_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(work, "integrate", lambda *_: 1 / 0)
+    swept = mjbeer.sweep(sliding, 0.1, 1.0, fill=[0.5])
+    assert swept.failed[0].reason == "ZeroDivisionError: division by zero"
 
 
 def test_functions_that_cannot_be_known_again_are_not_saved(tmp_path: pathlib.Path) -> None:

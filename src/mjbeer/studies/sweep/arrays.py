@@ -85,10 +85,7 @@ class Sweep:
         Raises:
           MjbeerError: if xarray is not installed.
         """
-        try:
-            import xarray
-        except ImportError as error:
-            raise MjbeerError("to_xarray needs xarray: pip install 'mjbeer[xarray]'") from error
+        xarray = imported_xarray()
         axes, dims = self.plan.axes, self.dims
         coordinates = {name: (dims if self.plan.paired else (name,), axis, _units(name)) for name, axis in axes.items()}
         variables = {name: (dims, array, _units(name)) for name, array in self.quantities.items()}
@@ -164,6 +161,19 @@ class Sweep:
             f"<tr><th>{html.escape(name)}</th><td>{html.escape(row)}</td></tr>" for name, row in rows.items()
         )
         return f'<table style="text-align: left">{cells}</table>'
+
+
+def imported_xarray() -> Any:
+    """Return the module xarray.
+
+    Raises:
+      MjbeerError: if it is not installed.
+    """
+    try:
+        import xarray
+    except ImportError as error:
+        raise MjbeerError("datasets and .nc files need xarray: pip install 'mjbeer[xarray]'") from error
+    return xarray
 
 
 def empty(plan: Plan, about: Mapping[str, Any], columns: tuple[str, ...]) -> Sweep:

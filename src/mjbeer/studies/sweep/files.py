@@ -11,7 +11,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
-from mjbeer.studies.sweep.arrays import Sweep
+from mjbeer.studies.sweep.arrays import Sweep, imported_xarray
 from mjbeer.studies.sweep.plan import Plan
 from mjbeer.studies.sweep.quantities import unit
 
@@ -79,8 +79,11 @@ def checked(path: str | os.PathLike[str], endings: tuple[str, ...]) -> pathlib.P
 
     Raises:
       ParameterError: if it has another one.
+      MjbeerError: if it is a NetCDF file's, and xarray is not installed.
     """
     target = require.path(path)
+    if target.suffix == NETCDF:
+        imported_xarray()  # before a long run, not after it
     if target.suffix not in endings:
         raise ParameterError(f"the file's name must end in {' or '.join(endings)}, got {require.shown(str(target))}")
     return target

@@ -6,8 +6,9 @@ import pathlib
 import time
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from importlib.metadata import version
+from inspect import isfunction
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from mjbeer.studies.sweep.arrays import Sweep, empty
 from mjbeer.studies.sweep.chunks import carry_out
 from mjbeer.studies.sweep.plan import arrange, check_names, label
 from mjbeer.studies.sweep.quantities import ALWAYS, ASKED, NOT_YET, STATUS, TRUSTED
-from mjbeer.studies.sweep.work import Work
+from mjbeer.studies.sweep.work import MOST_SAMPLES, Work
 from mjbeer.theory.scene import Scene
 
 _MOST_STEPS = 1e9
@@ -103,6 +104,11 @@ def sweep(
     )
     asked, functions = _asked(quantity)
     end = _end(require.positive("duration", duration, "s"), setting)
+    if functions and end / setting.timestep > MOST_SAMPLES:
+        raise ParameterError(
+            f"a function of a trajectory has samples at every timestep, at most {MOST_SAMPLES}: a duration of "
+            f"{duration!r} s has too many of {setting.timestep!r} s"
+        )
     work = Work(make, fixed, start, tuple(plan.axes), setting, end, asked, functions)
     plan.check(work)
     about = _about(work)
@@ -121,14 +127,22 @@ def _fill(result: Sweep, work: Work, executor: Executor | None, path: pathlib.Pa
     saved, interval = time.monotonic(), _SAVE_EVERY
     done, shown = 0, 0
     console = STDERR if progress else None
+    if path is not None:
+        files.save(result, path)  # a file that cannot be written is an error before the first scene
     try:
-        with progress_bar(console, _PERCENT) as advance, _running(executor) as pool:
-            for chunk, measured in carry_out(work, result.plan, scenes, pool):
+        with (
+            progress_bar(console, _PERCENT) as advance,
+            _running(executor) as pool,
+            closing(carry_out(work, result.plan, scenes, pool)) as chunks,
+        ):
+            for chunk, measured in chunks:
                 for column, name in enumerate(work.columns):
                     result.quantities[name].flat[chunk] = measured.values[:, column]
                 result.quantities[TRUSTED].flat[chunk] = measured.trusted
-                result.quantities[STATUS].flat[chunk] = measured.status
                 result.reasons.update((int(chunk[index]), reason) for index, reason in measured.reasons.items())
+                result.quantities[STATUS].flat[chunk] = (
+                    measured.status
+                )  # the last, as it says that the others are there
                 done += len(chunk)
                 while shown < _PERCENT * done // len(scenes):
                     advance(f"{len(scenes)} scenes [%]")
@@ -205,6 +219,7 @@ def _about(work: Work) -> dict[str, Any]:
     return {
         "make": label(work.make),
         "defined in": getattr(work.make, "__module__", ""),
+        "with": "" if isfunction(work.make) else repr(work.make),
         "arguments": {name: repr(value) for name, value in {**work.fixed, **work.start}.items()},
         "stepped": f"{setting.rolling}, {stepped}",
         "setting": repr(setting),
@@ -222,7 +237,7 @@ def _nameable(*functions: Callable[..., Any]) -> None:
       ParameterError: if one is a lambda or defined within another function.
     """
     for function in functions:
-        if "<" in getattr(function, "__qualname__", ""):
+        if "<" in label(function) or "<locals>" in getattr(function, "__qualname__", ""):
             raise ParameterError(
                 "a sweep that is saved must be known again when it goes on: its functions must be defined at the top "
                 f"of a module, got {require.shown(function)}"
