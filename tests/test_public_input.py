@@ -100,7 +100,7 @@ RUN = simulate(frozen(), 0.01, 1.0)
 GOOD: dict[str, Any] = {
     **{name: getattr(MOTION, name) for name in inspect.signature(Trajectory).parameters},
     **{"can": Can(), "load": Load(0.2, 0.01, 1e-5), "mass": 0.2, "offset": 0.01, "amplitude": 0.3},
-    **{"phi0": 1.0, "phi_dot0": 10.0, "duration": 0.01, "trajectory": MOTION, "path": "can.mp4"},
+    **{"phi0": 1.0, "phi_dot0": 10.0, "duration": 0.01, "trajectory": MOTION, "path": "can.mp4", "make": frozen},
 }
 """Good arguments, by the names of the parameters."""
 GOOD_HERE: dict[str, dict[str, Any]] = {
@@ -143,13 +143,13 @@ CASES = {
     f"{name}, {parameter}": (name, function, parameter)
     for name, function in public()
     for parameter in inspect.signature(function).parameters
-}
+} | {"sweep, fill": ("sweep", mjbeer.sweep, "fill")}
 
 
 def good(name: str, function: Callable[..., object]) -> dict[str, Any]:
     """Good arguments for the parameters without a default."""
     parameters = inspect.signature(function).parameters.values()
-    needed = [each.name for each in parameters if each.default is inspect.Parameter.empty]
+    needed = [each.name for each in parameters if each.default is each.empty and each.kind is not each.VAR_KEYWORD]
     return {each: (GOOD | GOOD_HERE.get(name, {}))[each] for each in needed}
 
 

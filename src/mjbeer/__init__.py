@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
     from mjbeer.simulation.simulate import simulate
+    from mjbeer.studies.sweep.run import sweep
 
 __all__ = [
     "AngleWarning",
@@ -38,6 +39,7 @@ __all__ = [
     "simulate",
     "sliding",
     "specify",
+    "sweep",
 ]
 
 # Imported on first use, so that the exact theory works without MuJoCo.
@@ -47,6 +49,7 @@ _LAZY = {
     "export": "mjbeer.model.export",
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
+    "sweep": "mjbeer.studies.sweep.run",
 }
 
 

@@ -72,7 +72,7 @@ def test_the_options_known_are_those_of_the_help(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "200")
-    takes_scene = name in ("simulate", "render", "export")
+    takes_scene = name in ("simulate", "sweep", "render", "export")
     for scene in SCENES if takes_scene else [None]:
         with pytest.raises(SystemExit):
             main([name, *([scene] if scene else []), "--help"])

@@ -1,6 +1,7 @@
 """The tutorial runs from top to bottom, and its cells show what the text beside them says."""
 
 import pathlib
+import re
 
 import nbformat
 import pytest
@@ -15,13 +16,14 @@ TUTORIAL = pathlib.Path(__file__).parents[2] / "examples" / "tutorial.ipynb"
 def test_the_tutorial_runs_and_shows_a_plot_a_video_and_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     outputs = notebook.execute(nbformat.read(TUTORIAL, as_version=4), TUTORIAL.parent, monkeypatch)
     text, html = notebook.text(outputs), notebook.text(outputs, "text/html")
-    assert sum("image/png" in output.data for output in outputs if "data" in output) == 2
+    assert sum("image/png" in output.data for output in outputs if "data" in output) == 3
     assert "<video" in html
     assert not [output.text for output in outputs if output.get("name") == "stderr"]  # a warning that nobody explains
     assert "<th>trusted</th><td>yes</td>" in html
     assert "this run is not to be relied on: " in text
     assert "the can slips by" in text
     assert "tolerance 1e-9 rad, error" in text
+    assert re.search(r"<th>scenes</th><td>\d+ of 144 scenes went well", html)
 
 
 def test_the_tutorial_is_kept_without_its_output() -> None:

@@ -1,6 +1,9 @@
 """Every MJCF template as a stock MuJoCo user finds it: it compiles, moves as the paper says, and repeats."""
 
 import math
+import os
+import pathlib
+import time
 import warnings
 
 import mujoco
@@ -138,3 +141,27 @@ def test_a_template_repeats_to_the_bit(name: str) -> None:
     model = load(name)
     key = model.key(model.nkey - 1).name
     assert np.array_equal(roll(model, key, 0.2)[1], roll(model, key, 0.2)[1])
+
+
+def test_a_file_that_has_not_changed_for_long_is_read_once(copy: pathlib.Path) -> None:
+    path = copy / "shared.xml"
+    os.utime(path, (1e9, 1e9))
+    first, again = templates.contents("hoop"), templates.contents("hoop")
+    assert len(first) == 4  # the folder, the template, and what all templates include
+    (shared,) = (text for text in first if text == path.read_bytes())
+    assert any(text is shared for text in again)
+    path.write_bytes(path.read_bytes().replace(b"0", b"1"))
+    assert templates.contents("hoop") != first
+    os.utime(path, (1e9, 1e9 + 1))
+    assert path.read_bytes() in templates.contents("hoop")
+
+
+def test_a_change_that_does_not_show_in_the_time_is_seen(copy: pathlib.Path) -> None:
+    """Two changes may be so near that a file system gives them the same time."""
+    path = copy / "hoop.xml"
+    now = time.time_ns()
+    for digit in (b"0", b"1", b"2"):
+        path.write_bytes(path.read_bytes().replace(b"size", b"si" + digit + b"e"))
+        os.utime(path, ns=(now, now))
+        assert path.read_bytes() in templates.contents("hoop")
+        path.write_bytes(path.read_bytes().replace(b"si" + digit + b"e", b"size"))

@@ -9,7 +9,6 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-import mujoco
 import numpy as np
 import pytest
 
@@ -22,8 +21,8 @@ from mjbeer.exceptions import (
     UnsupportedError,
     UntrustedWarning,
 )
-from mjbeer.model.build import compile_model
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting
+from mjbeer.model.pattern import Editable, Plan
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.run import Run
 from mjbeer.theory.exact import phi_error
@@ -317,11 +316,12 @@ def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(roll
 def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     timesteps: list[float] = []
 
-    def count(scene: Scene, setting: Setting) -> mujoco.MjModel:
-        timesteps.append(setting.timestep)
-        return compile_model(scene, setting)
+    def count(editable: Editable, plan: Plan) -> None:
+        timesteps.append(plan.setting.timestep)
+        write(editable, plan)
 
-    monkeypatch.setattr("mjbeer.simulation.prepare.compile_model", count)
+    write = Editable.write
+    monkeypatch.setattr(Editable, "write", count)
     run = simulate(frozen(), 0.1, 1.0)
     assert timesteps == [1e-3]
     assert run.trusted

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from mjbeer import Can, Load, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import ToleranceError
 from mjbeer.simulation import tolerance as simulation
+from mjbeer.simulation.dop853 import Integrator
 from mjbeer.studies.stability.catalogue.found import cases
 from mjbeer.studies.stability.outcome import ACCURATE, REFUSED
 from mjbeer.theory.exact import phi_error
@@ -180,3 +182,26 @@ def test_two_runs_of_a_thousand_turns_do_not_agree_by_chance(nudge: float) -> No
     )
     assert run.error_estimate is not None
     assert phi_error(run, relative=True) <= run.error_estimate <= 2.5747412464915104e-06
+
+
+def test_a_run_that_is_only_compared_has_few_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 2,000 samples the last is among them, and no part of the motion is left out."""
+    seen: list[np.ndarray] = []
+
+    def look(self: Integrator, start: np.ndarray, times: np.ndarray, **more: Any) -> np.ndarray:
+        seen.append(times)
+        return run(self, start, times, **more)
+
+    run = Integrator.run
+    monkeypatch.setattr(Integrator, "run", look)
+    many = simulate(sliding(), 2.0, 1.0, tolerance=1e-8)
+    compared, wanted = seen
+    assert len(wanted) > 2000
+    assert len(compared) <= 64
+    assert set(compared) < set(wanted)
+    assert compared[-1] == wanted[-1]
+    # Multiples of the golden section have gaps of three lengths, the largest 2.6 times the mean or less.
+    assert np.diff(compared, prepend=0.0).max() < 2.62 * 2.0 / 64
+    few = simulate(sliding(), 2.0, 1.0, tolerance=1e-8, times=[0.0, 2.0])
+    assert many.error_estimate == pytest.approx(few.error_estimate, rel=0.3)
+    assert many.phi[-1] == few.phi[-1]

@@ -18,6 +18,7 @@ from mjbeer.cli import spelling
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.cli.scenes import Scenes
 from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Validate
+from mjbeer.cli.sweep import Sweep
 from mjbeer.cli.view import View
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import MjbeerError, ParameterError, UntrustedWarning
@@ -25,7 +26,9 @@ from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _ERROR = 2
-Command = Simulate | Render | View | Export | Scenes | Validate | Benchmark | Advise | Stability | Report | Paper
+Command = (
+    Simulate | Render | View | Export | Scenes | Sweep | Validate | Benchmark | Advise | Stability | Report | Paper
+)
 COMMANDS: dict[str, type[Any]] = {command.__name__.lower(): command for command in get_args(Command)}
 """The classes of the commands, by the names that they have on the command line."""
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.

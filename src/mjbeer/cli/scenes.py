@@ -47,7 +47,7 @@ def _shared() -> Table:
 def options(name: str) -> list[tuple[str, str, str, str]]:
     """Return the options of a scene: the name, the default, the unit and the meaning of each."""
     scene = SCENES[name]
-    told = _documented(scene)
+    told = documented(scene)
     rows = []
     for field in dataclasses.fields(scene):
         default = f"{field.default:g}" if isinstance(field.default, float) else str(field.default)
@@ -57,7 +57,7 @@ def options(name: str) -> list[tuple[str, str, str, str]]:
     return rows
 
 
-def _documented(owner: type) -> dict[str, str]:
+def documented(owner: type) -> dict[str, str]:
     """Return the docstrings of the fields of a dataclass and of its bases, which Python keeps only in the source."""
     found = {}
     for base in reversed(owner.__mro__[:-1]):

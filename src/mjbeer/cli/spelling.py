@@ -8,11 +8,14 @@ import tyro
 
 from mjbeer import require
 from mjbeer.cli.arguments import SCENES, AnyScene
+from mjbeer.cli.sweep import SweptScene
 from mjbeer.exceptions import ParameterError
 
 _SHELLS = ("bash", "zsh", "fish")
 _COMPLETION = {"--tyro-print-completion", "--tyro-write-completion"}
 _HELP = {"-h", "--help"}
+_SCENE = (AnyScene, SweptScene)
+"""The types of an option that is a scene."""
 
 
 def check(words: Sequence[str], commands: Mapping[str, type[Any]]) -> None:
@@ -39,7 +42,7 @@ def check(words: Sequence[str], commands: Mapping[str, type[Any]]) -> None:
 def _check_rest(command: str, words: Sequence[str], commands: Mapping[str, type[Any]]) -> None:
     """Check the words after the command."""
     called, allowed = f"mjbeer {command}", options(commands[command])
-    takes_scene = any(field.type == AnyScene for field in dataclasses.fields(commands[command]))
+    takes_scene = any(field.type in _SCENE for field in dataclasses.fields(commands[command]))
     scene = None
     left = iter(words)
     for word in left:
@@ -66,7 +69,7 @@ def options(owner: type[Any]) -> dict[str, bool]:
     return {
         "--" + field.name.replace("_", "-"): field.type is not bool
         for field in dataclasses.fields(owner)
-        if field.type != AnyScene and tyro.conf.Positional not in getattr(field.type, "__metadata__", ())
+        if field.type not in _SCENE and tyro.conf.Positional not in getattr(field.type, "__metadata__", ())
     }
 
 

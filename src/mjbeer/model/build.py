@@ -8,8 +8,9 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.model import appearance, constrained, reduced, templates
+from mjbeer.model import appearance, constrained, mechanics, reduced, templates
 from mjbeer.model.inertia import mass_unit
+from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import DOP853, FRICTION, GAUSS_JACKSON, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.theory.scene import Scene
 
@@ -84,7 +85,7 @@ def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujo
 def finish(spec: mujoco.MjSpec, setting: Setting) -> mujoco.MjModel:
     """Return the model that a specification in a setting compiles to, with its joint equality made rigid."""
     model = compile_spec(spec)
-    if setting.rolling == "equality" and setting.softness == TUNED:
+    if constrained.is_rigid(setting):
         constrained.make_rigid(model)
     return model
 
@@ -133,8 +134,7 @@ def specify(
 
 def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
     """Return the specification that `compile_model` compiles, with the same errors as `build`."""
-    rolling = setting.rolling
-    spec = templates.read(templates.name(scene))
+    spec, moving = templates.read(templates.name(scene)), mechanics_of(scene, setting)
     if visuals:
         appearance.dress(spec, scene)
     else:
@@ -142,32 +142,53 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     _tilt(spec, scene, visuals)
     # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
     # in contact, must lie on the incline.
-    spec.body("can").pos = [0, 0, scene.can.radius if visuals or rolling == "contact" else 0.0]
-    spec.option.timestep = setting.timestep
-    spec.option.integrator = int(_INTEGRATORS[setting.integrator])
-    unit = mass_unit(scene)
-    if rolling == "reduced":
-        reduced.reduce(spec, scene, unit)
-    elif rolling == "equality":
-        constrained.roll_by_equality(spec, scene, unit=unit, setting=setting)
+    spec.body("can").pos = [0, 0, scene.can.radius if visuals else 0.0]
+    if setting.rolling == "reduced":
+        reduced.add(spec, moving)
+    elif setting.rolling == "equality":
+        constrained.add_equality(spec, moving, setting)
     else:
-        constrained.roll_by_contact(spec, scene, unit=unit, setting=setting)
-    if not visuals:
-        _disable_unused(spec, rolling)
+        constrained.add_contact(spec, moving, setting)
+    fit(spec, scene, setting, moving)
+    if visuals:
+        spec.option.gravity = [0, 0, -scene.gravity]
+    else:
+        _disable_unused(spec, setting.rolling)
     return spec
 
 
+def mechanics_of(scene: Scene, setting: Setting) -> Mechanics:
+    """Return the joints, masses and forces of the model of a scene in a setting.
+
+    Raises:
+      UnsupportedError: if MuJoCo cannot move one of its bodies.
+    """
+    unit = mass_unit(scene)
+    if setting.rolling == "reduced":
+        return reduced.mechanics(scene, unit)
+    return constrained.mechanics(scene, unit, setting.rolling)
+
+
+def fit(made: mujoco.MjSpec | mujoco.MjModel, scene: Scene, setting: Setting, moving: Mechanics) -> None:
+    """Write all numbers of a scene in a setting into a specification without visuals, or the model compiled from it."""
+    option = made.opt if isinstance(made, mujoco.MjModel) else made.option
+    option.timestep, option.integrator = setting.timestep, int(_INTEGRATORS[setting.integrator])
+    gravity, incline = scene.gravity, scene.incline
+    option.gravity = [gravity * math.sin(incline), 0, -gravity * math.cos(incline)]
+    mechanics.fit(made, moving)
+    if setting.rolling == "equality":
+        constrained.fit_equality(made, scene, setting)
+    elif setting.rolling == "contact":
+        constrained.fit_contact(made, scene, setting)
+
+
 def _tilt(spec: mujoco.MjSpec, scene: Scene, visuals: bool) -> None:
-    """Tilt the incline if it is to be seen, and gravity otherwise, which is exact and needs no body."""
-    gravity, tilt = scene.gravity, scene.incline if visuals else 0.0
+    """Tilt the incline if it is to be seen; otherwise gravity is tilted, which is exact and needs no body."""
+    tilt = scene.incline if visuals else 0.0
     for element, angle in ((spec.body("incline"), tilt), (spec.frame("level"), -tilt)):
         element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
         element.quat = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
-    if visuals:
-        spec.option.gravity = [0, 0, -gravity]
-    else:
-        spec.option.gravity = [gravity * math.sin(scene.incline), 0, -gravity * math.cos(scene.incline)]
-        spec.compiler.fusestatic = True
+    spec.compiler.fusestatic = not visuals
 
 
 def _disable_unused(spec: mujoco.MjSpec, rolling: str) -> None:

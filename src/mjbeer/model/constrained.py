@@ -4,13 +4,15 @@ MuJoCo's constraints are soft. Here they are made as hard as is stable under the
 """
 
 import math
+from typing import Any
 
 import mujoco
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import joints
-from mjbeer.model.inertia import frozen_inertia, load_with_inertia, remove_mass, set_inertial
-from mjbeer.model.setting import Setting
+from mjbeer.model.inertia import frozen_inertia, hold_inertial, load_with_inertia, remove_mass
+from mjbeer.model.mechanics import Inertial, Mechanics
+from mjbeer.model.setting import TUNED, Setting
 from mjbeer.theory.scene import Scene
 
 _IMPEDANCE = (0.9999, 0.9999)
@@ -45,16 +47,34 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     return timestep if contact else timestep / 2
 
 
-def roll_by_equality(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Setting) -> None:
-    """Make the can roll by a joint equality u = a roll."""
-    _set_inertias(spec, scene, unit)
-    joints.add(spec, "slide", "roll", *_load_joints(scene))
-    rolling = spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1="slide", name2="roll")
-    rolling.data[:5] = [0, scene.can.radius, 0, 0, 0]
-    if setting.softness.first == "hinge":
-        rolling.name1, rolling.name2 = rolling.name2, rolling.name1
-        rolling.data[1] = 1 / scene.can.radius
+def mechanics(scene: Scene, unit: float, rolling: str) -> Mechanics:
+    """Return the joints and masses of can and load.
+
+    Raises:
+      UnsupportedError: if MuJoCo cannot move one of them, as it has no mass or no inertia.
+    """
+    axis = ("slide", "lift", "roll") if rolling == "contact" else ("slide", "roll")
+    return Mechanics(joints=(*axis, *_load_joints(scene)), bodies=_inertials(scene, unit))
+
+
+def add_equality(spec: mujoco.MjSpec, moving: Mechanics, setting: Setting) -> None:
+    """Add the elements of a model whose can rolls by a joint equality u = a roll, without their numbers."""
+    _add_bodies(spec, moving)
+    names = ("slide", "roll") if setting.softness.first == "slide" else ("roll", "slide")
+    rolling = spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1=names[0], name2=names[1])
     _harden(spec, rolling, setting)
+
+
+def fit_equality(made: mujoco.MjSpec | mujoco.MjModel, scene: Scene, setting: Setting) -> None:
+    """Write the numbers of the joint equality into a specification or a compiled model that has it."""
+    rolling, radius = made.equality("rolling"), scene.can.radius
+    rolling.data[:5] = [0, radius if setting.softness.first == "slide" else 1 / radius, 0, 0, 0]
+    _fit_stiffness(rolling, setting)
+
+
+def is_rigid(setting: Setting) -> bool:
+    """Return whether a model's rolling is a joint equality that `make_rigid` makes exact."""
+    return setting.rolling == "equality" and setting.softness == TUNED
 
 
 def make_rigid(model: mujoco.MjModel) -> None:
@@ -70,22 +90,33 @@ def make_rigid(model: mujoco.MjModel) -> None:
     model.opt.iterations, model.opt.tolerance = 1, 0.0
 
 
-def roll_by_contact(spec: mujoco.MjSpec, scene: Scene, unit: float, setting: Setting) -> None:
-    """Make the can roll as a cylinder that only gravity and friction hold on a plane."""
-    _set_inertias(spec, scene, unit)
-    joints.add(spec, "slide", "lift", "roll", *_load_joints(scene))
+def add_contact(spec: mujoco.MjSpec, moving: Mechanics, setting: Setting) -> None:
+    """Add the elements of a cylinder that only gravity and friction hold on a plane, without their numbers."""
+    _add_bodies(spec, moving)
     _add_collision(spec, body="incline", name="surface", kind=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1])
-    size = [scene.can.radius, scene.can.length / 2, 0]
-    cylinder = _add_collision(spec, body="can", name="can", kind=mujoco.mjtGeom.mjGEOM_CYLINDER, size=size)
+    cylinder = _add_collision(spec, body="can", name="can", kind=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[1, 1, 0])
     cylinder.quat = [math.sqrt(0.5), math.sqrt(0.5), 0, 0]
     rolling = spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
-    rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
     _harden(spec, rolling, setting)
     cones = mujoco.mjtCone
     spec.option.cone = cones.mjCONE_ELLIPTIC if setting.softness.elliptic else cones.mjCONE_PYRAMIDAL
     spec.option.impratio = setting.softness.impratio or _FRICTION_HARDNESS
+
+
+def fit_contact(made: mujoco.MjSpec | mujoco.MjModel, scene: Scene, setting: Setting) -> None:
+    """Write the numbers of the contact into a specification or a compiled model that has it."""
+    radius, half = scene.can.radius, scene.can.length / 2
+    made.body("can").pos = [0, 0, radius]
+    made.geom("can").size = [radius, half, 0]
+    rolling = made.pair("rolling")
+    rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
+    _fit_stiffness(rolling, setting)
+    option = made.opt if isinstance(made, mujoco.MjModel) else made.option
     relative_gravity = max(scene.gravity / _STANDARD_GRAVITY, _WEIGHTLESS)
-    spec.option.tolerance = _TOLERANCE * min(1.0, relative_gravity) ** 2
+    option.tolerance = _TOLERANCE * min(1.0, relative_gravity) ** 2
+    if isinstance(made, mujoco.MjModel):  # what the compiler derives from the size
+        made.geom("can").rbound = math.sqrt(radius**2 + half**2)
+        made.geom_aabb[made.geom("can").id] = [0, 0, 0, radius, radius, half]
 
 
 def _load_joints(scene: Scene) -> tuple[str, ...]:
@@ -106,8 +137,6 @@ def _add_collision(
 
 def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, setting: Setting) -> None:
     softness = setting.softness
-    timeconst = stiffest(setting.integrator, setting.timestep, contact=setting.rolling == "contact")
-    rolling.solref = softness.solref or (timeconst, 1)
     rolling.solimp = [*(softness.impedance or _IMPEDANCE), *_WIDTH]
     # MuJoCo's default diagonal adds the inverse inertias of slide and hinge without regard to metres and radians.
     if softness.exact_diagonal:
@@ -116,19 +145,31 @@ def _harden(spec: mujoco.MjSpec, rolling: mujoco.MjsEquality | mujoco.MjsPair, s
         spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
 
 
-def _set_inertias(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
+def _fit_stiffness(rolling: Any, setting: Setting) -> None:
+    """Write the time constant and damping of the row of a joint equality, or of a contact's rows."""
+    timeconst = stiffest(setting.integrator, setting.timestep, contact=setting.rolling == "contact")
+    rolling.solref = setting.softness.solref or (timeconst, 1)
+
+
+def _add_bodies(spec: mujoco.MjSpec, moving: Mechanics) -> None:
+    for body in ("can", "load"):
+        if body in moving.bodies:
+            hold_inertial(spec.body(body))
+        else:  # one rigid body, all of whose mass is on the body "can"
+            remove_mass(spec.body(body))
+    joints.add(spec, *moving.joints)
+
+
+def _inertials(scene: Scene, unit: float) -> dict[str, Inertial]:
     can = scene.can
-    if scene.attachment == "frozen":  # one rigid body, all of whose mass is on the body "can"
+    if scene.attachment == "frozen":
         inertia = frozen_inertia(scene)
         if inertia == 0:
             raise UnsupportedError(
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
                 'use rolling="reduced", or give the can mass'
             )
-        mass, offset = unit * scene.mass, scene.centre_of_mass
-        set_inertial(spec.body("can"), mass=mass, offset=offset, inertia=unit * inertia)
-        remove_mass(spec.body("load"))
-        return
+        return {"can": Inertial(unit * scene.mass, scene.centre_of_mass, unit * inertia)}
     if can.mass == 0:
         raise UnsupportedError(
             'a massless can with a sliding load exists only in rolling="reduced": MuJoCo has no massless moving body; '
@@ -140,6 +181,7 @@ def _set_inertias(spec: mujoco.MjSpec, scene: Scene, unit: float) -> None:
             "without inertia; give the can inertia"
         )
     load = load_with_inertia(scene)
-    can_mass, load_mass = unit * (can.mass - load.moved), unit * load.mass
-    set_inertial(spec.body("can"), mass=can_mass, offset=0.0, inertia=unit * can.inertia)
-    set_inertial(spec.body("load"), mass=load_mass, offset=load.offset, inertia=unit * load.inertia)
+    return {
+        "can": Inertial(unit * (can.mass - load.moved), 0.0, unit * can.inertia),
+        "load": Inertial(unit * load.mass, load.offset, unit * load.inertia),
+    }

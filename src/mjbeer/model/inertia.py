@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 
@@ -82,13 +83,20 @@ def load_with_can_mass(scene: Scene, moved: float) -> LoadBody:
     return LoadBody(moved=moved, mass=mass, offset=load.mass * load.offset / mass, inertia=inertia)
 
 
-def set_inertial(body: mujoco.MjsBody, mass: float, offset: float, inertia: float) -> None:
-    """Give a body a `mass` [kg] at `offset` [m] below its axis, with an `inertia` about that point [kg m^2]."""
-    body.explicitinertial = True
+def hold_inertial(body: mujoco.MjsBody) -> None:
+    """Prepare a body of a specification for `set_inertial`: its masses are its own, not those of its geoms."""
+    body.explicitinertial, body.iquat = True, _TURNED
+
+
+def set_inertial(body: Any, mass: float, offset: float, inertia: float) -> None:
+    """Give a body a `mass` [kg] at `offset` [m] below its axis, with an `inertia` about that point [kg m^2].
+
+    The body is one of a compiled model, or one of a specification that is prepared by `hold_inertial`.
+    """
     body.mass, body.ipos, body.inertia = mass, [0, 0, -offset], [inertia] * 3
-    body.iquat = _TURNED
 
 
 def remove_mass(body: mujoco.MjsBody) -> None:
     """Remove mass and inertia from a body that is fixed to another one, which then has those of both."""
+    hold_inertial(body)
     set_inertial(body, mass=0.0, offset=0.0, inertia=0.0)

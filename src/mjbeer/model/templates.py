@@ -1,6 +1,10 @@
 """Finds and reads the MJCF templates, of which a model takes only the looks, never the mechanics."""
 
+import os
 import pathlib
+import re
+import time
+from typing import NamedTuple
 
 import mujoco
 
@@ -23,6 +27,11 @@ _EVERYWHERE = {
 _WITH_BEER: dict[str, tuple[str, ...]] = {"mesh": ("load",)}
 _FURTHER = {"sliding": _WITH_BEER, "frozen": _WITH_BEER}
 """The elements that mjbeer addresses by name in some templates only."""
+_INCLUDE = re.compile(rb"""<include\s+file\s*=\s*["']([^"']*)["']""")
+"""What names another file in a template."""
+_SETTLED = 2_000_000_000
+"""Age of a file's last change [ns] from which on another one gives it another time: some file systems count time in
+steps of 2 s, and a change within the step would not show."""
 _BODIES = {"incline": "world", "can": "incline", "load": "can"}
 """The bodies, with the parent of each."""
 _MECHANISM = {
@@ -40,6 +49,9 @@ _MECHANISM = {
 leaves them out: sensors are only in models that are shown."""
 _SINGULAR = {"bodies": "body", "equalities": "equality", "flexes": "flex"}
 """Names of kinds whose plural does not just add an s."""
+
+_files: "dict[str, _File]" = {}
+"""The files that were read, by their paths."""
 
 
 def folder() -> pathlib.Path:
@@ -59,6 +71,49 @@ def name(scene: Scene) -> str:
     if scene.attachment == "sliding":
         return "pendulum" if scene.load.fill is None else "sliding"
     return "hoop" if scene.load.fill is None else "frozen"
+
+
+def contents(template: str) -> tuple[bytes, ...]:
+    """Return the bytes of a template and of the files that it includes; those that cannot be read are left out.
+
+    As long as these are the same, so is what `read` returns.
+    """
+    place = str(folder())
+    waiting, found = [os.path.join(place, f"{template}.xml")], dict[str, bytes]()
+    while waiting:
+        path = waiting.pop()
+        if path not in found and (file := _file(path)) is not None:
+            found[path] = file.text
+            for name in file.included:
+                waiting += {os.path.join(place, name), os.path.join(os.path.dirname(path), name)}
+    return (place.encode(), *found.values())
+
+
+class _File(NamedTuple):
+    """A file of a template, as it was read."""
+
+    state: tuple[int, int, int]
+    settled: bool
+    """Whether a later change of the file will show in its state."""
+    text: bytes
+    included: tuple[str, ...]
+
+
+def _file(path: str) -> _File | None:
+    """Return a file, read again if it may have changed since it was last read; None if it cannot be read."""
+    try:
+        status, known = os.stat(path), _files.get(path)
+        state = status.st_mtime_ns, status.st_size, status.st_ino
+        if known is not None and known.settled and known.state == state:
+            return known
+        settled = time.time_ns() - status.st_mtime_ns > _SETTLED
+        with open(path, "rb", buffering=0) as stream:
+            text = stream.read()
+    except (OSError, ValueError):
+        return None
+    included = tuple(os.fsdecode(name) for name in _INCLUDE.findall(text))
+    _files[path] = _File(state, settled, text, included)
+    return _files[path]
 
 
 def read(template: str) -> mujoco.MjSpec:

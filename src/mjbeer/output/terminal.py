@@ -33,6 +33,11 @@ def is_read_by_eye() -> bool:
     return sys.stdout.isatty()
 
 
+def is_seen() -> bool:
+    """Return whether somebody may see at once what is written to standard error: on a terminal, or in a notebook."""
+    return STDERR.is_terminal or STDERR.is_jupyter
+
+
 def show(*tables: Table) -> None:
     """Print tables to standard output; where a program reads it, as lines with tabs between the columns.
 

@@ -18,3 +18,25 @@ def call(typing_context, function, model, data):
         return context.get_dummy_value()
 
     return types.void(types.intp, types.intp, types.intp), generate
+
+
+@intrinsic
+def small(typing_context):
+    """Compile the function that calls this for size: its loops over a few joints gain nothing from more code."""
+
+    def generate(context, builder, signature, arguments):
+        builder.function.attributes.add("optsize")
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+@intrinsic
+def apart(typing_context):
+    """Keep the function that calls this from being copied into its callers, which would take the compiler seconds."""
+
+    def generate(context, builder, signature, arguments):
+        builder.function.attributes.add("noinline")
+        return context.get_dummy_value()
+
+    return types.void(), generate

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from scipy.integrate import DOP853
 
-from mjbeer.simulation.call import call
+from mjbeer.simulation.call import apart, call, small
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which `advance` can end."""
@@ -31,9 +31,10 @@ KEPT = _BLOCK + 1
 _LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _slope(pointers, views, state, out):
     """Write the time derivative of a state to `out`."""
+    small()
     functions, model, data = pointers
     qpos, qvel, qacc, needed = views
     n = qpos.size
@@ -47,9 +48,10 @@ def _slope(pointers, views, state, out):
         out[n + i] = qacc[i]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _combine(weights, count, slopes, out):
     """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
+    small()
     for i in range(out.size):
         out[i] = 0.0
     for j in range(count):
@@ -59,7 +61,7 @@ def _combine(weights, count, slopes, out):
                 out[i] += weight * slopes[j, i]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def advance(pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale, kept):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
@@ -77,8 +79,10 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
       kept: times, states and slopes at the ends of the steps of this block, and at the start of the run: work space for
         `KEPT` of them, or for none.
     """
+    small()
     time, step, sample, steps, before = place
-    kept_times, kept_states, kept_slopes = kept
+    kept_times = kept[0]
+    stages = _A.shape[0]  # for a constant, numba would compile `_combine` once more
     row = 0
     size = state.size
     new, work, total = np.empty(size), np.empty(size), np.empty(size)
@@ -91,12 +95,13 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
             evaluations += 1
         if kept_times.size > 0:
-            kept_times[row], kept_states[row], kept_slopes[row] = time, state, slopes[0]
+            _keep(kept, row, time, state, slopes)
             row += 1
     status = BLOCK_END
     for _ in range(_BLOCK):
         while sample < times.size and times[sample] <= time:
-            samples[sample] = state
+            for i in range(size):
+                samples[sample, i] = state[i]
             sample += 1
         if sample == times.size:
             status = DONE
@@ -106,7 +111,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             for i in range(size):
                 work[i] = state[i] + step * total[i]
             _slope(pointers, views, work, slopes[s])
-        _combine(_B, _STAGES, slopes, total)
+        _combine(_B, stages, slopes, total)
         finite = True
         for i in range(size):
             new[i] = state[i] + step * total[i]
@@ -134,7 +139,8 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
         while sample < times.size and times[sample] <= last:
             part = (times[sample] - time) / (end - time)
             if part > 1 - 1e-12:
-                samples[sample] = new
+                for i in range(size):
+                    samples[sample, i] = new[i]
             else:
                 if not prepared:
                     _prepare(pointers, views, state, new, slopes, step, work, weights)
@@ -147,7 +153,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             state[i] = new[i]
             slopes[0, i] = slopes[_STAGES, i]
         if kept_times.size > 0:
-            kept_times[row], kept_states[row], kept_slopes[row] = time, state, slopes[0]
+            _keep(kept, row, time, state, slopes)
             row += 1
         if not fixed:
             growth = _SAFETY * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
@@ -158,12 +164,25 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
     return status, (time, step, sample, steps, before), evaluations, row
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
+def _keep(kept, row, time, state, slopes):
+    """Keep the time, the state and the slope at the end of a step."""
+    small()
+    kept_times, kept_states, kept_slopes = kept
+    kept_times[row] = time
+    for i in range(state.size):
+        kept_states[row, i] = state[i]
+        kept_slopes[row, i] = slopes[0, i]
+
+
+@njit(cache=True, error_model="numpy")
 def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     """Return the first step [s], by Hairer's algorithm in section II.4.
 
     Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
     """
+    small()
+    apart()
     size = state.size
     d0 = d1 = 0.0
     for i in range(size):
@@ -184,12 +203,14 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _error(state, new, slopes, step, tolerance, scale, five, three):
     """Return the estimated error of a step over the tolerated one."""
-    fifth = third = 0.0
-    _combine(_E5, _STAGES, slopes, five)
-    _combine(_E3, _STAGES, slopes, three)
+    small()
+    apart()
+    fifth, third, stages = 0.0, 0.0, _A.shape[0]
+    _combine(_E5, stages, slopes, five)
+    _combine(_E3, stages, slopes, three)
     for i in range(state.size):
         weight = tolerance * (scale[i] + max(abs(state[i]), abs(new[i])))
         fifth += (five[i] / weight) ** 2
@@ -198,9 +219,11 @@ def _error(state, new, slopes, step, tolerance, scale, five, three):
     return abs(step) * fifth / size if size > 0 else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _prepare(pointers, views, state, new, slopes, step, work, weights):
     """Write the coefficients of the continuous output over the last step to `weights`."""
+    small()
+    apart()
     for row in range(3):
         _combine(_A_EXTRA[row], _STAGES + 1 + row, slopes, work)
         for i in range(state.size):
@@ -212,14 +235,16 @@ def _prepare(pointers, views, state, new, slopes, step, work, weights):
         weights[1, i] = step * slopes[0, i] - change
         weights[2, i] = 2 * change - step * (slopes[_STAGES, i] + slopes[0, i])
     for k in range(4):
-        _combine(_D[k], ROWS, slopes, weights[3 + k])
+        _combine(_D[k], slopes.shape[0], slopes, weights[3 + k])
         for i in range(state.size):
             weights[3 + k, i] *= step
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _interpolate(state, weights, part, out):
     """Write the state after the fraction `part` of a step from `state` to `out`."""
+    small()
+    apart()
     for i in range(state.size):
         value = 0.0
         for k in range(6, -1, -1):

@@ -6,6 +6,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError, UnsupportedError
 from mjbeer.model.engine import quiet, untimed
 from mjbeer.simulation import gauss_jackson_kernel
+from mjbeer.simulation.compiling import told
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson_weights import COUNT
 from mjbeer.simulation.recorder import Recorder
@@ -21,19 +22,19 @@ class GaussJackson:
 
     A step is two evaluations, where DOP853 has twelve and steps that are three times as large. The method has almost no
     room on the side of damped motions: a damping or a constraint that decays within a few timesteps would make it
-    unstable.
+    unstable. Without `data` of the model, in its initial state, it makes its own.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
       ValueError: if the model has joints other than slides and hinges.
     """
 
-    def __init__(self, model: mujoco.MjModel) -> None:
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
         if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONSTRAINT:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
         if model.dof_damping.any() or model.tendon_damping.any():
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
-        self._starter, self._size = Integrator(model), model.nv
+        self._starter, self._size = Integrator(model, data), model.nv
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
@@ -61,15 +62,13 @@ class GaussJackson:
         place, status = (timestep, COUNT - 1, begun), gauss_jackson_kernel.BLOCK_END
         rows = gauss_jackson_kernel.BLOCK if recorder else 0
         kept = np.empty(rows), np.empty((rows, 2 * size)), np.empty((rows, 2 * size))
-        with quiet(), untimed():
+        with told(gauss_jackson_kernel.advance), quiet(), untimed():
             gauss_jackson_kernel.begin(pointers, views, states, slopes, timestep, sums, history)
             self.evaluations = self._starter.evaluations + COUNT
             if not np.isfinite(sums).all():  # the position over the square of the timestep overflows, or a force does
                 raise DivergenceError(f"GaussJackson could not start: its sums are not finite at t = {first[-1]:.6g} s")
             if recorder:
-                reached = 1 + int(
-                    np.searchsorted(first, times[-1])
-                )  # what comes after the last sample is not the run's
+                reached = 1 + int(np.searchsorted(first, times[-1]))  # what comes after it is not the run's
                 recorder.add_smooth(first[:reached], states[:reached], slopes[:reached])
             while status == gauss_jackson_kernel.BLOCK_END:
                 status, place, taken, rows = gauss_jackson_kernel.advance(

@@ -85,7 +85,7 @@ def _add(sums, row, i, term):
     sums[row, i] = total
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def advance(pointers, views, sums, history, times, samples, place, kept):
     """Take up to a block of steps, and return the status, the new place and the numbers of steps taken and rows kept.
 

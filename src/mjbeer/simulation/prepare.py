@@ -1,12 +1,15 @@
 """A scene with its model and integrator, set up once and run often."""
 
 import math
+import threading
+from collections.abc import Generator, Hashable
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
 from mjbeer.model import state
-from mjbeer.model.build import compile_model
+from mjbeer.model.pattern import Editable, Plan
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
@@ -19,6 +22,12 @@ from mjbeer.theory.scene import Scene
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number. So no rate of rotation has the same phase at the ends of both parts, step by step."""
+
+_MOST_IDLE = 8
+"""Largest number of idle set-ups that are kept for later calls: each has memory for contacts that it hardly touches."""
+_idle: list[tuple[Hashable, "Prepared"]] = []
+"""Set-ups that nobody uses, with the kind of each, the oldest first."""
+_taking = threading.Lock()
 
 
 class Prepared:
@@ -34,22 +43,49 @@ class Prepared:
     """
 
     def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
+        plan = _plan(scene, setting, uneven)
+        self._made = Editable(plan)
+        self.model = self._made.model
+        self._begin(scene, setting, uneven)
+
+    def _begin(self, scene: Scene, setting: Setting, uneven: bool) -> None:
+        """Set up an integrator for the model, which has the scene's numbers."""
         self.scene, self.setting = scene, setting
-        self._step = setting.timestep * (_GREATER if uneven else 1)
+        self._step = _step(setting, uneven)
         """Timestep to which constraints are tuned, and that of mjbeer's own integrators."""
         if setting.tolerance is not None:
-            timestep = tuning(scene, setting.rolling, setting.timestep)
-            self.model = compile_model(scene, replace(setting, integrator=DOP853, timestep=timestep))
-            self._method: Solver | Integrator | GaussJackson | Stepper = Solver(self.model, scene)
-            return
-        self.model = compile_model(scene, replace(setting, timestep=self._step))
-        if setting.integrator == DOP853:
-            self._method = Integrator(self.model)
+            self._method: Solver | Integrator | GaussJackson | Stepper = Solver(self.model, scene, self._made.data)
+        elif setting.integrator == DOP853:
+            self._method = Integrator(self.model, self._made.data)
         elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(self.model)
+            self._method = GaussJackson(self.model, self._made.data)
         else:
             self.model.opt.timestep = setting.timestep
-            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else ())
+            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), self._made.data)
+
+    @classmethod
+    @contextmanager
+    def lent(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
+        """Yield a set-up for the block, after which another call may write its scene into the same model.
+
+        All that an idle set-up did before is gone: a motion has the same bits in it as in a new one.
+        """
+        plan = _plan(scene, setting, uneven=False)
+        with _taking:
+            places = (place for place, (kind, _) in enumerate(_idle) if kind == plan.kind)
+            found = _idle.pop(place)[1] if (place := next(places, None)) is not None else None
+        if found is None:
+            prepared = cls(scene, setting)
+        else:
+            prepared = found
+            prepared._made.write(plan)
+            prepared._begin(scene, setting, uneven=False)
+        try:
+            yield prepared
+        finally:
+            with _taking:
+                _idle.append((plan.kind, prepared))
+                del _idle[:-_MOST_IDLE]
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
@@ -78,3 +114,16 @@ class Prepared:
     def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
         """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
         return state.read(self.model, self.scene, states=states, times=times)
+
+
+def _step(setting: Setting, uneven: bool) -> float:
+    """Return the timestep [s] to which constraints are tuned, and which is that of DOP853."""
+    return setting.timestep * (_GREATER if uneven else 1)
+
+
+def _plan(scene: Scene, setting: Setting, uneven: bool) -> Plan:
+    """Return what is to be written into the model of a scene."""
+    if setting.tolerance is not None:
+        timestep = tuning(scene, setting.rolling, setting.timestep)
+        return Plan.of(scene, replace(setting, integrator=DOP853, timestep=timestep))
+    return Plan.of(scene, replace(setting, timestep=_step(setting, uneven)))

@@ -21,6 +21,9 @@ class Recorder:
         self._model, self._scene = model, scene
         self.record = Record(scene, friction)
         self._last: np.ndarray | None = None
+        size = model.nq + model.nv
+        self._rate = read(model, scene, np.eye(size), np.zeros(size)).phi_dot
+        """The weights of a state's components in phi_dot."""
 
     def add(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps: the times [s] and states, shape (steps, nq + nv), at their ends."""
@@ -34,8 +37,7 @@ class Recorder:
         """
         motion = read(self._model, self._scene, states, times)
         self.record.add_conserved(motion)
-        accelerations = read(self._model, self._scene, slopes, times).phi_dot
-        ends = np.stack([times, motion.phi, motion.phi_dot, accelerations])
+        ends = np.stack([times, motion.phi, motion.phi_dot, slopes @ self._rate])
         if self._last is not None:
             ends = np.concatenate([self._last, ends], axis=1)
         self._last = ends[:, -1:]
@@ -45,21 +47,34 @@ class Recorder:
             self.record.add_forces(*_within(*ends))
 
 
+def _hermite(part: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return how far a polynomial of fifth degree has come after parts of a step, and its derivative by the part.
+
+    `ends` has its whole way, and its first and second derivatives at the start and then at the end.
+    """
+    way, rate, bend, last_rate, last_bend = ends
+    # rate s + bend s^2 / 2 + c_3 s^3 + c_4 s^4 + c_5 s^5, with s from 0 to 1
+    gap, rate_gap, bend_gap = way - rate - bend / 2, last_rate - rate - bend, last_bend - bend
+    cubic = 10 * gap - 4 * rate_gap + bend_gap / 2
+    quartic = -15 * gap + 7 * rate_gap - bend_gap
+    quintic = 6 * gap - 3 * rate_gap + bend_gap / 2
+    come = part * (rate + part * (bend / 2 + part * (cubic + part * (quartic + part * quintic))))
+    return come, rate + part * (bend + part * (3 * cubic + part * (4 * quartic + part * 5 * quintic)))
+
+
+_PART = np.arange(1, _PARTS + 1) / _PARTS
+_COME, _SLOPE = (np.array(column).T for column in zip(*(_hermite(_PART, end) for end in np.eye(5)), strict=True))
+"""The matrices of `_hermite` at the ends of the parts of a step, shape (`_PARTS`, 5)."""
+
+
 def _within(
     time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, phi_ddot: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return times [s], phi [rad] and phi_dot [rad/s] within steps, from their values and derivatives at the ends."""
-    part = np.arange(1, _PARTS + 1) / _PARTS
-    step = np.diff(time)[:, None]
-    # phi = phi_0 + h phi_dot_0 s + h^2 phi_ddot_0 s^2 / 2 + c_3 s^3 + c_4 s^4 + c_5 s^5, with s from 0 to 1
-    rate, bend = step * phi_dot[:-1, None], step**2 * phi_ddot[:-1, None]
-    gap = phi[1:, None] - phi[:-1, None] - rate - bend / 2
-    rate_gap = step * phi_dot[1:, None] - rate - bend
-    bend_gap = step**2 * phi_ddot[1:, None] - bend
-    cubic = 10 * gap - 4 * rate_gap + bend_gap / 2
-    quartic = -15 * gap + 7 * rate_gap - bend_gap
-    quintic = 6 * gap - 3 * rate_gap + bend_gap / 2
-    angle = phi[:-1, None] + part * (rate + part * (bend / 2 + part * (cubic + part * (quartic + part * quintic))))
-    slope = rate + part * (bend + part * (3 * cubic + part * (4 * quartic + part * 5 * quintic)))
-    times = time[:-1, None] + part * step
-    return times.ravel(), angle.ravel(), (slope / step).ravel()
+    step = np.diff(time)
+    rate, bend = np.stack([phi_dot[:-1], phi_dot[1:]]), np.stack([phi_ddot[:-1], phi_ddot[1:]])
+    (rate, last_rate), (bend, last_bend) = step * rate, step**2 * bend
+    ends = np.stack([np.diff(phi), rate, bend, last_rate, last_bend], axis=1)
+    step = step[:, None]
+    times, angle, slope = time[:-1, None] + step * _PART, phi[:-1, None] + ends @ _COME.T, ends @ _SLOPE.T / step
+    return times.ravel(), angle.ravel(), slope.ravel()

@@ -37,6 +37,8 @@ the sine of twice the angle, so that it looks the same at every step of pi; forc
 every turn give a rotation that looks even, and is not."""
 _GOLDEN = (math.sqrt(5) - 1) / 2
 """The fractions of its multiples are spread evenly, and no period is a multiple of the gaps between them."""
+_SPREAD = np.append(0.0, np.sort(np.arange(1, _CHECKED) * _GOLDEN % 1))
+"""Times spread over a motion, over its duration."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -167,10 +169,10 @@ class Second:
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
-    prepared = Prepared(scene, setting)
     along, samples = _way(times, setting)
-    solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
-    way = prepared.coordinates(solution.states, along)
+    with Prepared.lent(scene, setting) as prepared:
+        solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
+        way = prepared.coordinates(solution.states, along)
     assert solution.record is not None
     return Run(
         **{name: array[samples] for name, array in vars(way).items()},
@@ -192,6 +194,6 @@ def _way(times: np.ndarray, setting: Setting) -> tuple[np.ndarray, np.ndarray | 
         spread = setting.timestep * np.unique(np.linspace(0, last, min(last, _KEPT) + 1).astype(np.int64))
         spread = spread[spread <= end]
     else:
-        spread = np.append(0.0, end * np.sort(np.arange(1, _CHECKED) * _GOLDEN % 1))
+        spread = end * _SPREAD
     along = np.union1d(times, spread)
     return (along, slice(None)) if len(along) == len(times) else (along, np.searchsorted(along, times))

@@ -7,6 +7,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
+from mjbeer.simulation.compiling import told
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.stepping_kernel import advance
 
@@ -16,14 +17,17 @@ cache."""
 
 
 class Stepper:
-    """A model set up to be stepped with its own timestep, which may be taken in several `parts`, whose sum is 1."""
+    """A model set up to be stepped with its own timestep, which may be taken in several `parts`, whose sum is 1.
 
-    def __init__(self, model: mujoco.MjModel, parts: tuple[float, ...] = ()) -> None:
+    Without `data` of the model it makes its own.
+    """
+
+    def __init__(self, model: mujoco.MjModel, parts: tuple[float, ...] = (), data: mujoco.MjData | None = None) -> None:
         self._timestep = model.opt.timestep
         self._models = [copy.copy(model) for _ in parts] or [model]
         for changed, part in zip(self._models, parts, strict=bool(parts)):
             changed.opt.timestep = part * self._timestep
-        self._data = mujoco.MjData(model)
+        self._data = mujoco.MjData(model) if data is None else data
         self._addresses = np.array([changed._address for changed in self._models])
         self._views = self._data.qpos, self._data.qvel, self._data.qacc
         self._states = np.empty((_BLOCK, model.nq + model.nv))
@@ -44,7 +48,7 @@ class Stepper:
         if recorder:
             recorder.add(np.zeros(1), start[None])
         last = int(samples[-1])
-        with quiet(), untimed():
+        with told(advance), quiet(), untimed():
             for first in range(0, last, _BLOCK):
                 block = self._states[: min(_BLOCK, last - first)]
                 count = advance(address("mj_step"), self._addresses, data._address, self._views, block)

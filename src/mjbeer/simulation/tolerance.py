@@ -56,6 +56,11 @@ of the barrier as a quarter of the largest kinetic energy (measured for swings o
 _NEAREST = 10.0
 """How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
 runs shows how much the motion amplifies."""
+_COMPARED = 64
+"""Largest number of samples at which two runs are compared; they are spread over the motion as unevenly as the golden
+section, so that no period is a multiple of the gaps. A run that is only compared has no others, as a sample in every
+step takes a quarter more evaluations."""
+_GOLDEN = (math.sqrt(5) - 1) / 2
 _EVALUATIONS = 5_000_000
 """Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
 
@@ -75,9 +80,9 @@ class Solution:
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene) -> None:
+    def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData | None = None) -> None:
         self._model, self._scene = model, scene
-        self._integrator, self._scale = Integrator(model), scales(model, scene)
+        self._integrator, self._scale = Integrator(model, data), scales(model, scene)
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
@@ -98,9 +103,10 @@ class Solver:
         """
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
         safety = _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
-        coarse, _ = self._run(start + _NUDGE * self._scale, times, local=local, tolerance=tolerance)
+        few = _few(len(times))
+        coarse, _ = self._run(start + _NUDGE * self._scale, times[few], local=local, tolerance=tolerance)
         fine, record = self._run(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
-        first = before = self._distance(coarse, fine, start)
+        first = before = self._distance(coarse, fine[few], start)
         estimate, drift, further = safety * first, self._drift(record), False
         while max(estimate, drift) > tolerance:
             if estimate <= tolerance:  # the drift may be that of a model which no smaller steps can cure
@@ -109,9 +115,9 @@ class Solver:
             if local < _RATIO * _SMALLEST:
                 apart = f"two runs at the limit of rounding differ by {before:.2g} rad"
                 raise _not_reached(tolerance, apart if estimate > tolerance else _lost(drift))
-            coarse = fine
+            coarse = fine[few]
             fine, record = self._run(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
-            distance, drift_before, drift = self._distance(coarse, fine, start), drift, self._drift(record)
+            distance, drift_before, drift = self._distance(coarse, fine[few], start), drift, self._drift(record)
             estimate = _SAFETY_BY_CHANCE * max(distance, before / _RATIO)
             progress = distance <= _STALLED * before if estimate > tolerance else drift <= _STALLED * drift_before
             stalled = 0 if progress else stalled + 1
@@ -125,7 +131,7 @@ class Solver:
         local /= _RATIO
         rounding = _ROUNDING_OVER_NUDGE * first if further else 0.0  # the first distance includes the nudge
         if rounding > tolerance:
-            rounding = self._rounding_effect(fine, start=start, times=times, local=local, tolerance=tolerance)
+            rounding = self._rounding_effect(fine[few], start=start, times=times[few], local=local, tolerance=tolerance)
         loss = self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
         return Solution(fine, max(estimate, drift, rounding, loss), record)
 
@@ -174,8 +180,9 @@ class Solver:
         _, loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
         if loss <= _NO_LOSS * tolerance:
             return 0.0
-        aside, _ = self._run(start + min(loss, 1.0) * self._scale, times, local=local, tolerance=tolerance)
-        effect = _LOSS * self._distance(aside, fine, start)
+        few = _few(len(times))
+        aside, _ = self._run(start + min(loss, 1.0) * self._scale, times[few], local=local, tolerance=tolerance)
+        effect = _LOSS * self._distance(aside, fine[few], start)
         if effect > tolerance:
             raise _not_reached(
                 tolerance,
@@ -211,6 +218,14 @@ class Solver:
         return max(angle_distance(angles[:, column], truth[:, column], float(first[column])) for column in (0, 1))
 
 
+def _few(samples: int) -> np.ndarray:
+    """Return the indices of the samples at which two runs are compared: all, or `_COMPARED` of them with the last."""
+    if samples <= _COMPARED:
+        return np.arange(samples)
+    spread = samples * (np.arange(1, _COMPARED) * _GOLDEN % 1)
+    return np.unique(np.append(spread.astype(int), samples - 1))
+
+
 def _not_reached(tolerance: float, reason: str) -> ToleranceError:
     return ToleranceError(f"tolerance {tolerance:g} rad is not reached: {reason}")
 
@@ -238,7 +253,6 @@ def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
     """
     radius = scene.can.radius
-    slides = np.array([model.joint(i).type[0] == mujoco.mjtJoint.mjJNT_SLIDE for i in range(model.njnt)])
-    positions = np.where(slides, radius, 1.0)
+    positions = np.where(model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE, radius, 1.0)
     rate = np.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
     return np.concatenate([positions, positions * rate])

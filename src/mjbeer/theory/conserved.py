@@ -10,7 +10,12 @@ from mjbeer.theory.scene import Scene
 
 def energy(scene: Scene, motion: Coordinates) -> np.ndarray:
     """Return the kinetic and potential energy [J] of can and load at each sample, whether they roll or not."""
-    return kinetic_energy(scene, motion) - scene.gravity * (
+    return kinetic_energy(scene, motion) + potential_energy(scene, motion)
+
+
+def potential_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
+    """Return the potential energy [J] of can and load at each sample, 0 with all mass at u = 0 on the axis."""
+    return -scene.gravity * (
         scene.mass * (motion.u * math.sin(scene.incline) - motion.lift * math.cos(scene.incline))
         + scene.load.mass * scene.load.offset * np.cos(scene.incline + motion.phi)
     )

@@ -31,22 +31,32 @@ class Forces:
 
 def accelerations(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
     """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping at `phi` [rad] and `phi_dot` [rad/s]."""
-    phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
+    u_ddot, phi_ddot, _, _ = _accelerations(scene, phi, phi_dot)
+    return u_ddot, phi_ddot
+
+
+def _accelerations(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return u_ddot [m/s^2], phi_ddot [rad/s^2], and how the load's centre of mass accelerates relative to the axis.
+
+    The latter are over b [1/s^2]: away from the incline, and uphill.
+    """
+    phi_ddot, sin, cos, square = scene.oscillator.acceleration(phi, phi_dot), np.sin(phi), np.cos(phi), phi_dot**2
+    across, uphill = sin * phi_ddot + cos * square, cos * phi_ddot - sin * square
     if scene.attachment == "frozen":
-        return scene.can.radius * phi_ddot, phi_ddot
+        return scene.can.radius * phi_ddot, phi_ddot, across, uphill
     effective_mass = scene.mass + scene.can.inertia / scene.can.radius**2
-    moment = scene.load.mass * scene.load.offset
-    force = scene.mass * scene.gravity * math.sin(scene.incline)
-    force = force + moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)  # eq. (46)
-    return force / effective_mass, phi_ddot
+    force = scene.mass * scene.gravity * math.sin(scene.incline) + scene.load.mass * scene.load.offset * uphill
+    return force / effective_mass, phi_ddot, across, uphill  # eq. (46)
 
 
 def rolling_forces(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> Forces:
     """Return N and F [N] that rolling without slipping needs at `phi` [rad] and `phi_dot` [rad/s]."""
-    u_ddot, phi_ddot = accelerations(scene, phi, phi_dot)
+    u_ddot, _, across, uphill = _accelerations(scene, phi, phi_dot)
     moment, weight = scene.load.mass * scene.load.offset, scene.mass * scene.gravity
-    normal = weight * math.cos(scene.incline) + moment * (np.sin(phi) * phi_ddot + np.cos(phi) * phi_dot**2)
+    normal = weight * math.cos(scene.incline) + moment * across
     if scene.attachment == "sliding":  # friction alone turns the can: F a = I_can u_ddot / a
         return Forces(normal, scene.can.inertia / scene.can.radius**2 * u_ddot)
-    along = scene.mass * u_ddot - moment * (np.cos(phi) * phi_ddot - np.sin(phi) * phi_dot**2)
+    along = scene.mass * u_ddot - moment * uphill
     return Forces(normal, weight * math.sin(scene.incline) - along)

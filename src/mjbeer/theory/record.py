@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from mjbeer.theory.conserved import energy, kinetic_energy
+from mjbeer.theory.conserved import kinetic_energy, potential_energy
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import rolling_forces
 from mjbeer.theory.scene import Scene
@@ -38,6 +38,8 @@ class Record:
         """Largest distance of the axis from its start [m]."""
         self.fastest = 0.0
         """Largest rate of the load, |phi_dot| [rad/s]."""
+        self.lowest_normal = math.inf
+        """Smallest normal force that rolling needed [N]; negative where the incline would have to pull."""
         self.needed = 0.0
         """Largest friction coefficient that rolling needed; infinite where the incline would have to pull."""
         self.fails_at = math.inf
@@ -47,6 +49,7 @@ class Record:
         self._by_rates = self._by_angles = 0.0
         self._kinetic = self._energy_change = self._swing_change = self._axis_change = 0.0
         self._first: Coordinates | None = None
+        self._at_first: tuple[float, float] | None = None
         self._last: Coordinates | None = None
         self._last_margin: tuple[float, float] | None = None
 
@@ -87,8 +90,8 @@ class Record:
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray) -> None:
         """Add the normal and friction forces that rolling needs at times [s], where the motion has phi and phi_dot."""
         forces = rolling_forces(self.scene, phi, phi_dot)
-        needed = forces.needed
-        self.needed = _largest(self.needed, needed)
+        self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
+        self.needed = _largest(self.needed, forces.needed)
         if not math.isinf(self.fails_at):
             return
         margin = forces.normal
@@ -155,13 +158,15 @@ class Record:
         return self._axis_change / max(self.scene.can.radius, self.rolled)
 
     def _add_energies(self, motion: Coordinates, first: Coordinates) -> None:
-        oscillator, total = self.scene.oscillator, energy(self.scene, motion)
-        self._energy_change = _largest(self._energy_change, total - energy(self.scene, first))
-        self._kinetic = _largest(self._kinetic, kinetic_energy(self.scene, motion))
+        oscillator, kinetic = self.scene.oscillator, kinetic_energy(self.scene, motion)
+        total = kinetic + potential_energy(self.scene, motion)
         swing = oscillator.inertia(motion.phi) * motion.phi_dot**2 / 2
-        at_first = oscillator.inertia(first.phi) * first.phi_dot**2 / 2
+        if self._at_first is None:  # this piece begins with the first sample
+            self._at_first = float(total[0]), float(swing[0])
+        self._energy_change = _largest(self._energy_change, total - self._at_first[0])
+        self._kinetic = _largest(self._kinetic, kinetic)
         self.swing = _largest(self.swing, swing)
-        change = swing - at_first - oscillator.drop(motion.phi, float(first.phi[0]))
+        change = swing - self._at_first[1] - oscillator.drop(motion.phi, float(first.phi[0]))
         self._swing_change = _largest(self._swing_change, change)
 
 

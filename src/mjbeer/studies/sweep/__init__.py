@@ -1,0 +1,1 @@
+"""Many scenes in one call: it imports `theory`, `model`, `simulation` and `output`."""

@@ -1,0 +1,77 @@
+"""A set-up that is lent again gives the bits of a new one, and nobody gets one that is in use."""
+
+import numpy as np
+import pytest
+
+from mjbeer import Scene, frozen, pendulum, sliding
+from mjbeer.exceptions import DivergenceError, ToleranceError
+from mjbeer.model.setting import Setting
+from mjbeer.simulation import prepare
+from mjbeer.simulation.prepare import Prepared
+from tests.support.scenes import METAL
+
+SETTINGS = [
+    Setting(tolerance=1e-7),
+    Setting("equality", tolerance=1e-6),
+    Setting(integrator="DOP853", timestep=1e-2),
+    Setting("equality", "DOP853", timestep=1e-2),
+    Setting("equality", "implicit", timestep=2e-3),
+    Setting("contact", timestep=2e-3),
+]
+SCENES = [sliding(can=METAL), sliding(0.3, 0.2, can=METAL), frozen(0.2), frozen(0.3, 0.8, can=METAL), pendulum()]
+TIMES = np.linspace(0, 0.4, 5)
+
+
+@pytest.fixture(autouse=True)
+def none_idle(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(prepare, "_idle", [])
+
+
+def bits(prepared: Prepared) -> bytes:
+    return prepared.solve(prepared.start(0.7, 2.0), TIMES).states.tobytes()
+
+
+@pytest.mark.parametrize("setting", SETTINGS, ids=repr)
+def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
+    for scene in SCENES * 2:
+        with Prepared.lent(scene, setting) as prepared:
+            assert bits(prepared) == bits(Prepared(scene, setting))
+    assert len(prepare._idle) < len(SCENES)
+
+
+def test_a_set_up_in_use_is_not_lent() -> None:
+    with Prepared.lent(SCENES[0], SETTINGS[0]) as one:
+        before = bits(one)
+        with Prepared.lent(SCENES[1], SETTINGS[0]) as other:
+            assert other.model is not one.model
+        assert bits(one) == before
+
+
+def test_a_set_up_comes_back_from_a_run_that_failed() -> None:
+    with pytest.raises(DivergenceError), Prepared.lent(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed:
+        failed.solve(np.array([0.0, 0.7, 0.0, 1e9]), np.array([0.0, 100.0]))
+    with Prepared.lent(SCENES[0], Setting(tolerance=1e-13)) as prepared:
+        assert prepared is failed
+        with pytest.raises(ToleranceError):
+            prepared.solve(prepared.start(0.7, 2.0), np.array([0.0, 1e5]))
+    with Prepared.lent(SCENES[1], SETTINGS[0]) as prepared:
+        assert prepared is failed
+        assert bits(prepared) == bits(Prepared(SCENES[1], SETTINGS[0]))
+
+
+def test_few_are_kept() -> None:
+    lent = [Prepared.lent(scene, setting) for scene in SCENES for setting in SETTINGS]
+    for each in lent:
+        each.__enter__()
+    for each in lent:
+        each.__exit__(None, None, None)
+    assert len(prepare._idle) == prepare._MOST_IDLE
+
+
+def test_one_setting_may_follow_another() -> None:
+    """Of a kind are all that have the same elements, whatever the integrator and its steps."""
+    scene: Scene = SCENES[1]
+    for setting in (SETTINGS[0], SETTINGS[2], Setting(), SETTINGS[0]):
+        with Prepared.lent(scene, setting) as prepared:
+            assert bits(prepared) == bits(Prepared(scene, setting))
+    assert len(prepare._idle) == 1
