@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from mjbeer.cli.figures import Figures
     from mjbeer.theory.trajectory import Trajectory
 
-_FPS = 60
+_FPS = 30
 """Pictures per second of a video."""
 _TURN = 1.0
 """Largest turn from picture to picture [rad] that the eye can follow well: a sixth of a circle."""

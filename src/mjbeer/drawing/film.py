@@ -14,7 +14,7 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
 
 _MOST_FRAMES = 1e6
-"""Largest number of frames of a video: four and a half hours at 60 frames per second."""
+"""Largest number of frames of a video: nine hours at 30 frames per second."""
 
 
 @dataclass(frozen=True, eq=False)

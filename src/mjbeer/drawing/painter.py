@@ -32,7 +32,8 @@ class Painter:
         """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
         if self._empty is None and self.still:
             self.display.hide()
-            self._empty = self.canvas.draw(self.display.data, view)
+            board = self.canvas.draw(self.display.data, view)
+            self._empty = np.dstack([board, np.full(board.shape[:2], 255, np.uint8)])
         self.display.pose(positions)
         if self._empty is None:
             sheet.put(self.canvas.draw(self.display.data, view), 0, top)

@@ -24,7 +24,7 @@ def render(
     path: str | os.PathLike[str],
     width: int = 1280,
     height: int = 720,
-    fps: float = 60,
+    fps: float = 30,
     speed: float = 1.0,
     camera: Camera = "auto",
     progress: bool = True,

@@ -141,7 +141,7 @@ class Trajectory(Coordinates):
         self,
         width: int = 640,
         height: int = 360,
-        fps: float = 60,
+        fps: float = 30,
         speed: float = 1.0,
         camera: str = "auto",
         progress: bool = True,

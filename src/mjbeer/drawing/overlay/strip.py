@@ -80,11 +80,11 @@ class Strip:
                     borderpad=0, handlelength=1.5, columnspacing=1.2,
                 )  # fmt: skip
             canvas.draw()
-            self._complete = np.array(canvas.buffer_rgba())[:, :, :3]
+            self._complete = np.array(canvas.buffer_rgba())
             for line in itertools.chain(*drawn):
                 line.set_visible(False)
             canvas.draw()
-            self._beginning = np.array(canvas.buffer_rgba())[:, :, :3]
+            self._beginning = np.array(canvas.buffer_rgba())
             self._panels = [(panel.transData, panel.get_window_extent()) for panel in panels]
 
     def _draw(self, panel: Axes, chart: Chart) -> list:
