@@ -19,7 +19,7 @@ def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path, monk
     plots.draw(stored, tmp_path / "diagram")
     overview.draw(stored, tmp_path / "overview")
     assert [figures.faults(figure) for figure in seen] == [[], []]
-    assert max(file.stat().st_size for file in tmp_path.glob("*.svg")) < 150_000
+    assert max(file.stat().st_size for file in tmp_path.glob("*.svg")) < 160_000
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "diagram.svg").read_text())
     for case in stored.cases:
         assert any(text.startswith(f"{case}: {in_words(CASES[case].scene)}") for text in texts)

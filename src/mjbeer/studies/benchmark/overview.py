@@ -33,8 +33,8 @@ class _Label:
 _CURVES = {
     Curve("reduced", "Euler", TIMESTEP): _Label("MuJoCo Euler", COLOURS[4], 1e-5, (6, 18), "right"),
     Curve("reduced", "RK4", TIMESTEP): _Label("MuJoCo RK4", COLOURS[1], 1e-9, (-9, -4), "right"),
-    Curve("reduced", DOP853, TIMESTEP): _Label("mjbeer: DOP853\naround MuJoCo", COLOURS[0], 1e-12, (11, 9), "left"),
-    Curve("reduced", GAUSS_JACKSON, TIMESTEP): _Label("mjbeer:\nGauss-Jackson", COLOURS[6], 1e-12, (-9, 3), "right"),
+    Curve("reduced", DOP853, TIMESTEP): _Label("mjbeer:\nDOP853", COLOURS[0], 1e-7, (8, 0), "left"),
+    Curve("reduced", GAUSS_JACKSON, TIMESTEP): _Label("Gauss-\nJackson", COLOURS[6], 2e-5, (-7, 0), "right"),
     Curve("SciPy DOP853", "", TOLERANCE): _Label("SciPy DOP853", COLOURS[3], 1e-6, (9, 0), "left"),
     Curve("heyoka", "", TOLERANCE): _Label("heyoka", COLOURS[2], 1e-10, (9, 0), "left"),
 }

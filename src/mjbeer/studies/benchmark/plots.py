@@ -7,7 +7,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from mjbeer.model.setting import ROLLINGS, USUAL
+from mjbeer.model.setting import GAUSS_JACKSON, ROLLINGS, USUAL
 from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
@@ -25,6 +25,8 @@ _USUAL = {"equality, slide first": "X", "equality, hinge first": "P", "contact, 
 """Markers of models as people usually write them."""
 _PEERS = ("v", "<", ">", "D", "p", "h", "8")
 """Markers of other tools."""
+_SHORT = "GJ"
+"""GaussJackson in the labels beside points; the legend says so."""
 _FLOOR = 1e-15
 """Smaller errors [rad] are drawn here, since a logarithmic axis has no zero."""
 
@@ -104,7 +106,8 @@ def _line(axes: Axes, curve: Curve, times: list[float], errors: list[float]) -> 
     colour = COLOURS[_METHODS[curve.method]]
     adaptive = curve.knob == TOLERANCE
     face = "white" if adaptive else colour
-    label = f"{curve.method}{' to a tolerance' if adaptive else ''}, {curve.way}"
+    method = f"{curve.method} ({_SHORT})" if curve.method == GAUSS_JACKSON else curve.method
+    label = f"{method}{' to a tolerance' if adaptive else ''}, {curve.way}"
     style: dict[str, Any] = {
         "linestyle": line,
         "marker": marker,
@@ -137,6 +140,7 @@ def _front(axes: Axes, points: list[Point]) -> None:
     for point in labelled.values():
         place = (1e3 * point.time, max(point.error, _FLOOR))
         name = setting(point) + ("" if point.way == "reduced" else f", {point.way}")
+        name = name.replace(GAUSS_JACKSON, _SHORT)
         axes.annotate(name, xy=place, xytext=(-7, -3), textcoords="offset points", ha="right", fontsize=8)
 
 
