@@ -199,6 +199,7 @@ def test_the_plots_have_every_point_and_every_map(text: str) -> None:
     points = [point for case in benchmark.cases for point in benchmark.of(case)]
     told = plots["precision"]["data"]["values"]
     assert [record["time"] for record in told] == pytest.approx([1e3 * point.time for point in points], rel=1e-3)
+    assert {record["tool"] for record in told if record["setting"].startswith(("DOP853", "GaussJackson"))} == {"mjbeer"}
     for case in benchmark.cases:
         ours = frontier.ours(benchmark.of(case))
         levels = [frontier.cheapest(ours, level) for level in frontier.LEVELS]

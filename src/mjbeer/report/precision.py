@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from mjbeer.model.setting import DOP853, ROLLINGS, USUAL
+from mjbeer.model.setting import OWN, ROLLINGS, USUAL
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import milliseconds, setting
@@ -166,7 +166,7 @@ def _levels(points: list[Point]) -> list[tuple[float, Point]]:
 def _tool(point: Point) -> str:
     """Return which of `TOOLS` a point belongs to."""
     if point.way in ROLLINGS:
-        return "mjbeer" if point.method == DOP853 else "MuJoCo"
+        return "mjbeer" if point.method in OWN else "MuJoCo"
     if point.way in USUAL:
         return "MuJoCo as usually written"
     return next(tool for tool in TOOLS if point.way.startswith(tool))
