@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -10,7 +11,7 @@ from PIL import Image
 from rich.console import Console
 
 from mjbeer import exact, frozen
-from mjbeer.drawing import animation
+from mjbeer.drawing import animation, studio
 from mjbeer.drawing.film import Take, reel
 from mjbeer.drawing.studio import Order, produce
 from mjbeer.exceptions import RenderingError
@@ -39,6 +40,22 @@ def test_a_film_that_fails_is_an_error(tmp_path: pathlib.Path, monkeypatch: pyte
     with pytest.raises(RenderingError, match="nowhere' is not found"):
         produce(orders(tmp_path, "ab"), Console(quiet=True))
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.draws
+def test_a_film_that_another_process_was_writing_leaves_nothing(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(orders: Sequence[Order], _: Console) -> None:
+        (tmp_path / ".a-12345678.mp4").touch()
+        (tmp_path / ".a-still-12345678.png").touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(studio, "_produce", interrupted)
+    (tmp_path / "a.mp4").write_text("an older film")
+    with pytest.raises(KeyboardInterrupt):
+        produce(orders(tmp_path, "a"), Console(quiet=True))
+    assert os.listdir(tmp_path) == ["a.mp4"]
 
 
 @pytest.mark.draws

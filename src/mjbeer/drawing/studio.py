@@ -58,6 +58,17 @@ def produce(orders: Sequence[Order], console: rich.console.Console) -> None:
       RenderingError: if ffmpeg or OpenGL does not work; the message says what to do.
       OutputError: if a file cannot be written.
     """
+    try:
+        _produce(orders, console)
+    except BaseException:
+        for order in orders:  # a process that is ended leaves the hidden file that it was writing
+            for ending in (".mp4", ".png"):
+                for unfinished in order.path.parent.glob(f".{order.path.stem}-*{ending}"):
+                    unfinished.unlink(missing_ok=True)
+        raise
+
+
+def _produce(orders: Sequence[Order], console: rich.console.Console) -> None:
     drawn = get_context("spawn").Value("l", 0)
     counts = {order.path: order.pictures() for order in orders}
     longest_first = sorted(orders, key=lambda order: -counts[order.path] * order.width * order.height)
