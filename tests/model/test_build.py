@@ -35,7 +35,7 @@ def forward(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> 
 @given(scenes(), st.floats(-3, 3), st.floats(-5, 5))
 def test_reduced_accelerates_as_theory_says(scene: Scene, phi: float, swing: float) -> None:
     rate = swing * math.sqrt(scene.gravity / scene.can.radius)
-    expected = [float(each) for each in accelerations(scene, np.float64(phi), np.float64(rate))]
+    expected = [float(each) for each in accelerations(scene, np.float64(phi), np.float64(rate), 0.0)]
     u_ddot, phi_ddot = forward(build(scene), scene, phi, rate)
     scale = abs(expected[1]) + abs(expected[0]) / scene.can.radius + rate**2 + scene.gravity / scene.can.radius
     assert abs(phi_ddot - expected[1]) <= ROUNDING * scale
@@ -57,7 +57,7 @@ def test_reduced_accelerates_as_theory_says(scene: Scene, phi: float, swing: flo
 )
 def test_reduced_extremes_accelerate_as_theory_says(scene: Scene) -> None:
     """Point loads, balanced ones, thin ones, cans 1e-6 and 1e6 of the load's mass, of 1 um and of 100 m."""
-    expected = accelerations(scene, np.float64(0.7), np.float64(2.0))
+    expected = accelerations(scene, np.float64(0.7), np.float64(2.0), 0.0)
     assert forward(build(scene), scene, 0.7, 2.0) == pytest.approx([float(each) for each in expected], rel=ROUNDING)
 
 
@@ -65,7 +65,7 @@ def test_a_twin_with_another_chord_is_found_out() -> None:
     scene = frozen()
     wrong = build(scene)
     wrong.tendon_armature[:] *= 1 + 1e-9
-    expected = accelerations(scene, np.float64(1.0), np.float64(2.0))[1]
+    expected = accelerations(scene, np.float64(1.0), np.float64(2.0), 0.0)[1]
     assert abs(forward(wrong, scene, 1.0, 2.0)[1] / expected - 1) > ROUNDING
 
 
@@ -119,7 +119,7 @@ def test_constraints_are_as_stiff_as_asked_for(rolling: str, integrator: str) ->
 def test_the_equality_is_rigid(name: str) -> None:
     """The accelerations are the theory's, which knows no softness, and those of the reduced model."""
     scene = SCENES[name]
-    expected = accelerations(scene, np.float64(0.7), np.float64(2.0))
+    expected = accelerations(scene, np.float64(0.7), np.float64(2.0), 0.0)
     found = forward(build(scene, "equality"), scene, 0.7, 2.0)
     assert found == pytest.approx([float(each) for each in expected], rel=ROUNDING)
 
@@ -127,7 +127,7 @@ def test_the_equality_is_rigid(name: str) -> None:
 def test_the_equality_as_compiled_is_soft() -> None:
     """What the test above would say of solimp 0.9999: off by 1e-4 of the force."""
     scene = frozen()
-    expected = accelerations(scene, np.float64(0.7), np.float64(2.0))[1]
+    expected = accelerations(scene, np.float64(0.7), np.float64(2.0), 0.0)[1]
     soft = forward(compose(scene, Setting("equality")).compile(), scene, 0.7, 2.0)[1]
     assert 1e-5 < abs(soft / expected - 1) < 1e-3
 

@@ -43,7 +43,7 @@ def rolls(_: float, state: np.ndarray) -> list[float]:
 
 
 def grip(_: float, state: np.ndarray) -> float:
-    forces = rolling_forces(SCENE, state[1], state[3])
+    forces = rolling_forces(SCENE, state[1], state[3], state[2])
     return float(MU * forces.normal - abs(forces.friction))
 
 
@@ -70,7 +70,7 @@ def phases(phi_dot0: float) -> tuple[Phase, Phase]:
     """The hoop rolls from having its weight on top until |F| = mu N, then slips until its rim grips again; states
     are u, phi, u_dot, phi_dot."""
     rolling = phase(rolls, 0.0, np.array([START, START, phi_dot0, phi_dot0]), grip)
-    needed = float(rolling_forces(SCENE, rolling.state[1], rolling.state[3]).friction)
+    needed = float(rolling_forces(SCENE, rolling.state[1], rolling.state[3], rolling.state[2]).friction)
     push = MU * math.copysign(1.0, needed)
     return rolling, phase(slipping(push), rolling.end, rolling.state, gripping(push))
 
@@ -113,7 +113,7 @@ def test_contact_rolls_slips_and_grips_as_coulomb_says(phi_dot0: float) -> None:
 def test_closed_forms_are_the_theory_of_forces(ratio: float, phi: float) -> None:
     scene = hoop(hoop_mass=ratio, load_mass=1.0, gravity=1.0, radius=1.0, length=1.0)
     rate = math.sqrt(hopping.rate(ratio, phi))
-    forces = rolling_forces(scene, phi, rate)
+    forces = rolling_forces(scene, phi, rate, rate)
     assert hopping.normal(ratio, phi) == pytest.approx(float(forces.normal), rel=1e-12, abs=1e-14)
     assert hopping.friction(ratio, phi) == pytest.approx(float(forces.friction), rel=1e-12, abs=1e-14)
     turning = float(scene.oscillator.acceleration(phi, rate))

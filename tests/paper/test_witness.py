@@ -51,7 +51,7 @@ def test_velocities_and_accelerations_are_slopes(name: str) -> None:
 
 def test_it_agrees_with_theory(seen: Witness) -> None:
     q = seen.quantities
-    u_ddot, phi_ddot = accelerations(seen.scene, q.phi, q.phi_dot)
+    u_ddot, phi_ddot = accelerations(seen.scene, q.phi, q.phi_dot, q.u_dot)
     if seen.scene.attachment == "frozen" and not q.u_ddot.any():
         u_ddot = q.u_ddot  # the reduced can turns on the spot
     assert q.phi_ddot == pytest.approx(phi_ddot, abs=DRIFT * np.abs(phi_ddot).max())
@@ -72,7 +72,7 @@ def test_its_energy_is_that_of_the_trajectory(name: str) -> None:
 def test_friction_is_what_rolling_needs(name: str) -> None:
     seen = watch(*SCENES[name], 0.3, 1.2, samples=11)
     q = seen.quantities
-    needed = rolling_forces(seen.scene, q.phi, q.phi_dot).friction
+    needed = rolling_forces(seen.scene, q.phi, q.phi_dot, q.u_dot).friction
     assert seen.friction == pytest.approx(needed, abs=1e-6 * np.abs(needed).max())
 
 

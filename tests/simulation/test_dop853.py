@@ -23,7 +23,7 @@ def test_fixed_step_is_scipy_s_step() -> None:
     from scipy.integrate import DOP853
 
     def slope(_: float, y: np.ndarray) -> np.ndarray:
-        return np.array([y[1], accelerations(scene, y[0], y[1])[1]])
+        return np.array([y[1], accelerations(scene, y[0], y[1], 0.0)[1]])
 
     reference = DOP853(slope, 0.0, np.array([1.0, 0.5]), 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
@@ -42,7 +42,7 @@ def test_adaptive_steps_agree_with_scipy_s() -> None:
     ours = read(model, scene, Integrator(model).run(begin, times, tolerance=1e-11), times).phi
 
     def slope(_: float, y: np.ndarray) -> np.ndarray:
-        return np.concatenate([y[2:], accelerations(scene, y[1], y[3])])
+        return np.concatenate([y[2:], accelerations(scene, y[1], y[3], 0.0)])
 
     first = np.array([scene.load.offset * math.sin(1.0), 1.0, 0.0, 0.0])
     theirs = solve_ivp(slope, (0, 2), first, "DOP853", times, rtol=1e-11, atol=1e-11).y[1]

@@ -25,7 +25,7 @@ ROUNDING = 5e-15
 @pytest.mark.parametrize(("phi", "rate"), [(0.7, 3.0), (-2.0, -11.0)])
 def test_motion_obeys_the_corrected_equations(scene: Scene, phi: float, rate: float) -> None:
     """(47), (49) and (61) as printed leave a residual that is no rounding."""
-    u2, phi2 = (float(each) for each in accelerations(scene, phi, rate))
+    u2, phi2 = (float(each) for each in accelerations(scene, phi, rate, 0.0))
     a, b, sin, cos = scene.can.radius, scene.load.offset, math.sin(phi), math.cos(phi)
     theta = scene.incline + phi
     q = Quantities.of(
@@ -90,7 +90,7 @@ def test_forces_move_the_centre_of_mass(scene: Scene) -> None:
     scale = weight + scene.mass * (abs(away) + abs(along))
     assert state.forces.normal[0] == pytest.approx(normal, abs=ROUNDING * scale)
     assert state.forces.friction[0] == pytest.approx(friction, abs=ROUNDING * scale)
-    u_ddot = float(accelerations(scene, state.phi, state.phi_dot)[0][0])
+    u_ddot = float(accelerations(scene, state.phi, state.phi_dot, state.u_dot)[0][0])
     assert u_ddot == pytest.approx(axis, abs=ROUNDING * scale / scene.mass)
     if scene.attachment == "sliding":  # nothing but friction turns the can
         turning = scene.can.inertia * axis / scene.can.radius**2
@@ -100,7 +100,7 @@ def test_forces_move_the_centre_of_mass(scene: Scene) -> None:
 @pytest.mark.parametrize("scene", [frozen(), frozen(0.3, can=METAL), frozen(-0.2)])
 def test_frozen_equilibrium_needs_tan_alpha(scene: Scene) -> None:
     """Footnote 7."""
-    forces = rolling_forces(scene, np.array([scene.equilibrium()]), np.zeros(1))
+    forces = rolling_forces(scene, np.array([scene.equilibrium()]), np.zeros(1), 0.0)
     assert forces.friction / forces.normal == pytest.approx([math.tan(scene.incline)], rel=ROUNDING)
     assert forces.needed == pytest.approx([abs(math.tan(scene.incline))], rel=ROUNDING)
 
@@ -119,7 +119,7 @@ def falling(scene: Scene, phi: float) -> float:
     """
     k, a, g = scene.can.mass / scene.load.mass, scene.can.radius, scene.gravity
     rate = math.sqrt(2 * g / a * math.cos(phi / 2) ** 2 / (k / 2 + math.sin(phi / 2) ** 2) / 2)
-    forces = rolling_forces(scene, np.array([phi]), np.array([rate]))
+    forces = rolling_forces(scene, np.array([phi]), np.array([rate]), 0.0)
     return float(forces.normal[0]) / (scene.load.mass * g)
 
 
@@ -146,7 +146,7 @@ def test_hoop_hops_only_below_a_thirteenth() -> None:
 
 
 def test_forces_where_the_incline_would_have_to_pull() -> None:
-    forces = rolling_forces(hoop(), np.array([math.pi, 0.0]), np.full(2, 10.0 * math.sqrt(9.81 / 0.033)))
+    forces = rolling_forces(hoop(), np.array([math.pi, 0.0]), np.full(2, 10.0 * math.sqrt(9.81 / 0.033)), 0.0)
     assert forces.normal[0] < 0 < forces.normal[1]
     assert forces.needed[0] == math.inf
     assert math.isfinite(forces.needed[1])

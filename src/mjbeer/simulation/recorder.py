@@ -42,9 +42,9 @@ class Recorder:
             ends = np.concatenate([self._last, ends], axis=1)
         self._last = ends[:, -1:]
         if ends.shape[1] == 1:
-            self.record.add_forces(ends[0], ends[1], ends[2])
+            self.record.add_forces(ends[0], ends[1], ends[2], 0.0)
         else:
-            self.record.add_forces(*_within(*ends))
+            self.record.add_forces(*_within(*ends), 0.0)
 
 
 def _hermite(part: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

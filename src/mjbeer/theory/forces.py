@@ -29,34 +29,64 @@ class Forces:
         return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
 
 
-def accelerations(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> tuple[np.ndarray, np.ndarray]:
-    """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping at `phi` [rad] and `phi_dot` [rad/s]."""
-    u_ddot, phi_ddot, _, _ = _accelerations(scene, phi, phi_dot)
+def accelerations(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping.
+
+    The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to damping and drag alone.
+    """
+    u_ddot, phi_ddot, _, _ = _accelerations(scene, phi, phi_dot, u_dot)
     return u_ddot, phi_ddot
 
 
 def _accelerations(
-    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return u_ddot [m/s^2], phi_ddot [rad/s^2], and how the load's centre of mass accelerates relative to the axis.
 
     The latter are over b [1/s^2]: away from the incline, and uphill.
     """
-    phi_ddot, sin, cos, square = scene.oscillator.acceleration(phi, phi_dot), np.sin(phi), np.cos(phi), phi_dot**2
+    sin, cos, square = np.sin(phi), np.cos(phi), phi_dot**2
+    phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
+    along, effective_mass = 0.0, scene.mass + scene.can.inertia / scene.can.radius**2
+    if scene.dissipates:
+        # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
+        # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
+        torque, along = _dissipation(scene, phi_dot, u_dot)
+        arm = scene.load.mass * scene.load.offset * cos / effective_mass
+        phi_ddot = phi_ddot + (torque + arm * along) / scene.oscillator.inertia(phi)
     across, uphill = sin * phi_ddot + cos * square, cos * phi_ddot - sin * square
     if scene.attachment == "frozen":
         return scene.can.radius * phi_ddot, phi_ddot, across, uphill
-    effective_mass = scene.mass + scene.can.inertia / scene.can.radius**2
     force = scene.mass * scene.gravity * math.sin(scene.incline) + scene.load.mass * scene.load.offset * uphill
-    return force / effective_mass, phi_ddot, across, uphill  # eq. (46)
+    return (force + along) / effective_mass, phi_ddot, across, uphill  # eq. (46)
 
 
-def rolling_forces(scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> Forces:
-    """Return N and F [N] that rolling without slipping needs at `phi` [rad] and `phi_dot` [rad/s]."""
-    u_ddot, _, across, uphill = _accelerations(scene, phi, phi_dot)
+def _dissipation(
+    scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> tuple[np.ndarray | float, np.ndarray | float]:
+    """Return the torque on the load [N m], and the force down the incline on the axis [N], of damping and drag."""
+    torque = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot))
+    return torque, -torque / scene.can.radius - scene.drag * u_dot * np.abs(u_dot)
+
+
+def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
+    """Return by how much the rolling can turns faster than its load, w = u_dot/a - phi_dot [rad/s]."""
+    return u_dot / scene.can.radius - phi_dot
+
+
+def rolling_forces(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> Forces:
+    """Return N and F [N] that rolling without slipping needs in a state, as `accelerations` takes it."""
+    u_ddot, _, across, uphill = _accelerations(scene, phi, phi_dot, u_dot)
     moment, weight = scene.load.mass * scene.load.offset, scene.mass * scene.gravity
     normal = weight * math.cos(scene.incline) + moment * across
-    if scene.attachment == "sliding":  # friction alone turns the can: F a = I_can u_ddot / a
-        return Forces(normal, scene.can.inertia / scene.can.radius**2 * u_ddot)
+    if scene.attachment == "sliding":  # friction and the damping turn the can: F a - T = I_can u_ddot / a
+        friction = scene.can.inertia / scene.can.radius**2 * u_ddot
+        if scene.damping_law:
+            friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
+        return Forces(normal, friction)
     along = scene.mass * u_ddot - moment * uphill
     return Forces(normal, weight * math.sin(scene.incline) - along)

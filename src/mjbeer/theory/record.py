@@ -63,7 +63,7 @@ class Record:
     def add(self, motion: Coordinates) -> None:
         """Add the next piece of the motion, which begins after the last one ended."""
         self.add_conserved(motion)
-        self.add_forces(motion.time, motion.phi, motion.phi_dot)
+        self.add_forces(motion.time, motion.phi, motion.phi_dot, motion.u_dot)
 
     def add_conserved(self, motion: Coordinates) -> None:
         """Add the next piece of the motion to everything but what rests on forces."""
@@ -87,9 +87,12 @@ class Record:
         self._axis_change = _largest(self._axis_change, axis_drift(scene, motion, first))
         self._last = _piece(motion, -1)
 
-    def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray) -> None:
-        """Add the normal and friction forces that rolling needs at times [s], where the motion has phi and phi_dot."""
-        forces = rolling_forces(self.scene, phi, phi_dot)
+    def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
+        """Add the normal and friction forces that rolling needs at times [s] in the states of the motion there.
+
+        `u_dot` [m/s] matters to damping and drag alone.
+        """
+        forces = rolling_forces(self.scene, phi, phi_dot, u_dot)
         self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
         self.needed = _largest(self.needed, forces.needed)
         if not math.isinf(self.fails_at):

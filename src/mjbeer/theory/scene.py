@@ -9,6 +9,7 @@ from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.theory import motion
 from mjbeer.theory.can import LENGTH, RADIUS, Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.oscillator import Oscillator
 
@@ -27,7 +28,8 @@ class Scene:
 
     Raises:
       ParameterError: on an incline outside (-pi/2, pi/2), a load outside the can, an unknown
-        attachment, negative gravity, or a scene that has no inertia at phi = 0.
+        attachment, negative gravity, damping or drag, either of them with a frozen load, or a scene that has no inertia
+        at phi = 0.
     """
 
     can: Can
@@ -38,8 +40,14 @@ class Scene:
     """"sliding": the load slides without friction about the axis; "frozen": it is rigidly attached."""
     gravity: float = GRAVITY
     """Acceleration of gravity g [m/s^2]."""
+    damping: float | Damping = 0.0
+    """Torque between can and load per slip rate roll_dot - phi_dot, c [N m s], or a `Damping` whose torque does not
+    grow in proportion. Only a sliding load has it."""
+    drag: float = 0.0
+    """Force of the air against the motion of the axis, over the square of its speed, C_d rho A / 2 [kg/m]. Only a scene
+    with a sliding load has it."""
     oscillator: Oscillator = field(init=False, repr=False, compare=False)
-    """The scene as one degree of freedom, phi; it follows from the other fields."""
+    """The scene without damping and drag as one degree of freedom, phi; it follows from the other fields."""
 
     def __post_init__(self) -> None:
         require.instance("can", self.can, Can)
@@ -51,6 +59,14 @@ class Scene:
             )
         require.choice("attachment", self.attachment, ATTACHMENTS)
         require.store(self, incline=incline, gravity=require.non_negative("gravity", self.gravity, "m/s^2"))
+        require.store(self, drag=require.non_negative("drag", self.drag, "kg/m"))
+        if not isinstance(self.damping, Damping):
+            require.store(self, damping=require.non_negative("damping", self.damping, "N m s"))
+        if self.dissipates and self.attachment == "frozen":
+            raise ParameterError(
+                f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
+                f"got damping={require.shown(self.damping)} and drag={require.shown(self.drag)}"
+            )
         if self.load.offset > self.can.radius:
             raise ParameterError(
                 f"the load must be inside the can: its offset must be at most the radius {self.can.radius!r} m, "
@@ -69,6 +85,16 @@ class Scene:
     def _repr_html_(self) -> str:
         """Return the parameters of the scene as a table, for a notebook."""
         return import_module("mjbeer.drawing.views").scene_html(self)  # theory knows no pictures: not imported above
+
+    @property
+    def damping_law(self) -> Damping:
+        """Return the torque between can and load as a `Damping`, also where it was given as a number."""
+        return self.damping if isinstance(self.damping, Damping) else Damping(self.damping)
+
+    @property
+    def dissipates(self) -> bool:
+        """Return whether damping or drag takes energy from the motion."""
+        return bool(self.damping_law) or self.drag > 0
 
     @property
     def mass(self) -> float:
@@ -170,18 +196,25 @@ class Scene:
 
 
 def sliding(
-    incline: float = INCLINE, fill: float = 0.5, can: Can | None = None, density: float = BEER, gravity: float = GRAVITY
+    incline: float = INCLINE,
+    fill: float = 0.5,
+    can: Can | None = None,
+    density: float = BEER,
+    gravity: float = GRAVITY,
+    damping: float | Damping = 0.0,
+    drag: float = 0.0,
 ) -> Scene:
-    """Return the scene of beer that slides without friction in a can: sections 2 (massless can, the default) and 3.
+    """Return the scene of beer that slides in a can: sections 2 (massless can, the default) and 3 of the paper.
 
-    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3].
+    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. The beer slides without
+    friction unless `damping` [N m s] is given; `drag` [kg/m] is that of the air. Both are fields of `Scene`.
 
     Raises:
       ParameterError: if a parameter is not allowed.
     """
     can = Can.massless() if can is None else require.instance("can", can, Can)
     load = Load.segment(can.radius, can.length, fill=fill, density=density)
-    return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity)
+    return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity, damping=damping, drag=drag)
 
 
 def frozen(

@@ -96,7 +96,7 @@ class Trajectory(Coordinates):
     @cached_property
     def forces(self) -> Forces:
         """Return the normal and friction force [N] that rolling without slipping needs along this motion."""
-        return rolling_forces(self.scene, self.phi, self.phi_dot)
+        return rolling_forces(self.scene, self.phi, self.phi_dot, self.u_dot)
 
     def rolls_until(self, friction: float = np.inf) -> float:
         """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.

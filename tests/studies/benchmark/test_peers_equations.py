@@ -91,7 +91,7 @@ def test_equations_are_lagrange_s(scene: Scene, phi: float, swing: float) -> Non
 def test_the_theory_has_the_same_accelerations(scene: Scene) -> None:
     for phi, phi_dot in ((0.0, 0.0), (1.0, -3.0), (-2.5, 20.0)):
         rates = equations.right_hand_side(scene)(0.0, state(scene, phi, phi_dot))
-        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot)
+        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, 0.0)
         size = 1 + phi_dot**2
         assert rates[-1] == pytest.approx(phi_ddot, rel=0, abs=ROUNDING * size * scene.frequency() ** 2)
         if scene.attachment == "sliding":
