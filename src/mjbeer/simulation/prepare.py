@@ -58,7 +58,7 @@ class Prepared:
         elif setting.integrator == DOP853:
             self._method = Integrator(self.model, self._made.data)
         elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(self.model, self._made.data)
+            self._method = GaussJackson(self.model, Integrator(self.model, self._made.data))
         else:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), self._made.data)

@@ -8,7 +8,8 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.setting import DOP853, TUNED, Setting
+from mjbeer.model.engine import quiet
+from mjbeer.model.setting import TUNED, Setting
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
@@ -57,6 +58,9 @@ class Run(Trajectory):
     estimate: float | None = None
     """Estimated error [rad] of a run with a tolerance, which comes with the run; None without a tolerance."""
 
+    method: str | None = None
+    """The name of the integrator that was chosen for a tolerance; None without one."""
+
     @property
     def rolling(self) -> str:
         """Return how the can was made to roll: "reduced", "equality" or "contact"."""
@@ -64,8 +68,8 @@ class Run(Trajectory):
 
     @property
     def integrator(self) -> str:
-        """Return the name of the integrator, which is "DOP853" with a tolerance."""
-        return self.setting.integrator if self.setting.tolerance is None else DOP853
+        """Return the name of the integrator, which is "GaussJackson" or "DOP853" with a tolerance."""
+        return self.setting.integrator if self.method is None else self.method
 
     @property
     def timestep(self) -> float | None:
@@ -170,7 +174,7 @@ class Second:
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
     along, samples = _way(times, setting)
-    with Prepared.lent(scene, setting) as prepared:
+    with quiet(), Prepared.lent(scene, setting) as prepared:
         solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
         way = prepared.coordinates(solution.states, along)
     assert solution.record is not None
@@ -183,6 +187,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         steps=solution.record,
         way=way,
         estimate=solution.estimate,
+        method=solution.integrator,
     )
 
 
