@@ -147,6 +147,29 @@ class Setting:
             )
         require.instance("softness", self.softness, Softness)
 
+    @classmethod
+    def of(
+        cls,
+        rolling: Rolling,
+        integrator: Integrator | None,
+        timestep: float,
+        tolerance: float | None,
+        friction: float,
+        softness: Softness = TUNED,
+    ) -> "Setting":
+        """Return the setting of a call in which the integrator may be left out; None means RK4, or the tolerance's.
+
+        Raises:
+          ParameterError: if a field is not allowed, or a tolerance comes with an integrator that does not keep it.
+        """
+        chosen = cls.integrator if integrator is None else integrator
+        setting = cls(rolling, chosen, timestep, tolerance, friction, softness)
+        if tolerance is not None and integrator not in (None, DOP853):
+            raise ParameterError(
+                f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
+            )
+        return setting
+
 
 _DEFAULTS = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)
 USUAL = {

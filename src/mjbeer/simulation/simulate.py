@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import messages, require
 from mjbeer.exceptions import ParameterError, UntrustedWarning
-from mjbeer.model.setting import DOP853, FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import doubts
@@ -69,18 +69,7 @@ def simulate(
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0, many_turns)
     _check_start(scene, phi0, phi_dot0)
-    setting = Setting(
-        rolling=rolling,
-        integrator=Setting.integrator if integrator is None else integrator,
-        timestep=timestep,
-        tolerance=tolerance,
-        friction=friction,
-        softness=softness,
-    )
-    if tolerance is not None and integrator not in (None, DOP853):
-        raise ParameterError(
-            f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
-        )
+    setting = Setting.of(rolling, integrator, timestep, tolerance, friction, softness)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:

@@ -91,17 +91,7 @@ def sweep(
     plan, fixed = arrange({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
     start = {name: require.number(name, fixed.pop(name)) for name in ("phi0", "phi_dot0") if name in fixed}
     require.radians(float(np.abs(plan.axes.get("phi0", start.get("phi0", 0.0))).max()), many_turns)
-    if tolerance is not None and integrator not in (None, DOP853):
-        raise ParameterError(
-            f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
-        )
-    setting = Setting(
-        rolling=rolling,
-        integrator=Setting.integrator if integrator is None else integrator,
-        timestep=timestep,
-        tolerance=tolerance,
-        friction=friction,
-    )
+    setting = Setting.of(rolling, integrator, timestep, tolerance, friction)
     asked, functions = _asked(quantity)
     end = _end(require.positive("duration", duration, "s"), setting)
     if functions and end / setting.timestep > MOST_SAMPLES:
