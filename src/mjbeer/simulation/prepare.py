@@ -117,7 +117,7 @@ class Prepared:
 
 
 def _step(setting: Setting, uneven: bool) -> float:
-    """Return the timestep [s] to which constraints are tuned, and which is that of DOP853."""
+    """Return the timestep [s] to which constraints are tuned, and which is that of mjbeer's own integrators."""
     return setting.timestep * (_GREATER if uneven else 1)
 
 

@@ -11,7 +11,8 @@ from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _PARTS = 8
-"""Parts into which a step of DOP853, which may be half a swing long, is cut to find the lowest normal force."""
+"""Parts into which a step of mjbeer's own integrators is cut to find the lowest normal force: one of DOP853 may be half
+a swing long."""
 
 
 class Observer(Protocol):
