@@ -1,7 +1,9 @@
 """The multistep integrator: its weights against published ones, its order, samples, start, and what it refuses."""
 
 import math
+from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -12,12 +14,13 @@ from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.model.state import read, start
-from mjbeer.simulation import gauss_jackson_kernel
+from mjbeer.simulation import gauss_jackson_kernel, tolerance
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.recorder import Recorder
+from mjbeer.simulation.tolerance import Solver
 from mjbeer.studies.convergence import observed_order
 from mjbeer.theory.measure import distance
 from mjbeer.theory.scene import Scene
@@ -231,10 +234,53 @@ def test_a_timestep_whose_square_is_nothing_is_refused() -> None:
 
 
 def test_a_tolerance_is_not_its_own() -> None:
-    with pytest.raises(ParameterError, match="only DOP853 keeps a tolerance, got integrator 'GaussJackson'"):
+    with pytest.raises(ParameterError, match=r"a tolerance chooses the integrator .* got integrator 'GaussJackson'"):
         simulate(frozen(), 1.0, 1.0, integrator="GaussJackson", tolerance=1e-6)
 
 
 def test_prepared_takes_it_by_its_name() -> None:
     run = simulate(frozen(), 0.1, 1.0, integrator="GaussJackson", timestep=1e-3)
     assert isinstance(Prepared(run.scene, run.setting)._method, GaussJackson)
+
+
+@pytest.mark.parametrize(("error", "gain"), [(1e-6, 1.3), (1e-9, 1.6), (1e-12, 2.0)])
+def test_a_tolerance_takes_fewer_evaluations_with_it(
+    error: float, gain: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All runs count: that of DOP853 which chooses the timestep, and those that agree."""
+    evaluations: list[int] = []
+    for integrator in (Integrator, GaussJackson):
+        monkeypatch.setattr(integrator, "run", counted(integrator, evaluations))
+    totals = {}
+    for name in ("GaussJackson", "DOP853"):
+        if name == "DOP853":
+            monkeypatch.setattr(Solver, "_by_gauss_jackson", lambda *_: None)
+        run = simulate(sliding(), 2.0, 1.0, tolerance=error)
+        assert run.integrator == name
+        totals[name] = sum(evaluations)
+        evaluations.clear()
+    assert totals["DOP853"] > gain * totals["GaussJackson"]
+
+
+def counted(integrator: Any, evaluations: list[int]) -> Callable[..., np.ndarray]:
+    """Return `run` of an integrator, which adds the evaluations of its own steps to a list."""
+    run = integrator.run
+
+    def look(self: Any, *arguments: Any, **named: Any) -> np.ndarray:
+        before = sum(evaluations)
+        states = run(self, *arguments, **named)
+        evaluations.append(self.evaluations - (sum(evaluations) - before))  # those of its starter are there already
+        return states
+
+    return look
+
+
+@pytest.mark.parametrize("constant", ["_ASTRAY", "_GAIN"])
+def test_a_tolerance_falls_back_on_dop853(constant: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where two runs agree but are far from the first, coarse one, or where they are too far apart."""
+    monkeypatch.setattr(tolerance, constant, 0.0)
+    if constant == "_GAIN":
+        monkeypatch.setattr(tolerance, "_SAFETY", 1e9)
+    run = simulate(frozen(), 2.0, 1.0, tolerance=1e-8)
+    assert run.integrator == "DOP853"
+    assert np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max() < 1e-8

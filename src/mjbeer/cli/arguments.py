@@ -162,12 +162,12 @@ class Motion:
     """Duration of the motion [s]."""
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
-    integrator: Annotated[Integrator | None, if_given(Integrator, "RK4, or DOP853 with a tolerance")] = None
+    integrator: Annotated[Integrator | None, if_given(Integrator, "RK4, or what keeps a tolerance")] = None
     """Integrator: one of MuJoCo's, by its name in MJCF, DOP853 (Runge-Kutta, order 8) or GaussJackson (multistep)."""
     timestep: float = 1e-3
     """Timestep; if a tolerance is given, the interval between samples [s]."""
     tolerance: Annotated[float | None, if_given(float, "none")] = None
-    """Largest error allowed in phi and u/radius [rad]. If given, DOP853 is used and chooses its own timesteps."""
+    """Largest error allowed in phi and u/radius [rad]. If given, the integrator and its timesteps are chosen for it."""
     friction: float = 1.0
     """Coefficient of friction. A contact slips beyond it; other ways of rolling only say when a real can would."""
 

@@ -110,7 +110,7 @@ class Sweep:
     """Duration of each motion [s]."""
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
-    integrator: Annotated[Integrator | None, if_given(Integrator, "DOP853 to the tolerance")] = None
+    integrator: Annotated[Integrator | None, if_given(Integrator, "what keeps the tolerance")] = None
     """Integrator with a fixed timestep: one of MuJoCo's, by its name in MJCF, DOP853 or GaussJackson."""
     timestep: float = 1e-3
     """Timestep of such an integrator, and what a contact is tuned to [s]."""

@@ -160,13 +160,14 @@ class Setting:
         """Return the setting of a call in which the integrator may be left out; None means RK4, or the tolerance's.
 
         Raises:
-          ParameterError: if a field is not allowed, or a tolerance comes with an integrator that does not keep it.
+          ParameterError: if a field is not allowed, or both a tolerance and an integrator are given.
         """
         chosen = cls.integrator if integrator is None else integrator
         setting = cls(rolling, chosen, timestep, tolerance, friction, softness)
-        if tolerance is not None and integrator not in (None, DOP853):
+        if tolerance is not None and integrator is not None:
             raise ParameterError(
-                f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
+                "give a tolerance or an integrator: a tolerance chooses the integrator that keeps it, got integrator "
+                f"{integrator!r}"
             )
         return setting
 

@@ -60,14 +60,17 @@ _NEAREST = 10.0
 runs shows how much the motion amplifies."""
 _LOOSE = 3e-5
 """Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
-_PILOT = 1e-5
+_PILOT = 1e-4
 """Local tolerance of the run of DOP853 that shows how long a timestep of Gauss-Jackson may be."""
 _ASTRAY = 0.1
 """Largest distance [rad], relative beyond 1 rad, of that run from those of Gauss-Jackson at the end."""
 _FINER = 1.2
-"""Timestep of one run of Gauss-Jackson over that of the next, whose error is a ninth at order 12."""
-_TRIES = 2
-"""Number of finer runs of Gauss-Jackson before DOP853 is taken."""
+"""Timestep of one run of Gauss-Jackson over that of the next."""
+_GAIN = 9.0
+"""Error of one run of Gauss-Jackson over that of the next, 1.2^12."""
+_CHEAPER = 0.8
+"""Largest number of evaluations of Gauss-Jackson over those of DOP853 to the tolerance, at which it is tried: it takes
+two runs that are nearly alike, where the first of two runs of DOP853 takes three quarters of the second one."""
 _COMPARED = 64
 """Largest number of samples at which two runs are compared; they are spread over the motion as unevenly as the golden
 section, so that no period is a multiple of the gaps. A run that is only compared has no others, as a sample in every
@@ -243,20 +246,22 @@ class Solver:
                 start, times[-1:], tolerance=_PILOT, scale=self._scale, limit=_EVALUATIONS, recorder=pilot
             )
             timestep, evaluations = plan(pilot.ends, tolerance, _PILOT)
-            if not evaluations < self._integrator.evaluations * (_PILOT * _RATIO / (_FIRST * tolerance)) ** (1 / 8):
+            finer = (_PILOT * _RATIO / (_FIRST * tolerance)) ** (1 / 8)
+            if not evaluations < _CHEAPER * finer * self._integrator.evaluations:
                 return None
-            few, safety, first = _few(len(times)), _safety(tolerance), None
+            few, safety, rounding = _few(len(times)), _safety(tolerance), None
             coarse = method.run(start + _NUDGE * self._scale, times[few], timestep)
-            for _ in range(_TRIES):
+            while True:
                 timestep /= _FINER
                 recorder = Recorder(self._model, self._scene, friction)
                 fine = method.run(start, times, timestep, recorder)
                 distance = self._distance(coarse, fine[few], start)
-                first = distance if first is None else first
-                rounding = _ROUNDING_OVER_NUDGE * first
+                first, rounding = rounding is None, rounding or _ROUNDING_OVER_NUDGE * distance
                 estimate = max(safety * distance, self._drift(recorder.record), rounding)
                 if estimate <= tolerance and self._distance(end[None], fine[-1:], start) <= _ASTRAY:
                     return Solution(fine, estimate, recorder.record, GAUSS_JACKSON)
+                if not first or _SAFETY_BY_CHANCE * distance > _GAIN * tolerance:  # the next run would not reach it
+                    return None
                 coarse, safety = fine[few], _SAFETY_BY_CHANCE
         except DivergenceError:
             pass

@@ -6,6 +6,7 @@ import pytest
 
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies.benchmark import frontier
+from mjbeer.studies.benchmark.curves import CHOSEN
 from mjbeer.studies.benchmark.points import Point
 
 
@@ -60,6 +61,6 @@ def test_a_failed_point_has_an_infinite_error() -> None:
 
 def test_fixed_and_asked_for() -> None:
     fixed = [point(time, error, method="DOP853") for time, error in ((1, 1e-3), (2, 1e-7))]
-    asked = [point(5, 1e-8, method="DOP853", knob="tolerance", value=10.0**-6)]
+    asked = [point(5, 1e-8, method=CHOSEN, knob="tolerance", value=10.0**-6)]
     assert frontier.fixed_and_global([*fixed, *asked], 1e-6) == (fixed[1], asked[0])
     assert frontier.fixed_and_global(fixed, 1e-9) == (None, None)

@@ -23,7 +23,7 @@ def test_the_diagram_names_everything_that_it_shows(tmp_path: pathlib.Path, monk
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "diagram.svg").read_text())
     for case in stored.cases:
         assert any(text.startswith(f"{case}: {in_words(CASES[case].scene)}") for text in texts)
-    for label in ("RK4, contact", "DOP853 to a tolerance, reduced", "the best of mjbeer", "heyoka", "SciPy LSODA"):
+    for label in ("RK4, contact", "mjbeer to a tolerance, reduced", "the best of mjbeer", "heyoka", "SciPy LSODA"):
         assert label in texts
     assert any(text.startswith("DOP853 ") and text.endswith(" ms") for text in texts)
 

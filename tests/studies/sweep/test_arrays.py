@@ -42,7 +42,7 @@ def test_it_is_described_in_a_line_and_in_a_table(swept: Sweep) -> None:
     )
     table = swept._repr_html_()
     assert "period of the swing: 0.3" in table
-    assert "reduced, DOP853 to a tolerance of 1e-06 rad" in table
+    assert "reduced, to a tolerance of 1e-06 rad" in table
     assert "incline[1] = 1.0472, fill[0] = 0.3: period: no equilibrium" in table
 
 

@@ -8,6 +8,8 @@ from mjbeer.studies.cases import INTERVAL
 from mjbeer.theory.scene import Scene
 
 TIMESTEP, TOLERANCE = "timestep", "tolerance"
+CHOSEN = "mjbeer"
+"""The method of runs to a tolerance, which choose their integrator and its steps."""
 _COARSEST, _RUNGS = 16e-3, 10
 _COARSEST_DOP853, _RUNGS_DOP853 = 128e-3, 15
 _COARSEST_GAUSS_JACKSON, _RUNGS_GAUSS_JACKSON = 32e-3, 29
@@ -22,7 +24,7 @@ class Curve:
     way: str
     """A way of rolling, the name of a setting as people usually write it (USUAL), or the name of another tool."""
     method: str
-    """The integrator; empty for another tool, which has its own."""
+    """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
     knob: str
     """What is varied along the curve: "timestep" [s] or "tolerance"."""
 
@@ -59,7 +61,7 @@ def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
             continue
         ladders |= {Curve(way, integrator, TIMESTEP): steps for integrator in INTEGRATORS}
         ladders[Curve(way, DOP853, TIMESTEP)] = large
-        ladders[Curve(way, DOP853, TOLERANCE)] = allowed
+        ladders[Curve(way, CHOSEN, TOLERANCE)] = allowed
     ladders[Curve("reduced", GAUSS_JACKSON, TIMESTEP)] = dense
     for name, setting in USUAL.items():
         if supported(scene, setting.rolling):

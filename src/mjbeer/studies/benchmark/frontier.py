@@ -7,7 +7,7 @@ import numpy as np
 
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import ROLLINGS, USUAL
-from mjbeer.studies.benchmark.curves import Curve
+from mjbeer.studies.benchmark.curves import CHOSEN, TIMESTEP, TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Point
 
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
@@ -82,7 +82,12 @@ def advise(points: list[Point], tolerance: float, way: str | None = None) -> Poi
 
 
 def fixed_and_global(points: list[Point], error: float) -> tuple[Point | None, Point | None]:
-    """Return two points of DOP853: the fastest fixed timestep for an `error` [rad], and the run to that tolerance."""
-    fixed = cheapest([point for point in points if point.curve == Curve("reduced", "DOP853", "timestep")], error)
-    adaptive = [point for point in points if point.curve == Curve("reduced", "DOP853", "tolerance")]
-    return fixed, next((point for point in adaptive if math.isclose(point.value, error, rel_tol=1e-9)), None)
+    """Return two points: the fastest fixed timestep of any integrator for an `error` [rad], and the run to it."""
+    fixed = cheapest([point for point in points if point.way == "reduced" and point.knob == TIMESTEP], error)
+    return fixed, at(points, Curve("reduced", CHOSEN, TOLERANCE), error)
+
+
+def at(points: list[Point], curve: Curve, value: float) -> Point | None:
+    """Return the point of a curve at a value of its knob; None if there is none."""
+    on_curve = (point for point in points if point.curve == curve)
+    return next((point for point in on_curve if math.isclose(point.value, value, rel_tol=1e-9)), None)

@@ -11,14 +11,15 @@ from mjbeer.model.setting import GAUSS_JACKSON, ROLLINGS, USUAL
 from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.curves import TOLERANCE, Curve
+from mjbeer.studies.benchmark.curves import CHOSEN, TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import CASES
 from mjbeer.theory.words import in_degrees, in_words
 
 _METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2, "GaussJackson": 6}
-"""Colours of the integrators."""
+_METHODS[CHOSEN] = _METHODS["DOP853"]
+"""Colours of the integrators; runs to a tolerance have hollow markers."""
 _LINES = {"reduced": ("-", "o"), "equality": ("--", "s"), "contact": (":", "^")}
 """Lines and markers of the ways of rolling."""
 _USUAL = {"equality, slide first": "X", "equality, hinge first": "P", "contact, defaults": "*"}

@@ -5,7 +5,8 @@ import math
 from mjbeer.model.setting import DOP853, ROLLINGS, USUAL
 from mjbeer.output.table import Table
 from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, aligned
+from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve, aligned
+from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.convergence import Convergence, convergence
 
@@ -68,16 +69,25 @@ def others(study: Benchmark) -> Table:
 
 
 def tolerances(study: Benchmark) -> Table:
-    """Return the run times of DOP853 to a tolerance beside those with the best fixed timestep, known in advance."""
+    """Return the run times to a tolerance, beside those of the best fixed timestep, and of SciPy's best method.
+
+    A whole call is `mjbeer.simulate` from the scene to the trajectory, with all that a trajectory says about itself.
+    """
     rows = []
     for case in study.cases:
+        points = study.of(case)
+        rivals = [point for point in points if point.way in ("SciPy DOP853", "SciPy LSODA")]
         for digits in range(3, 13):
-            fixed, adaptive = frontier.fixed_and_global(study.of(case), 10.0**-digits)
-            if fixed and adaptive:
+            tolerance = 10.0**-digits
+            fixed, adaptive = frontier.fixed_and_global(points, tolerance)
+            whole = frontier.at(points, Curve(WHOLE, "", TOLERANCE), tolerance)
+            if fixed and adaptive and whole:
                 row = (f"{case}, 1e-{digits}", milliseconds(fixed.time), milliseconds(adaptive.time))
-                rows.append((*row, f"{adaptive.time / fixed.time:.2f}", f"{adaptive.error:.1e}"))
-    columns = ("tolerance [rad]", "fixed timestep", "to the tolerance", "ratio", "its error [rad]")
-    return Table("DOP853 to a tolerance, and with the fastest fixed timestep that meets it", columns, rows)
+                row += (f"{adaptive.time / fixed.time:.2f}", f"{adaptive.error:.1e}", milliseconds(whole.time))
+                rows.append((*row, _ratio(frontier.time_for(rivals, tolerance) / whole.time)))
+    columns = ("tolerance [rad]", "best fixed timestep", "to the tolerance", "ratio", "its error [rad]")
+    title = "Run time to a tolerance, with the fastest fixed timestep that meets it, and of whole calls"
+    return Table(title, (*columns, "whole call", "SciPy's best over it"), rows)
 
 
 def usual(study: Benchmark) -> Table:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import messages, require
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import DOP853, FRICTION, OWN, Integrator, Rolling, Setting
+from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output.terminal import STDERR, progress_bar
 from mjbeer.simulation.run import Run
 from mjbeer.studies.sweep import files
@@ -205,7 +205,7 @@ def _about(work: Work) -> dict[str, Any]:
     setting = work.setting
     stepped = f"{setting.integrator} at {setting.timestep:g} s"
     if setting.tolerance is not None:
-        stepped = f"{DOP853} to a tolerance of {setting.tolerance:g} rad"
+        stepped = f"to a tolerance of {setting.tolerance:g} rad"
     return {
         "make": label(work.make),
         "defined in": getattr(work.make, "__module__", ""),
