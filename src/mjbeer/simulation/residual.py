@@ -13,6 +13,7 @@ import numpy as np
 from mjbeer.model.engine import quiet
 from mjbeer.model.state import places, read, write
 from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.forces import accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
@@ -34,7 +35,8 @@ def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_cons
     motion = replace(motion, u=radius * motion.roll, u_dot=radius * motion.roll_dot)
     states = write(model, motion)
     slopes = np.concatenate([states[:, model.nq :], _accelerations(model, scene, states, exact_constraint)], axis=1)
-    found, right = read(model, scene, slopes, times).phi_dot, scene.oscillator.acceleration(motion.phi, motion.phi_dot)
+    found = read(model, scene, slopes, times).phi_dot
+    _, right = accelerations(scene, motion.phi, motion.phi_dot, motion.u_dot)
     oscillator = scene.oscillator
     small = float((_SMALL_SWING * oscillator.depth / oscillator.inertia(motion.phi)).min())
     largest, difference = max(float(np.abs(right).max()), small), float(np.abs(found - right).max())
