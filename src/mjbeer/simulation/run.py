@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.setting import DOP853, TUNED, Setting
+from mjbeer.model.setting import TUNED, Setting
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
@@ -57,6 +57,9 @@ class Run(Trajectory):
     estimate: float | None = None
     """Estimated error [rad] of a run with a tolerance, which comes with the run; None without a tolerance."""
 
+    method: str | None = None
+    """The name of the integrator that was chosen for a tolerance; None without one."""
+
     @property
     def rolling(self) -> str:
         """Return how the can was made to roll: "reduced", "equality" or "contact"."""
@@ -64,8 +67,8 @@ class Run(Trajectory):
 
     @property
     def integrator(self) -> str:
-        """Return the name of the integrator, which is "DOP853" with a tolerance."""
-        return self.setting.integrator if self.setting.tolerance is None else DOP853
+        """Return the name of the integrator, which with a tolerance is "DOP853", or "Radau" for a stiff motion."""
+        return self.setting.integrator if self.method is None else self.method
 
     @property
     def timestep(self) -> float | None:
@@ -187,6 +190,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         steps=solution.record,
         way=way,
         estimate=solution.estimate,
+        method=solution.integrator,
     )
 
 

@@ -47,7 +47,8 @@ def simulate(
     `times` [s] from 0 on, which with MuJoCo's integrators must be multiples of the timestep. Samples at every timestep
     end with the first multiple of the timestep at or after `duration`.
 
-    With a `tolerance` [rad] the integrator is DOP853, which chooses its own steps. The run is repeated until the
+    With a `tolerance` [rad] the integrator is DOP853, which chooses its own steps, or for a motion that strong damping
+    makes stiff the implicit method Radau, which is slower; the trajectory says which. The run is repeated until the
     error of phi and u/a over the whole motion is below the tolerance, relative to the angle where that exceeds 1 rad;
     the trajectory has the estimate. `timestep` is then the sampling interval, and what a contact is tuned to. The
     tolerance bounds the error of integrating the model. The model itself is exact for "reduced" and "equality", but

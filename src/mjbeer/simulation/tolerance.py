@@ -1,4 +1,4 @@
-"""Integration to a global tolerance, with an error estimate from the distance of two runs of DOP853."""
+"""Integration to a global tolerance, with an error estimate from the distance of two runs of DOP853, or of Radau."""
 
 import math
 from dataclasses import dataclass
@@ -7,10 +7,13 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError
+from mjbeer.model.setting import DOP853
 from mjbeer.model.state import read
-from mjbeer.simulation import residual
+from mjbeer.simulation import radau, residual
 from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.radau import Radau
 from mjbeer.simulation.recorder import Recorder
+from mjbeer.theory.losses import stiffest
 from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
@@ -56,6 +59,9 @@ of the barrier as a quarter of the largest kinetic energy (measured for swings o
 _NEAREST = 10.0
 """How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
 runs shows how much the motion amplifies."""
+_STIFF = 3e5
+"""Duration over the time in which damping brings can and load together, from which on a run takes an implicit method.
+DOP853 has no step that is longer than 6.4 of these times, and would take a million evaluations or more."""
 _COMPARED = 64
 """Largest number of samples at which two runs are compared; they are spread over the motion as unevenly as the golden
 section, so that no period is a multiple of the gaps. A run that is only compared has no others, as a sample in every
@@ -75,6 +81,8 @@ class Solution:
     """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
     record: Record | None = None
     """The record of all steps, if it was asked for."""
+    integrator: str | None = None
+    """The name of the integrator, if it was chosen for a tolerance."""
 
 
 class Solver:
@@ -82,7 +90,8 @@ class Solver:
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData | None = None) -> None:
         self._model, self._scene = model, scene
-        self._integrator, self._scale = Integrator(model, data), scales(model, scene)
+        self._explicit, self._scale = Integrator(model, data), scales(model, scene)
+        self._integrator: Integrator | Radau = self._explicit
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
@@ -101,6 +110,8 @@ class Solver:
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
+        stiff = stiffest(self._scene) * times[-1] > _STIFF
+        self._integrator = Radau(self._explicit) if stiff else self._explicit
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
         safety = _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
         few = _few(len(times))
@@ -133,14 +144,15 @@ class Solver:
         if rounding > tolerance:
             rounding = self._rounding_effect(fine[few], start=start, times=times[few], local=local, tolerance=tolerance)
         loss = self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
-        return Solution(fine, max(estimate, drift, rounding, loss), record)
+        return Solution(fine, max(estimate, drift, rounding, loss), record, radau.NAME if stiff else DOP853)
 
     def _drift(self, record: Record) -> float:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum implies.
 
-        A contact has no such drift to judge by: it takes energy, and gives it back.
+        A contact has no such drift to judge by: it takes energy, and gives it back. What damping takes in the long
+        steps of an implicit method is not known to as many digits as these have.
         """
-        if self._model.npair:
+        if self._model.npair or isinstance(self._integrator, Radau):
             return 0.0
         gap = _FAR * record.to_barrier
         share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST

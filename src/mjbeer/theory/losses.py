@@ -21,6 +21,8 @@ _RELAXED = 3.0
 """Largest step over the time in which damping brings can and load together. The method is unstable from 6.4 on."""
 _TURNED = 0.5
 """Largest step over the time in which the load swings, or turns, by a radian."""
+_LARGEST = 1e10
+"""Largest rate that MuJoCo does not call diverged [rad/s]."""
 _MOST = 16
 """Largest number of steps of theory between two samples."""
 
@@ -58,19 +60,23 @@ def losses(scene: Scene, motion: Coordinates) -> Losses:
 def _of_stiff(scene: Scene, motion: Coordinates, step: np.ndarray) -> Losses:
     """Return the losses of a motion whose steps are longer than can and load need to come together.
 
-    From each sample on, the slip rate falls exponentially to what it is at the next one.
+    What the slip rate is beside that of the motion which follows falls exponentially, and the latter changes slowly.
     """
-    slip, effective_mass = slip_rate(scene, motion.phi_dot, motion.u_dot), _effective_mass(scene)
-    torque, along = dissipation(scene, motion.phi_dot, motion.u_dot)
-    rate = np.maximum(stiffness(scene, motion.phi, motion.phi_dot, motion.u_dot)[:-1], np.finfo(float).tiny)
-    short = -np.expm1(-rate * step) / rate
-    late, excess, more = torque[1:], slip[:-1] - slip[1:], torque[:-1] - torque[1:]
-    dragged = scene.drag * np.abs(motion.u_dot) ** 3
-    work = step * (late * slip[1:] + (dragged[:-1] + dragged[1:]) / 2)
-    work += short * (late * excess + more * slip[1:]) - np.expm1(-2 * rate * step) / (2 * rate) * more * excess
-    speed = -(step * along[1:] + short * (along[:-1] - along[1:])) / effective_mass
-    way = -(step**2 / 2 * along[1:] + (step - short) / rate * (along[:-1] - along[1:])) / effective_mass
-    return Losses(work=work, speed=speed, way=way, swing=None)
+    state, effective_mass = (motion.phi, motion.phi_dot, motion.u_dot), _effective_mass(scene)
+    u_ddot, phi_ddot = accelerations(scene, *state)
+    rate, slip = np.maximum(stiffness(scene, *state), np.finfo(float).tiny), slip_rate(scene, *state[1:])
+    beside = -slip_rate(scene, phi_ddot, u_ddot) / rate
+    lasting, slope = slip - beside, scene.damping_law.slope(slip)
+    torque, drag = scene.damping_law.torque(lasting), scene.drag * motion.u_dot * np.abs(motion.u_dot)
+    work, force = lasting * torque + drag * motion.u_dot, torque / scene.can.radius + drag
+    rate, beside, first = rate[:-1], beside[:-1], slope[:-1] * beside[:-1]
+    short, shorter = -np.expm1(-rate * step) / rate, -np.expm1(-2 * rate * step) / (2 * rate)
+    done = step * (work[:-1] + work[1:]) / 2
+    done += short * (lasting[:-1] * first + torque[:-1] * beside) + shorter * first * beside
+    further = first / scene.can.radius
+    impulse = step * (force[:-1] + force[1:]) / 2 + short * further
+    way = step**2 * (2 * force[:-1] + force[1:]) / 6 + (step - short) / rate * further
+    return Losses(work=done, speed=impulse / effective_mass, way=way / effective_mass, swing=None)
 
 
 def _effective_mass(scene: Scene) -> float:
@@ -104,6 +110,16 @@ def stiffness(scene: Scene, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndar
     slope = scene.damping_law.slope(slip_rate(scene, phi_dot, u_dot))
     drag = 2 * scene.drag * np.abs(u_dot) / mass
     return slope * frozen / (radius**2 * mass * scene.oscillator.inertia(phi)) + drag
+
+
+def stiffest(scene: Scene) -> float:
+    """Return the largest rate at which damping brings can and load together [1/s], at the slip rates that may last.
+
+    The weight of can and load, pulling at the rim, drives them apart at most at these.
+    """
+    slip = min(scene.damping_law.rate(scene.mass * scene.gravity * scene.can.radius), _LARGEST)
+    angles = np.linspace(0, math.pi, 91)
+    return float(stiffness(scene, angles, np.full_like(angles, slip), np.zeros_like(angles)).max())
 
 
 def forgetting(scene: Scene, phi_dot: np.ndarray, u_dot: np.ndarray) -> np.ndarray:
