@@ -18,9 +18,12 @@ NAME = "Radau"
 """The name of this integrator."""
 _FINEST = 100 * float(np.finfo(float).eps)
 """Smallest local tolerance that SciPy's method takes as it is."""
-_ASIDE = 1e-6
+_ASIDE = 1e-3
 """Distance of the states from whose accelerations the Jacobian is, relative to the size of a component. Differences on
-both sides have an error of the square of it, and rounding of 1e-10, far more digits than Newton's method needs."""
+both sides are then right to 1e-6, of which Newton's method needs a few digits. With smaller ones the rounding of a
+torque that is stiff, and so the difference of two rates times a large number, would hide all the others."""
+_EVALUATIONS = 1_000_000
+"""Largest number of evaluations in one run, which take some minutes."""
 
 
 class Radau:
@@ -66,7 +69,7 @@ class Radau:
                         message = method.step()
                     if method.status == "failed" or not np.isfinite(method.y).all():
                         raise DivergenceError(f"the {NAME} run diverged at t = {method.t:.6g} s: {message}")
-                    if self.evaluations > limit:
+                    if self.evaluations > min(limit, _EVALUATIONS):
                         raise DivergenceError(
                             f"the {NAME} run was given up at t = {method.t:.6g} s after {self.evaluations} evaluations"
                         )

@@ -5,6 +5,7 @@ is far smaller than another, or an arm far shorter than the way that the can rol
 these sums. All runs of such a model are wrong alike, so that no comparison of runs can show it.
 """
 
+import copy
 from dataclasses import replace
 
 import mujoco
@@ -57,7 +58,12 @@ def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, 
 
 
 def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> np.ndarray:
-    """Return the accelerations of the model's joints at `states`, shape (states, nv)."""
+    """Return the accelerations of the model's joints at `states`, shape (states, nv).
+
+    Under MuJoCo's integrator "discrete" they would be changes over a whole step, over the step.
+    """
+    model = copy.copy(model)
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     data, accelerations = mujoco.MjData(model), np.empty((len(states), model.nv))
     inertia = np.empty((model.nv, model.nv))
     rolling = None if exact_constraint else _rolling(model, scene)
