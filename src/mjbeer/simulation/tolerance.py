@@ -62,6 +62,9 @@ runs shows how much the motion amplifies."""
 _STIFF = 3e5
 """Duration over the time in which damping brings can and load together, from which on a run takes an implicit method.
 DOP853 has no step that is longer than 6.4 of these times, and would take a million evaluations or more."""
+_STIFFEST = 1e12
+"""Largest inverse of that time [1/s]. A torque changes by as much, times the rounding of a rate, 1e-15 rad/s or more,
+over the inertia: a thousandth of a frozen load's accelerations, 100 rad/s^2."""
 _COMPARED = 64
 """Largest number of samples at which two runs are compared; they are spread over the motion as unevenly as the golden
 section, so that no period is a multiple of the gaps. A run that is only compared has no others, as a sample in every
@@ -110,7 +113,13 @@ class Solver:
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
-        stiff = stiffest(self._scene) * times[-1] > _STIFF
+        stiff = (rate := stiffest(self._scene)) * times[-1] > _STIFF
+        if stiff and rate > _STIFFEST:
+            raise _not_reached(
+                tolerance,
+                f"damping would bring can and load together {rate:.2g} times a second (at most {_STIFFEST:g}), and "
+                "rounding of the slip rate hides its torque; a frozen load is their limit",
+            )
         self._integrator = Radau(self._explicit) if stiff else self._explicit
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
         safety = _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE

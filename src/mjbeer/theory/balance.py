@@ -1,7 +1,6 @@
 """What a motion with damping or drag should conserve, and does not: what it loses, less what these forces take."""
 
 import numpy as np
-from scipy.linalg import solve_banded
 
 from mjbeer.theory import conserved
 from mjbeer.theory.coordinates import Coordinates
@@ -71,6 +70,8 @@ def _swing(scene: Scene, motion: Coordinates) -> np.ndarray:
 
 def _relax(kept: np.ndarray, added: np.ndarray, first: float) -> np.ndarray:
     """Return what is `first`, of which a step keeps the share `kept` and gains `added`, before all steps and after."""
+    from scipy.linalg import solve_banded  # only here, as most scenes have no losses
+
     matrix = np.stack([np.ones(len(kept) + 1), np.append(-kept, 0.0)])
     return solve_banded((1, 0), matrix, np.append(first, added), check_finite=False)
 

@@ -6,17 +6,16 @@ motion of theory from the first one. It is computed by the eighth-order Runge-Ku
 error is below that of any run which takes the same steps.
 """
 
+import functools
 import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import DOP853
 
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import accelerations, dissipation, slip_rate
 from mjbeer.theory.scene import Scene
 
-_A, _B, _C = DOP853.A[:12, :12], DOP853.B, DOP853.C[:12]
 _RELAXED = 3.0
 """Largest step over the time in which damping brings can and load together. The method is unstable from 6.4 on."""
 _TURNED = 0.5
@@ -66,8 +65,8 @@ def _of_stiff(scene: Scene, motion: Coordinates, step: np.ndarray) -> Losses:
     u_ddot, phi_ddot = accelerations(scene, *state)
     rate, slip = np.maximum(stiffness(scene, *state), np.finfo(float).tiny), slip_rate(scene, *state[1:])
     beside = -slip_rate(scene, phi_ddot, u_ddot) / rate
-    lasting, slope = slip - beside, scene.damping_law.slope(slip)
-    torque, drag = scene.damping_law.torque(lasting), scene.drag * motion.u_dot * np.abs(motion.u_dot)
+    lasting, slope = slip - beside, np.asarray(scene.damping_law.slope(slip))
+    torque, drag = np.asarray(scene.damping_law.torque(lasting)), scene.drag * motion.u_dot * np.abs(motion.u_dot)
     work, force = lasting * torque + drag * motion.u_dot, torque / scene.can.radius + drag
     rate, beside, first = rate[:-1], beside[:-1], slope[:-1] * beside[:-1]
     short, shorter = -np.expm1(-rate * step) / rate, -np.expm1(-2 * rate * step) / (2 * rate)
@@ -139,12 +138,21 @@ def _rates(scene: Scene, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray
     )
 
 
+@functools.cache
+def _method() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the coefficients of a step: those of the stages, the weights, and the times of the stages."""
+    from scipy.integrate import DOP853  # only here, as most scenes have no losses
+
+    return DOP853.A[:12, :12], DOP853.B, DOP853.C[:12]
+
+
 def _step(scene: Scene, state: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the states phi, phi_dot, u_dot after a step [s] of theory, the losses in it, and that of the way."""
-    slopes, rates = np.zeros((len(_B), *state.shape)), np.zeros((len(_B), *state.shape))
-    for stage in range(len(_B)):
-        at = state + step * np.tensordot(_A[stage, :stage], slopes[:stage], 1) if stage else state
+    stages, weights, times = _method()
+    slopes, rates = np.zeros((len(weights), *state.shape)), np.zeros((len(weights), *state.shape))
+    for stage in range(len(weights)):
+        at = state + step * np.tensordot(stages[stage, :stage], slopes[:stage], 1) if stage else state
         u_ddot, phi_ddot = accelerations(scene, *at)
         slopes[stage], rates[stage] = (at[1], phi_ddot, u_ddot), _rates(scene, *at)
-    end, gained = state + step * np.tensordot(_B, slopes, 1), step * np.tensordot(_B, rates, 1)
-    return end, gained, step**2 * np.tensordot(_B * (1 - _C), rates[:, 1], 1)
+    end, gained = state + step * np.tensordot(weights, slopes, 1), step * np.tensordot(weights, rates, 1)
+    return end, gained, step**2 * np.tensordot(weights * (1 - times), rates[:, 1], 1)
