@@ -150,11 +150,11 @@ def test_a_second_run_estimates_the_error_of_implicit_methods(integrator: str, r
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])
-@pytest.mark.parametrize("damping", [1e2, 1e6])
+@pytest.mark.parametrize("damping", [1e3, 1e6])
 def test_a_stiff_motion_keeps_its_tolerance(damping: float, rolling: str) -> None:
     scene = sliding(can=METAL, damping=damping)
-    times = np.linspace(0, 0.5, 11)
-    run = simulate(scene, 0.5, 1.0, rolling=rolling, times=times, tolerance=1e-9)
+    times = np.linspace(0, 0.2, 5)
+    run = simulate(scene, 0.2, 1.0, rolling=rolling, times=times, tolerance=1e-9)
     assert run.integrator == "Radau"
     assert run.timestep is None
     assert run.error_estimate is not None
