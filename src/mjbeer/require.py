@@ -1,11 +1,9 @@
 """Checks of arguments: each returns the valid value, or raises an error that names the value and what is allowed."""
 
-import difflib
 import math
 import numbers
 import os
 import pathlib
-import reprlib
 import warnings
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
@@ -15,6 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from mjbeer.exceptions import AngleWarning, ParameterError
+from mjbeer.messages import in_unit, shown, spelled_alike
 
 T = TypeVar("T")
 Name = TypeVar("Name", bound=str)
@@ -24,10 +23,6 @@ SMALLEST, LARGEST = 1e-50, 1e50
 quotient of six such numbers is between 1e-300 and 1e300, which a double can hold."""
 _FARTHEST = 1e10
 """Largest magnitude of a start angle [rad]: there doubles are 2e-6 rad apart. MuJoCo has the same limit (mjMAXVAL)."""
-_SHOWN_ENTRIES = 4
-"""Number of entries of an array that a message shows."""
-_SHOWN_CHARACTERS = 80
-"""Length at which a message abbreviates a value."""
 
 
 def number(name: str, value: float, unit: str = "") -> float:
@@ -40,7 +35,7 @@ def number(name: str, value: float, unit: str = "") -> float:
     """
     result = _float(value)
     if not math.isfinite(result):
-        raise ParameterError(f"{name} must be a finite number{_in(unit)}, got {shown(value)}")
+        raise ParameterError(f"{name} must be a finite number{in_unit(unit)}, got {shown(value)}")
     return result
 
 
@@ -52,9 +47,9 @@ def positive(name: str, value: float, unit: str = "") -> float:
     """
     result = number(name, value, unit)
     if result <= 0:
-        raise ParameterError(f"{name} must be greater than 0{_in(unit)}, got {shown(value)}")
+        raise ParameterError(f"{name} must be greater than 0{in_unit(unit)}, got {shown(value)}")
     if not SMALLEST <= result <= LARGEST:
-        raise ParameterError(f"{name} must be between {SMALLEST:g} and {LARGEST:g}{_in(unit)}, got {shown(value)}")
+        raise ParameterError(f"{name} must be between {SMALLEST:g} and {LARGEST:g}{in_unit(unit)}, got {shown(value)}")
     return result
 
 
@@ -66,10 +61,10 @@ def non_negative(name: str, value: float, unit: str = "") -> float:
     """
     result = number(name, value, unit)
     if result < 0:
-        raise ParameterError(f"{name} must be 0 or greater{_in(unit)}, got {shown(value)}")
+        raise ParameterError(f"{name} must be 0 or greater{in_unit(unit)}, got {shown(value)}")
     if result != 0 and not SMALLEST <= result <= LARGEST:
         raise ParameterError(
-            f"{name} must be 0, or between {SMALLEST:g} and {LARGEST:g}{_in(unit)}, got {shown(value)}"
+            f"{name} must be 0, or between {SMALLEST:g} and {LARGEST:g}{in_unit(unit)}, got {shown(value)}"
         )
     return result
 
@@ -112,7 +107,8 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
     entries = _entries(value)
     if entries is None or not len(entries):
         raise ParameterError(
-            f"{name} must be a list or a one-dimensional array of one or more numbers{_in(unit)}, got {shown(value)}"
+            f"{name} must be a list or a one-dimensional array of one or more numbers{in_unit(unit)}, "
+            f"got {shown(value)}"
         )
     if isinstance(entries, np.ndarray) and entries.dtype != object and not np.ma.is_masked(entries):
         with np.errstate(over="ignore"):  # a long double may become infinite
@@ -155,12 +151,6 @@ def choice(name: str, value: str, allowed: Iterable[Name]) -> Name:
         question = f": did you mean {alike}?" if alike else ""
         raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}{question}")
     return names[value]
-
-
-def spelled_alike(word: str, allowed: Iterable[str]) -> list[str]:
-    """Return the one or two allowed words that are spelled most like this one, in capitals or not; empty if none is."""
-    folded = {each.casefold(): each for each in allowed}
-    return [folded[each] for each in difflib.get_close_matches(word.casefold(), folded, n=2)]
 
 
 def path(value: str | os.PathLike[str]) -> pathlib.Path:
@@ -234,42 +224,6 @@ def from_given(**given: float) -> Generator[None]:
         raise ParameterError(f"{error}, which follows from {listed}") from None
 
 
-def shown(value: object) -> str:
-    """Return a value as messages show it: in one short line, and NumPy's numbers as plain ones."""
-    try:
-        text = _PLAIN.repr(value)
-    except Exception:  # whatever the __repr__ of an unknown object raises, its type can be named
-        text = f"<{type(value).__name__}>"
-    return " ".join(text.splitlines())
-
-
-class _Plain(reprlib.Repr):
-    """Abbreviates long values, also within lists."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.maxstring = self.maxother = _SHOWN_CHARACTERS
-
-    def repr_int(self, x: int, level: int) -> str:
-        digits = math.ceil(x.bit_length() * math.log10(2))
-        return repr(x) if digits < _SHOWN_CHARACTERS else f"an integer of about {digits} digits"
-
-    def repr1(self, x: Any, level: int) -> str:
-        if x is np.ma.masked:
-            return "masked"
-        if isinstance(x, np.generic) or (isinstance(x, np.ndarray) and x.ndim == 0):
-            plain = x.item()
-            return str(x) if isinstance(plain, (np.generic, np.ndarray)) else super().repr1(plain, level)
-        if isinstance(x, np.ndarray):
-            entries = [super(_Plain, self).repr1(each, level) for each in x.ravel()[:_SHOWN_ENTRIES].tolist()]
-            entries += ["..."] if x.size > _SHOWN_ENTRIES else []
-            return f"{type(x).__name__} of shape {x.shape} and type {x.dtype}: [{', '.join(entries)}]"
-        return super().repr1(x, level)
-
-
-_PLAIN = _Plain()
-
-
 def _float(value: Any) -> float:
     """Return a number as a float, which may be infinite, and NaN for what is no number."""
     try:
@@ -296,7 +250,3 @@ def _entries(value: Any) -> Any:
     except Exception:  # whatever an object of another library raises, it is no array
         return None
     return array if array.ndim == 1 and array.dtype.kind in "iufO" else None
-
-
-def _in(unit: str) -> str:
-    return f" [{unit}]" if unit else ""

@@ -194,7 +194,7 @@ def test_a_run_that_is_only_compared_has_few_samples(monkeypatch: pytest.MonkeyP
 
     run = Integrator.run
     monkeypatch.setattr(Integrator, "run", look)
-    many = simulate(sliding(), 2.0, 1.0, tolerance=1e-8)
+    many = simulate(sliding(), 2.0, 1.0, tolerance=1e-4)
     compared, wanted = seen
     assert len(wanted) > 2000
     assert len(compared) <= 64
@@ -202,6 +202,6 @@ def test_a_run_that_is_only_compared_has_few_samples(monkeypatch: pytest.MonkeyP
     assert compared[-1] == wanted[-1]
     # Multiples of the golden section have gaps of three lengths, the largest 2.6 times the mean or less.
     assert np.diff(compared, prepend=0.0).max() < 2.62 * 2.0 / 64
-    few = simulate(sliding(), 2.0, 1.0, tolerance=1e-8, times=[0.0, 2.0])
+    few = simulate(sliding(), 2.0, 1.0, tolerance=1e-4, times=[0.0, 2.0])
     assert many.error_estimate == pytest.approx(few.error_estimate, rel=0.3)
     assert many.phi[-1] == few.phi[-1]

@@ -35,7 +35,7 @@ def saved(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
 
 
 def faults(figure: Figure) -> list[str]:
-    """Return a sentence for each fault of a figure."""
+    """Return a sentence for each fault of a figure that was saved, which has laid it out."""
     boxes = _texts(figure)
     found = [f"{text!r} spells out a letter or a unit" for text, _ in boxes if SPELLED.search(text)]
     whole = figure.bbox.padded(0.5)
@@ -60,7 +60,6 @@ def _texts(figure: Figure) -> list[tuple[str, Bbox]]:
     drawn: list[tuple[str, Bbox]] = []
     original = Text.draw
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()  # lays out
 
     def keep(text: Text, renderer: object, *args: object, **kwargs: object) -> None:
         if text.get_visible() and text.get_text().strip():
@@ -69,7 +68,7 @@ def _texts(figure: Figure) -> list[tuple[str, Bbox]]:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Text, "draw", keep)
-        canvas.draw()
+        figure.draw_without_rendering()
     return drawn
 
 

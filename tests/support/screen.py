@@ -47,6 +47,15 @@ class Screen:
         time.sleep(seconds)
         return self.picture()
 
+    def at_rest(self) -> np.ndarray:
+        """Return the first picture that stays the same for half a second."""
+        end = time.monotonic() + _PATIENCE
+        picture = self.picture()
+        while not np.array_equal(later := self.after(0.5), picture):
+            assert time.monotonic() < end
+            picture = later
+        return picture
+
     def wait(self, until: Callable[[np.ndarray], bool]) -> np.ndarray:
         """Return the first picture for which `until` is true."""
         end = time.monotonic() + _PATIENCE

@@ -68,7 +68,7 @@ def _extended(numbers: Sequence[Any]) -> np.ndarray:
 
 def _product(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
     """Coefficient k of the products of one or several pairs of series, of shape (..., order, cases)."""
-    return (x[..., : k + 1, :] * y[..., k::-1, :]).sum(axis=-2)
+    return np.einsum("...jn,...jn->...n", x[..., : k + 1, :], y[..., k::-1, :])  # with no array in between
 
 
 def _value(series: np.ndarray, step: np.ndarray) -> np.ndarray:

@@ -13,7 +13,8 @@ import pytest
 
 from mjbeer import Can, Load, MjbeerError, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.require import LARGEST, SMALLEST, shown
+from mjbeer.messages import shown
+from mjbeer.require import LARGEST, SMALLEST
 
 NAN, INFINITY = math.nan, math.inf
 BEER = Load(0.2, 0.01, 1e-5)

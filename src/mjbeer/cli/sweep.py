@@ -111,7 +111,7 @@ class Sweep:
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
     integrator: Annotated[Integrator | None, if_given(Integrator, "DOP853 to the tolerance")] = None
-    """Integrator with a fixed timestep: one of MuJoCo's, by its name in MJCF, or DOP853."""
+    """Integrator with a fixed timestep: one of MuJoCo's, by its name in MJCF, DOP853 or GaussJackson."""
     timestep: float = 1e-3
     """Timestep of such an integrator, and what a contact is tuned to [s]."""
     tolerance: Annotated[float | None, if_given(float, "1e-6, without an integrator")] = None

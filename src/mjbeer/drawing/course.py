@@ -91,7 +91,7 @@ class Course:
 
     def positions(self, time: float) -> np.ndarray:
         """Return u from the start [m], phi, roll [rad] and lift [m] of each can at a time [s]."""
-        return np.array([runner.position(time) for runner in self.runners])
+        return np.concatenate([runner.positions(np.array([time])) for runner in self.runners])
 
     def explain(self, time: float) -> None:
         """Draw title, names, chart and results at a `time` [s]."""
@@ -118,8 +118,7 @@ def _chart(length: float, runners: Sequence[Runner]) -> Chart:
     for runner in runners:
         motion = runner.trajectory
         times = np.linspace(0, runner.finish(length), _SMOOTH)
-        way = np.array([runner.position(time)[0] for time in times])
-        lines.append(Line("MuJoCo", times, way, runner.colour))
+        lines.append(Line("MuJoCo", times, runner.positions(times)[:, 0], runner.colour))
         theory = exact(motion.scene, times, motion.phi0, motion.phi_dot0)
         lines.append(Line("theory", times, theory.u - theory.u[0]))
     return Chart("way [m]", lines)

@@ -50,7 +50,10 @@ class Runner:
 
         return float(brentq(ahead, 1e-3, self.trajectory.time[-1], xtol=1e-12))
 
-    def position(self, time: float) -> np.ndarray:
-        """Return u from the start [m], phi, roll [rad] and lift [m] at a time [s], or at the last sample if later."""
-        moment = np.array([min(time, self.trajectory.time[-1])])
-        return coordinates(self.trajectory, moment)[0] - [self.trajectory.u[0], 0, 0, 0]
+    def positions(self, times: np.ndarray) -> np.ndarray:
+        """Return u from the start [m], phi, roll [rad] and lift [m] at some times [s], shape (times, 4).
+
+        At times after the last sample they are those of the last sample.
+        """
+        moments = np.minimum(times, self.trajectory.time[-1])
+        return coordinates(self.trajectory, moments) - [self.trajectory.u[0], 0, 0, 0]

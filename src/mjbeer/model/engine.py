@@ -12,7 +12,7 @@ import mujoco
 
 _lock = threading.Lock()
 _saved: list[tuple[bool, bool]] = []
-"""The log's settings when each `quiet` that is still open was entered."""
+"""The log's settings when the first `quiet` was entered, once for each that is still open."""
 
 
 @contextmanager
@@ -22,15 +22,18 @@ def quiet() -> Generator[None]:
     The setting belongs to the process: runs in several threads share it until the last one ends.
     """
     with _lock:
-        config = mujoco.MjLogConfig.get()
-        _saved.append((config.logto_console, config.logto_file))
-        _set_log(console=False, file=False)
+        if not _saved:  # reading and writing the settings takes longer than a hundred steps
+            config = mujoco.MjLogConfig.get()
+            _saved.append((config.logto_console, config.logto_file))
+            _set_log(console=False, file=False)
+        else:
+            _saved.append(_saved[0])
     try:
         yield
     finally:
         with _lock:
             console, file = _saved.pop()
-            if not _saved:  # what is left is what the first one found, before any changed it
+            if not _saved:
                 _set_log(console, file)
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from mjbeer import require
+from mjbeer import messages, require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 
@@ -39,7 +39,7 @@ def _checked_solref(solref: tuple[float, float]) -> tuple[float, float]:
     if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):
         raise ParameterError(
             "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness [1/s^2] and a "
-            f"damping [1/s], both negated, got {require.shown(solref)}"
+            f"damping [1/s], both negated, got {messages.shown(solref)}"
         )
     return first, second
 
@@ -53,7 +53,7 @@ def _checked_impedance(impedance: tuple[float, float]) -> tuple[float, float]:
     low, high = _IMPEDANCES
     pair = _pair("impedance", impedance)
     if not low <= min(pair) <= max(pair) <= high:
-        raise ParameterError(f"impedance must be two numbers from {low:g} to {high:g}, got {require.shown(impedance)}")
+        raise ParameterError(f"impedance must be two numbers from {low:g} to {high:g}, got {messages.shown(impedance)}")
     return pair
 
 
@@ -64,7 +64,7 @@ def _pair(name: str, value: tuple[float, float]) -> tuple[float, float]:
       ParameterError: if `value` is no list or tuple of two finite numbers.
     """
     if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise ParameterError(f"{name} must be two numbers, got {require.shown(value)}")
+        raise ParameterError(f"{name} must be two numbers, got {messages.shown(value)}")
     return require.number(f"{name}[0]", value[0]), require.number(f"{name}[1]", value[1])
 
 
@@ -146,6 +146,29 @@ class Setting:
                 f"friction must be at least {_LEAST_FRICTION:g}, MuJoCo's smallest (mjMINMU), got {self.friction!r}"
             )
         require.instance("softness", self.softness, Softness)
+
+    @classmethod
+    def of(
+        cls,
+        rolling: Rolling,
+        integrator: Integrator | None,
+        timestep: float,
+        tolerance: float | None,
+        friction: float,
+        softness: Softness = TUNED,
+    ) -> "Setting":
+        """Return the setting of a call in which the integrator may be left out; None means RK4, or the tolerance's.
+
+        Raises:
+          ParameterError: if a field is not allowed, or a tolerance comes with an integrator that does not keep it.
+        """
+        chosen = cls.integrator if integrator is None else integrator
+        setting = cls(rolling, chosen, timestep, tolerance, friction, softness)
+        if tolerance is not None and integrator not in (None, DOP853):
+            raise ParameterError(
+                f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
+            )
+        return setting
 
 
 _DEFAULTS = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)

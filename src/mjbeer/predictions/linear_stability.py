@@ -17,7 +17,8 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 RUNGE_KUTTA = ("RK4", "DOP853")
-"""The integrators that are Runge-Kutta methods; all others are semi-implicit Euler."""
+"""The integrators that are Runge-Kutta methods; MuJoCo's others are semi-implicit Euler. GaussJackson is a
+multistep method, and nothing here is about it."""
 PERIODS = 200
 """Number of periods over which a stable swing must stay bounded."""
 GROWTH = 100.0

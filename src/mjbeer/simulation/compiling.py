@@ -28,7 +28,7 @@ class _Teller(event.Listener):
 @contextmanager
 def told(function: Any) -> Generator[None]:
     """Say in the block, once a process, that a `function` of numba is compiled, if it is and somebody may see it."""
-    if function.signatures:  # it is compiled already
+    if function.overloads:  # it is compiled already; `signatures` would make a list of hashed types
         yield
         return
     with event.install_listener("numba:compile", _Teller()):

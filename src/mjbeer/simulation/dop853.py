@@ -10,7 +10,7 @@ from mjbeer.model.engine import address, quiet, untimed
 from mjbeer.model.state import places
 from mjbeer.simulation import dop853_kernel
 from mjbeer.simulation.compiling import told
-from mjbeer.simulation.recorder import Recorder
+from mjbeer.simulation.recorder import Observer
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -62,7 +62,7 @@ class Integrator:
         tolerance: float = 1e-10,
         scale: np.ndarray | None = None,
         limit: float = math.inf,
-        recorder: Recorder | None = None,
+        recorder: Observer | None = None,
     ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 

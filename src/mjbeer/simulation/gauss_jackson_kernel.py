@@ -33,7 +33,7 @@ _LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
 
 
 @njit(cache=True, error_model="numpy")
-def begin(pointers, views, states, slopes, step, sums, history):
+def begin(pointers, views, states, step, sums, history):
     """Fill the history with the accelerations at the first `COUNT` states, and begin the sums.
 
     The sums are those that give the state in the middle of the first ones, where the formulas err least.
@@ -42,16 +42,16 @@ def begin(pointers, views, states, slopes, step, sums, history):
       pointers: addresses of functions, model and data, as in `dop853_kernel.advance`.
       views: arrays of that data, as in `dop853_kernel.advance`.
       states: the first states, one timestep apart, shape (COUNT, states).
-      slopes: their time derivatives, which are filled in.
       step: the timestep [s].
       sums: the first and the second sum of the accelerations, and what rounding took from each, shape (4, nv).
       history: accelerations, shape (nv, COUNT + BLOCK); the first `COUNT` columns are filled in.
     """
     size = sums.shape[1]
+    slope = np.empty(2 * size)
     for k in range(COUNT):
-        _slope(pointers, views, states[k], slopes[k])
+        _slope(pointers, views, states[k], slope)
         for i in range(size):
-            history[i, k] = slopes[k, size + i]
+            history[i, k] = slope[size + i]
     middle = states[COUNT - 1 - _MIDDLE]
     for i in range(size):
         rate = middle[size + i] / step - _sum(_MIDDLE_RATE, history[i], COUNT)
@@ -97,11 +97,11 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
       times: increasing times of the samples [s].
       samples: states at `times`; the rows that the steps pass are filled in.
       place: timestep [s], number of the last step, and index of the next sample.
-      kept: times, states and slopes at the steps that are read off in this block, beginning with that after the first
+      kept: times and states at the steps that are read off in this block, beginning with that after the first
         `COUNT`: work space for `BLOCK` of them, or none.
     """
     step, steps, sample = place
-    kept_times, kept_states, kept_slopes = kept
+    kept_times, kept_states = kept
     size = sums.shape[1]
     work, slope = np.empty(2 * size), np.empty(2 * size)
     status, taken, row = BLOCK_END, 0, 0
@@ -139,8 +139,6 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
         if kept_times.size > 0 and steps - LAG >= COUNT:
             kept_times[row] = (steps - LAG) * step
             _interpolate(sums, history, end + 1, float(LAG), step, kept_states[row])
-            for i in range(size):
-                kept_slopes[row, i], kept_slopes[row, size + i] = kept_states[row, size + i], history[i, end - LAG]
             row += 1
     for i in range(size):
         for k in range(COUNT):

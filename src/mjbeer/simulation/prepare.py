@@ -58,7 +58,7 @@ class Prepared:
         elif setting.integrator == DOP853:
             self._method = Integrator(self.model, self._made.data)
         elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(self.model, self._made.data)
+            self._method = GaussJackson(self.model, Integrator(self.model, self._made.data))
         else:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), self._made.data)
@@ -117,7 +117,7 @@ class Prepared:
 
 
 def _step(setting: Setting, uneven: bool) -> float:
-    """Return the timestep [s] to which constraints are tuned, and which is that of DOP853."""
+    """Return the timestep [s] to which constraints are tuned, and which is that of mjbeer's own integrators."""
     return setting.timestep * (_GREATER if uneven else 1)
 
 

@@ -1,6 +1,7 @@
 """Keeps the record of a run from all of its steps, as they are taken."""
 
 import math
+from typing import Protocol
 
 import mujoco
 import numpy as np
@@ -10,7 +11,15 @@ from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _PARTS = 8
-"""Parts into which a step of DOP853, which may be half a swing long, is cut to find the lowest normal force."""
+"""Parts into which a step of mjbeer's own integrators is cut to find the lowest normal force: one of DOP853 may be half
+a swing long."""
+
+
+class Observer(Protocol):
+    """What a method with large steps shows its steps to."""
+
+    def add_smooth(self, times: np.ndarray, states: np.ndarray, slopes: np.ndarray) -> None:
+        """Add the next steps: the times [s] at their ends, the states there, and their time derivatives."""
 
 
 class Recorder:

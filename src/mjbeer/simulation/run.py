@@ -8,6 +8,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
+from mjbeer.model.engine import quiet
 from mjbeer.model.setting import TUNED, Setting
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation import residual
@@ -67,7 +68,10 @@ class Run(Trajectory):
 
     @property
     def integrator(self) -> str:
-        """Return the name of the integrator, which with a tolerance is "DOP853", or "Radau" for a stiff motion."""
+        """Return the name of the integrator.
+
+        With a tolerance it is "GaussJackson" or "DOP853", or "Radau" for a motion that damping makes stiff.
+        """
         return self.setting.integrator if self.method is None else self.method
 
     @property
@@ -177,7 +181,7 @@ class Second:
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
     along, samples = _way(times, setting)
-    with Prepared.lent(scene, setting) as prepared:
+    with quiet(), Prepared.lent(scene, setting) as prepared:
         solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
         way = prepared.coordinates(solution.states, along)
     assert solution.record is not None

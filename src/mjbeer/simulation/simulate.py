@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mjbeer import require
+from mjbeer import messages, require
 from mjbeer.exceptions import ParameterError, UntrustedWarning
-from mjbeer.model.setting import DOP853, FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import doubts
@@ -70,18 +70,7 @@ def simulate(
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0, many_turns)
     _check_start(scene, phi0, phi_dot0)
-    setting = Setting(
-        rolling=rolling,
-        integrator=Setting.integrator if integrator is None else integrator,
-        timestep=timestep,
-        tolerance=tolerance,
-        friction=friction,
-        softness=softness,
-    )
-    if tolerance is not None and integrator not in (None, DOP853):
-        raise ParameterError(
-            f"give a tolerance or an integrator: only {DOP853} keeps a tolerance, got integrator {integrator!r}"
-        )
+    setting = Setting.of(rolling, integrator, timestep, tolerance, friction, softness)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:
@@ -128,14 +117,14 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     timestep = setting.timestep
     if times[-1] > duration * (1 + _ON_A_STEP):
         raise ParameterError(
-            f"times must be between 0 and the duration {duration!r} s, got {require.shown(times[-1])} s"
+            f"times must be between 0 and the duration {duration!r} s, got {messages.shown(times[-1])} s"
         )
     if setting.tolerance is not None:
         return times
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
         raise ParameterError(
-            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.shown(times[-1])} s"
+            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {messages.shown(times[-1])} s"
         )
     if setting.integrator in OWN:
         return times
@@ -144,12 +133,12 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     if len(off):
         raise ParameterError(
             f"MuJoCo's integrators have samples at multiples of the timestep {timestep!r} s only, not at "
-            f'{require.shown(times[off[0]])} s; integrator="DOP853" has them anywhere'
+            f'{messages.shown(times[off[0]])} s; integrator="DOP853" has them anywhere'
         )
     same = np.flatnonzero(np.diff(steps) == 0)
     if len(same):
         raise ParameterError(
-            f"times must be at least a timestep of {timestep!r} s apart, got {require.shown(times[same[0]])} s and "
-            f"{require.shown(times[same[0] + 1])} s"
+            f"times must be at least a timestep of {timestep!r} s apart, got {messages.shown(times[same[0]])} s and "
+            f"{messages.shown(times[same[0] + 1])} s"
         )
     return steps * timestep

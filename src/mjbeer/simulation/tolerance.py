@@ -1,4 +1,4 @@
-"""Integration to a global tolerance, with an error estimate from the distance of two runs of DOP853, or of Radau."""
+"""Integration to a global tolerance, with an error estimate from the distance of two runs."""
 
 import math
 from dataclasses import dataclass
@@ -6,11 +6,12 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from mjbeer.exceptions import DivergenceError, ToleranceError
-from mjbeer.model.setting import DOP853
+from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.model.state import read
 from mjbeer.simulation import radau, residual
 from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.gauss_jackson import GaussJackson, plan
 from mjbeer.simulation.radau import Radau
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.theory.losses import stiffest
@@ -59,6 +60,16 @@ of the barrier as a quarter of the largest kinetic energy (measured for swings o
 _NEAREST = 10.0
 """How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
 runs shows how much the motion amplifies."""
+_LOOSE = 3e-5
+"""Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
+_PILOT = 1e-5
+"""Local tolerance of the run of DOP853 that shows how long a timestep of Gauss-Jackson may be."""
+_ASTRAY = 0.1
+"""Largest distance [rad], relative beyond 1 rad, of that run from those of Gauss-Jackson at the end."""
+_FINER = 1.2
+"""Timestep of one run of Gauss-Jackson over that of the next, whose error is a ninth at order 12."""
+_TRIES = 2
+"""Number of finer runs of Gauss-Jackson before DOP853 is taken."""
 _STIFF = 3e5
 """Duration over the time in which damping brings can and load together, from which on a run takes an implicit method.
 DOP853 has no step that is longer than 6.4 of these times, and would take a million evaluations or more."""
@@ -88,6 +99,22 @@ class Solution:
     """The name of the integrator, if it was chosen for a tolerance."""
 
 
+class _Pilot:
+    """What a run of DOP853 shows of how long its steps were, in place of a recorder."""
+
+    def __init__(self) -> None:
+        self._ends: list[np.ndarray] = []
+
+    @property
+    def ends(self) -> np.ndarray:
+        """Return the times [s] at the start and at the ends of the steps."""
+        return np.concatenate(self._ends)
+
+    def add_smooth(self, times: np.ndarray, states: np.ndarray, slopes: np.ndarray) -> None:
+        """Add the next steps."""
+        self._ends.append(times.copy())
+
+
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
@@ -95,6 +122,10 @@ class Solver:
         self._model, self._scene = model, scene
         self._explicit, self._scale = Integrator(model, data), scales(model, scene)
         self._integrator: Integrator | Radau = self._explicit
+        try:
+            self._smooth: GaussJackson | None = GaussJackson(model, self._explicit)
+        except UnsupportedError:
+            self._smooth = None
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
@@ -107,6 +138,9 @@ class Solver:
         of energy and momentum implies: over many turns the errors of two runs may be the same by chance. From the third
         run on an eighth of the distance before counts if that is larger. None of these shows the effect of rounding; it
         is estimated by further runs where it may matter.
+
+        Where Gauss-Jackson needs fewer evaluations, two of its runs are tried first. Otherwise all runs are
+        DOP853's, or Radau's if the motion is stiff.
 
         The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
@@ -121,11 +155,12 @@ class Solver:
                 "rounding of the slip rate hides its torque; a frozen load is their limit",
             )
         self._integrator = Radau(self._explicit) if stiff else self._explicit
+        if (swift := self._by_gauss_jackson(start, times, tolerance, friction)) is not None:
+            return swift
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
-        safety = _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
-        few = _few(len(times))
-        coarse, _ = self._run(start + _NUDGE * self._scale, times[few], local=local, tolerance=tolerance)
-        fine, record = self._run(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
+        safety, few = _safety(tolerance), _few(len(times))
+        coarse = self._run(start + _NUDGE * self._scale, times[few], local=local, tolerance=tolerance)
+        fine, record = self._recorded(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
         first = before = self._distance(coarse, fine[few], start)
         estimate, drift, further = safety * first, self._drift(record), False
         while max(estimate, drift) > tolerance:
@@ -136,7 +171,7 @@ class Solver:
                 apart = f"two runs at the limit of rounding differ by {before:.2g} rad"
                 raise _not_reached(tolerance, apart if estimate > tolerance else _lost(drift))
             coarse = fine[few]
-            fine, record = self._run(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
+            fine, record = self._recorded(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
             distance, drift_before, drift = self._distance(coarse, fine[few], start), drift, self._drift(record)
             estimate = _SAFETY_BY_CHANCE * max(distance, before / _RATIO)
             progress = distance <= _STALLED * before if estimate > tolerance else drift <= _STALLED * drift_before
@@ -179,7 +214,7 @@ class Solver:
         """
         distances = []
         for side in (1, -1):
-            nudged, _ = self._run(start + side * _NUDGE * self._scale, times, local=local, tolerance=tolerance)
+            nudged = self._run(start + side * _NUDGE * self._scale, times, local=local, tolerance=tolerance)
             distances.append(self._distance(nudged, fine, start))
         effect = _ROUNDING_OVER_NUDGE * max(distances)
         if effect > tolerance:
@@ -202,7 +237,7 @@ class Solver:
         if loss <= _NO_LOSS * tolerance:
             return 0.0
         few = _few(len(times))
-        aside, _ = self._run(start + min(loss, 1.0) * self._scale, times[few], local=local, tolerance=tolerance)
+        aside = self._run(start + min(loss, 1.0) * self._scale, times[few], local=local, tolerance=tolerance)
         effect = _LOSS * self._distance(aside, fine[few], start)
         if effect > tolerance:
             raise _not_reached(
@@ -212,31 +247,70 @@ class Solver:
             )
         return effect
 
-    def _run(
-        self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, friction: float | None = None
+    def _by_gauss_jackson(
+        self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
+    ) -> Solution | None:
+        """Return the solution by Gauss-Jackson, or None where it does not reach the tolerance, or DOP853 is cheaper.
+
+        A coarse run of DOP853 shows how long a timestep may be, and that two runs have not gone the same wrong way.
+        """
+        if (method := self._smooth) is None or tolerance > _LOOSE:
+            return None
+        pilot = _Pilot()
+        try:
+            (end,) = self._explicit.run(
+                start, times[-1:], tolerance=_PILOT, scale=self._scale, limit=_EVALUATIONS, recorder=pilot
+            )
+            timestep, evaluations = plan(pilot.ends, tolerance, _PILOT)
+            if not evaluations < self._explicit.evaluations * (_PILOT * _RATIO / (_FIRST * tolerance)) ** (1 / 8):
+                return None
+            few, safety, first = _few(len(times)), _safety(tolerance), None
+            coarse = method.run(start + _NUDGE * self._scale, times[few], timestep)
+            for _ in range(_TRIES):
+                timestep /= _FINER
+                recorder = Recorder(self._model, self._scene, friction)
+                fine = method.run(start, times, timestep, recorder)
+                distance = self._distance(coarse, fine[few], start)
+                first = distance if first is None else first
+                rounding = _ROUNDING_OVER_NUDGE * first
+                estimate = max(safety * distance, self._drift(recorder.record), rounding)
+                if estimate <= tolerance and self._distance(end[None], fine[-1:], start) <= _ASTRAY:
+                    return Solution(fine, estimate, recorder.record, GAUSS_JACKSON)
+                coarse, safety = fine[few], _SAFETY_BY_CHANCE
+        except DivergenceError:
+            pass
+        return None
+
+    def _recorded(
+        self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, friction: float
     ) -> tuple[np.ndarray, Record]:
-        """Return the states of one run with a `local` tolerance, and its record, which is empty without a `friction`.
+        """Return the states of one run of DOP853 or Radau with a `local` tolerance, and its record."""
+        recorder = Recorder(self._model, self._scene, friction)
+        return self._run(start, times, local=local, tolerance=tolerance, recorder=recorder), recorder.record
+
+    def _run(
+        self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, recorder: Recorder | None = None
+    ) -> np.ndarray:
+        """Return the states of one run of DOP853 or Radau with a `local` tolerance.
 
         The `tolerance` is only for the error message.
         """
-        recorder = Recorder(self._model, self._scene, math.inf if friction is None else friction)
         try:
-            states = self._integrator.run(
-                start,
-                times,
-                tolerance=local,
-                scale=self._scale,
-                limit=_EVALUATIONS,
-                recorder=None if friction is None else recorder,
+            return self._integrator.run(
+                start, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS, recorder=recorder
             )
         except DivergenceError as error:
             raise _not_reached(tolerance, str(error)) from error
-        return states, recorder.record
 
     def _distance(self, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
         """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
         angles, truth, first = coarse @ self._angles, fine @ self._angles, start @ self._angles
         return max(angle_distance(angles[:, column], truth[:, column], float(first[column])) for column in (0, 1))
+
+
+def _safety(tolerance: float) -> float:
+    """Return the error estimate of a tolerance [rad] over the distance of the first two runs."""
+    return _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
 
 
 def _few(samples: int) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from mjbeer import require
+from mjbeer import messages, require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.segment import segment
@@ -69,6 +69,6 @@ def _checked_fill(fill: float) -> float:
     share = require.number("fill", fill)
     if not 0 < share <= 1:
         raise ParameterError(
-            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {require.shown(fill)}"
+            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {messages.shown(fill)}"
         )
     return share

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Literal, get_args
 
-from mjbeer import require
+from mjbeer import messages, require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.theory import motion
 from mjbeer.theory.can import LENGTH, RADIUS, Can
@@ -55,7 +55,7 @@ class Scene:
         incline = require.number("incline", self.incline, "rad")
         if not abs(incline) < math.pi / 2:
             raise ParameterError(
-                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.shown(self.incline)}"
+                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {messages.shown(self.incline)}"
             )
         require.choice("attachment", self.attachment, ATTACHMENTS)
         require.store(self, incline=incline, gravity=require.non_negative("gravity", self.gravity, "m/s^2"))
@@ -65,7 +65,7 @@ class Scene:
         if self.dissipates and self.attachment == "frozen":
             raise ParameterError(
                 f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
-                f"got damping={require.shown(self.damping)} and drag={require.shown(self.drag)}"
+                f"got damping={messages.shown(self.damping)} and drag={messages.shown(self.drag)}"
             )
         if self.load.offset > self.can.radius:
             raise ParameterError(
