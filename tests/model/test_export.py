@@ -18,6 +18,7 @@ from mjbeer.model.build import compose
 from mjbeer.model.engine import library
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, Setting
+from mjbeer.theory.damping import Damping
 from tests.support.scenes import METAL, SCENES
 
 pytestmark = pytest.mark.slow
@@ -41,12 +42,13 @@ CASES = [
 ]
 PHYSICAL = (
     "body_mass", "body_inertia", "body_ipos", "body_pos", "body_parentid", "jnt_type", "jnt_axis", "jnt_bodyid",
-    "dof_armature", "dof_damping", "dof_frictionloss", "actuator_gainprm", "actuator_biasprm", "actuator_biastype",
+    "dof_armature", "dof_damping", "dof_dampingpoly", "dof_frictionloss",
+    "actuator_gainprm", "actuator_biasprm", "actuator_biastype",
     "eq_type", "eq_data", "eq_obj1id", "eq_obj2id", "eq_solref", "eq_solimp", "pair_dim", "pair_geom1", "pair_geom2",
     "pair_friction", "pair_solref", "pair_solimp", "pair_margin", "geom_contype", "geom_conaffinity",
 )  # fmt: skip
 OPTIONS = ("timestep", "integrator", "gravity", "cone", "solver", "impratio", "disableflags")
-TENDONS = ("tendon_armature", "tendon_stiffness", "tendon_damping", "tendon_frictionloss")
+TENDONS = ("tendon_armature", "tendon_stiffness", "tendon_damping", "tendon_dampingpoly", "tendon_frictionloss")
 ENERGY = int(mujoco.mjtEnableBit.mjENBL_ENERGY)
 # MuJoCo normalizes quaternions whenever it compiles, which rounds once more.
 QUATERNION = 2 * np.finfo(float).eps
@@ -110,6 +112,25 @@ def test_an_export_is_the_model_and_moves_exactly(
     start = state.start(built, scene, *START)
     assert np.array_equal(np.concatenate([model.key("start").qpos, model.key("start").qvel]), start)
     assert_moves_exactly(scene, model, TOLERANCE[rolling])
+
+
+@pytest.mark.parametrize("rolling", TOLERANCE)
+def test_an_export_has_damping_and_drag(rolling: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene, path = sliding(can=METAL, damping=Damping(1e-3, 1 / 3, 1e-9), drag=1 / 7), tmp_path / "model.xml"
+    export(scene, path, *START, rolling)
+    model = load(path, monkeypatch)
+    built = compose(scene, Setting(rolling), visuals=True).compile()
+    assert_same_physics(model, built)
+    assert built.tendon_damping.any() == built.tendon_dampingpoly.any() == (rolling == "reduced")
+    assert built.dof_damping.any() == (rolling != "reduced")
+    assert built.dof_dampingpoly.any()
+    assert np.array_equal(model.wrap_prm[: built.nwrap], built.wrap_prm)
+    data = mujoco.MjData(model)
+    data.qvel[:] = np.linspace(1, 2, model.nv)
+    mujoco.mj_forward(model, data)
+    damped = {"slide"} | ({"phi"} if rolling == "reduced" else {"swing"})
+    joints = state.places(model)
+    assert {name for name in joints if data.qfrc_damper[joints[name]] != 0} == damped
 
 
 @pytest.mark.parametrize("rolling", TOLERANCE)

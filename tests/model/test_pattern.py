@@ -2,6 +2,7 @@
 
 import pathlib
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import mujoco
@@ -16,6 +17,7 @@ from mjbeer.model import pattern
 from mjbeer.model.build import compile_model
 from mjbeer.model.pattern import Editable, Plan
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, USUAL, Rolling, Setting, supported
+from mjbeer.theory.damping import Damping
 from tests.support.scenes import METAL, SCENES, scenes
 
 OTHERS = [
@@ -27,6 +29,13 @@ OTHERS = [
     Scene(Can(0.03, 0.1, 0.1, 9e-5), Load(0.2, 0.0, 1e-4), 0.2, "sliding"),
     Scene(Can(0.03, 0.1, 0.1, 9e-5), Load(0.2, 1e-9, 1e-4), 0.2, "frozen"),
     Scene(Can(0.03, 0.1, 1e4, 9.0), Load(0.2, 0.01, 1e-4), 0.2, "sliding"),
+    *(sliding(can=can, damping=1e-3) for can in (None, METAL)),
+    sliding(incline=0.3, can=Can.sheet_metal(0.05, 0.1), damping=Damping(1.0, 1e-9, 3.0)),
+    replace(pendulum(wheel_mass=1e-12, load_mass=1e-12), damping=1e-14),
+    sliding(can=METAL, drag=1e-3),
+    replace(pendulum(), drag=2.0),
+    sliding(fill=0.1, can=METAL, drag=0.1, damping=1e-5),
+    replace(pendulum(), drag=2.0, damping=Damping(cubic=1.0)),
 ]
 
 
@@ -83,6 +92,14 @@ def test_every_number_is_that_of_the_compiler_for_any_scene(
 def test_softness_as_people_write_it_is_written(name: str) -> None:
     for scene in (frozen(incline=0.1, can=METAL), sliding(fill=0.3, can=METAL)):
         assert_same(written(scene, USUAL[name]), compile_model(scene, USUAL[name]))
+
+
+def test_a_model_without_dampers_is_of_another_kind() -> None:
+    """Its flag says that there are none: a scene that is written into it would not be damped."""
+    scenes = sliding(can=METAL), sliding(can=METAL, damping=1e-3), sliding(can=METAL, drag=1e-3)
+    for rolling in ROLLINGS:
+        assert len({Plan.of(scene, Setting(rolling)).kind for scene in scenes}) == 3
+    assert Plan.of(sliding(damping=1e-3), Setting()).kind == Plan.of(sliding(damping=Damping(cubic=9)), Setting()).kind
 
 
 def test_nothing_is_compiled_for_the_next_scene(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,6 +22,7 @@ from mjbeer.model import portable, state
 from mjbeer.model.export import export
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.model.softness import effective_softness
+from mjbeer.theory.damping import Damping
 from tests.support import others
 from tests.support.others import BY_NAME, FRICTION, START
 from tests.support.scenes import METAL, SCENES
@@ -165,6 +166,23 @@ def test_an_edited_template_keeps_its_looks(copy: pathlib.Path, tmp_path: pathli
         assert (model.nbody, model.nlight, model.ncam) == (2, 3, 4)
         assert not model.geom_contype.any()
         assert move(tmp_path / "model.xml", frozen()) < TOLERANCE[rolling]
+
+
+@pytest.mark.parametrize("rolling", ROLLINGS)
+def test_a_portable_export_has_damping_in_proportion(rolling: str, tmp_path: pathlib.Path) -> None:
+    """As one number, which is all that MuJoCo 3.3 takes."""
+    scene, path = sliding(can=METAL, damping=1 / 3), tmp_path / "model.xml"
+    export(scene, path, *START, rolling, portable=True)
+    kind, name = ("fixed", "damper") if rolling == "reduced" else ("joint", "swing")
+    (damper,) = (each for each in ET.parse(path).getroot().iter(kind) if each.get("name") == name)
+    assert float(damper.attrib["damping"]) == 1 / 3
+
+
+@pytest.mark.parametrize("scene", [sliding(drag=0.1), sliding(damping=Damping(cubic=1.0))])
+def test_what_others_do_not_damp_is_refused(scene: Scene, tmp_path: pathlib.Path) -> None:
+    with pytest.raises(UnsupportedError, match="damping in proportion to the slip rate only"):
+        export(scene, tmp_path / "model.xml", portable=True)
+    assert not any(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("integrator", ["discrete", "implicit"])

@@ -28,7 +28,6 @@ _DISABLE = mujoco.mjtDisableBit
 _UNUSED = (
     _DISABLE.mjDSBL_AUTORESET
     | _DISABLE.mjDSBL_CLAMPCTRL
-    | _DISABLE.mjDSBL_DAMPER
     | _DISABLE.mjDSBL_FRICTIONLOSS
     | _DISABLE.mjDSBL_ISLAND
     | _DISABLE.mjDSBL_LIMIT
@@ -153,7 +152,7 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     if visuals:
         spec.option.gravity = [0, 0, -scene.gravity]
     else:
-        _disable_unused(spec, setting.rolling)
+        _disable_unused(spec, setting.rolling, moving)
     return spec
 
 
@@ -191,8 +190,10 @@ def _tilt(spec: mujoco.MjSpec, scene: Scene, visuals: bool) -> None:
     spec.compiler.fusestatic = not visuals
 
 
-def _disable_unused(spec: mujoco.MjSpec, rolling: str) -> None:
+def _disable_unused(spec: mujoco.MjSpec, rolling: str, moving: Mechanics) -> None:
     spec.option.disableflags |= int(_UNUSED)
+    if not moving.dissipates:  # dampers stay where there is damping or drag
+        spec.option.disableflags |= int(_DISABLE.mjDSBL_DAMPER)
     if rolling == "reduced":
         spec.option.disableflags |= int(_UNCONSTRAINED)
     if rolling == "equality":

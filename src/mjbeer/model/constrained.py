@@ -11,7 +11,7 @@ import mujoco
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model import joints
 from mjbeer.model.inertia import frozen_inertia, hold_inertial, load_with_inertia, remove_mass
-from mjbeer.model.mechanics import Inertial, Mechanics
+from mjbeer.model.mechanics import Inertial, Mechanics, dissipation
 from mjbeer.model.setting import TUNED, Setting
 from mjbeer.theory.scene import Scene
 
@@ -48,13 +48,13 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
 
 
 def mechanics(scene: Scene, unit: float, rolling: str) -> Mechanics:
-    """Return the joints and masses of can and load.
+    """Return the joints and masses of can and load, and the damping between them.
 
     Raises:
       UnsupportedError: if MuJoCo cannot move one of them, as it has no mass or no inertia.
     """
     axis = ("slide", "lift", "roll") if rolling == "contact" else ("slide", "roll")
-    return Mechanics(joints=(*axis, *_load_joints(scene)), bodies=_inertials(scene, unit))
+    return Mechanics(joints=(*axis, *_load_joints(scene)), bodies=_inertials(scene, unit), **dissipation(scene, unit))
 
 
 def add_equality(spec: mujoco.MjSpec, moving: Mechanics, setting: Setting) -> None:

@@ -36,7 +36,8 @@ def export(
     turns on the spot, because its one coordinate is phi.
 
     With `portable`, MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load the file too. The integrator must then be one of
-    `portable.INTEGRATORS`, and a contact is softer: docs/portability.md has the errors.
+    `portable.INTEGRATORS`, the scene must have no drag and no damping but in proportion to a rate, and a contact is
+    softer: docs/portability.md has the errors.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -57,6 +58,7 @@ def export(
     softness = setting.TUNED
     if require.boolean("portable", portable):
         portability.require_integrator(integrator)
+        portability.require_linear(scene)
         softness = portability.softness(scene, rolling)
     made = setting.Setting(rolling, integrator, timestep, friction=friction, softness=softness)
     spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)

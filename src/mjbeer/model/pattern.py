@@ -54,7 +54,7 @@ class Plan:
           TemplateError: if there are no templates.
         """
         moving = mechanics_of(scene, setting)
-        elements = moving.joints, moving.force != 0, moving.chord > 0
+        elements = moving.joints, moving.force != 0, moving.chord > 0, moving.damps, moving.drag > 0
         kind = templates.contents(templates.name(scene)), setting.rolling, setting.softness, elements
         return cls(scene, setting, moving, kind)
 

@@ -36,6 +36,18 @@ def require_integrator(integrator: str) -> None:
         )
 
 
+def require_linear(scene: Scene) -> None:
+    """Check that all that load a portable export have the damping and the drag of a scene.
+
+    Raises:
+      UnsupportedError: if the forces are not proportional to a rate.
+    """
+    if scene.drag > 0 or any(scene.damping_law.coefficients[1:]):
+        raise UnsupportedError(
+            "a portable export has no drag, and damping in proportion to the slip rate only: MuJoCo 3.3 knows no other"
+        )
+
+
 def softness(scene: Scene, rolling: str) -> Softness:
     """Return how soft the rolling constraint of a portable export is: as hard as can be without `diagexact`.
 

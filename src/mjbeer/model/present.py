@@ -50,14 +50,27 @@ def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> flo
     The axis of a can with a sliding load moves with constant acceleration, but for a swing of at most m b/M_e to either
     side (the integral of eq. 46). For a frozen load, the energy bounds the angle s that the can has turned:
     J_min s_dot^2/2 <= K + 2 depth + |slope| s, so that s <= w t + |slope| t^2/(2 J_min) with
-    w^2 = 2 (K + 2 depth)/J_min, where K is the kinetic energy at the start.
+    w^2 = 2 (K + 2 depth)/J_min, where K is the kinetic energy at the start. Damping and drag only take energy, and with
+    them the same holds of a sliding load: s is then the way of the axis, and J_min the smallest mass that it can have.
     """
     can, load, oscillator = scene.can, scene.load, scene.oscillator
     u_dot = abs(scene.start(phi0, phi_dot0)[1])
+    effective_mass = load.mass + can.mass + can.inertia / can.radius**2
+    if scene.dissipates:
+        moment = load.mass * load.offset
+        least = effective_mass * oscillator.base / (load.inertia + moment * load.offset)
+        kinetic = (effective_mass * u_dot**2 + float(load.inertia + moment * load.offset) * phi_dot0**2) / 2
+        kinetic -= moment * math.cos(phi0) * scene.start(phi0, phi_dot0)[1] * phi_dot0
+        force = scene.mass * scene.gravity * abs(math.sin(scene.incline))
+        return _reach(kinetic + 2 * moment * scene.gravity, least, force, duration)
     if scene.attachment == "sliding":
-        effective_mass = load.mass + can.mass + can.inertia / can.radius**2
         swing = 2 * load.mass * load.offset / effective_mass
         return u_dot * duration + abs(scene.acceleration()) * duration**2 / 2 + swing
     kinetic = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2
-    rate = math.sqrt(2 * (kinetic + 2 * oscillator.depth) / oscillator.base)
-    return can.radius * (rate * duration + abs(oscillator.slope) / oscillator.base * duration**2 / 2)
+    slope = abs(oscillator.slope)
+    return can.radius * _reach(kinetic + 2 * oscillator.depth, oscillator.base, slope, duration)
+
+
+def _reach(energy: float, inertia: float, force: float, duration: float) -> float:
+    """Return how far an `energy` [J] and a constant force bring an inertia at most within a `duration` [s]."""
+    return math.sqrt(2 * energy / inertia) * duration + force / inertia * duration**2 / 2

@@ -11,7 +11,7 @@ import mujoco
 from mjbeer.model import joints
 from mjbeer.model.appearance import TURNING
 from mjbeer.model.inertia import hold_inertial, load_with_can_mass, load_with_inertia, remove_mass
-from mjbeer.model.mechanics import Inertial, Mechanics
+from mjbeer.model.mechanics import Inertial, Mechanics, dissipation
 from mjbeer.theory.scene import Scene
 
 _HEAVY = 10.0
@@ -41,6 +41,7 @@ def _sliding(scene: Scene, unit: float) -> Mechanics:
         bodies={"can": Inertial(unit * load.mass, load.offset, unit * load.inertia)},
         armature=unit * (rest + can.inertia / can.radius**2),
         force=unit * rest * scene.gravity * math.sin(scene.incline),
+        **dissipation(scene, unit),
     )
 
 
@@ -79,6 +80,8 @@ def add(spec: mujoco.MjSpec, moving: Mechanics) -> None:
         _add_constant_force(spec, moving.joints[0])
     if moving.chord > 0:
         _add_chord(spec)
+    if moving.damps:
+        _add_damper(spec, moving)
 
 
 def _add_chord(spec: mujoco.MjSpec) -> None:
@@ -90,6 +93,17 @@ def _add_chord(spec: mujoco.MjSpec) -> None:
     chord = spec.add_tendon(name="chord", rgba=[0, 0, 0, 0])
     chord.wrap_site("chord_top")
     chord.wrap_site("chord_end")
+
+
+def _add_damper(spec: mujoco.MjSpec, moving: Mechanics) -> None:
+    """Add the tendon whose length is phi - u/a, the angle by which the load is ahead of the can, with no stiffness.
+
+    Its damping is the torque between can and load, though the can has no joint: the torque on the can, over its radius,
+    acts on the slide.
+    """
+    damper = spec.add_tendon(name="damper")
+    damper.wrap_joint("phi", 1.0)
+    damper.wrap_joint("slide", moving.slide_in_damper)
 
 
 def _add_constant_force(spec: mujoco.MjSpec, joint: str) -> None:

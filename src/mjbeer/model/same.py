@@ -13,8 +13,9 @@ _INERTIALS = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
 _BODIES = ("body_pos", "body_quat")
 """Arrays that depend on which body a body is in."""
 _EXACT = (
-    "jnt_axis", "dof_armature", "tendon_armature", "actuator_gainprm", "actuator_biasprm", "eq_data", "eq_solref",
-    "eq_solimp", "pair_friction", "pair_solref", "pair_solimp", "key_qpos", "key_qvel",
+    "jnt_axis", "dof_armature", "dof_damping", "dof_dampingpoly", "tendon_armature", "tendon_damping",
+    "tendon_dampingpoly", "wrap_prm", "actuator_gainprm", "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp",
+    "pair_friction", "pair_solref", "pair_solimp", "key_qpos", "key_qvel",
 )  # fmt: skip
 """Arrays that are the same in whatever bodies the model has."""
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")

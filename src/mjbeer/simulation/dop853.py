@@ -48,6 +48,12 @@ class Integrator:
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
+    def slope(self, state: np.ndarray) -> np.ndarray:
+        """Return the time derivative of a state, shape (nq + nv,)."""
+        slope = np.empty(self._size)
+        dop853_kernel._slope(self._pointers, self._views, state, slope)
+        return slope
+
     def run(
         self,
         start: np.ndarray,

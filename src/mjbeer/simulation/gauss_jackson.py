@@ -48,7 +48,8 @@ class GaussJackson:
     def __init__(self, model: mujoco.MjModel, starter: Integrator | None = None) -> None:
         if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONSTRAINT:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
-        if model.dof_damping.any() or model.tendon_damping.any():
+        damping = model.dof_damping, model.dof_dampingpoly, model.tendon_damping, model.tendon_dampingpoly
+        if any(coefficients.any() for coefficients in damping):
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
         self._starter, self._size = Integrator(model) if starter is None else starter, model.nv
         self.evaluations = 0

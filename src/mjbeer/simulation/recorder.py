@@ -31,8 +31,9 @@ class Recorder:
         self.record = Record(scene, friction)
         self._last: np.ndarray | None = None
         size = model.nq + model.nv
-        self._rate = read(model, scene, np.eye(size), np.zeros(size)).phi_dot
-        """The weights of a state's components in phi_dot."""
+        unit = read(model, scene, np.eye(size), np.zeros(size))
+        self._rates = np.stack([unit.phi_dot, unit.u_dot] if scene.dissipates else [unit.phi_dot], axis=1)
+        """The weights of a state's components in phi_dot and, where it matters to the forces, in u_dot."""
 
     def add(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps: the times [s] and states, shape (steps, nq + nv), at their ends."""
@@ -46,14 +47,27 @@ class Recorder:
         """
         motion = read(self._model, self._scene, states, times)
         self.record.add_conserved(motion)
-        ends = np.stack([times, motion.phi, motion.phi_dot, slopes @ self._rate])
+        moved = [(motion.phi, motion.phi_dot), (motion.u, motion.u_dot)][: self._rates.shape[1]]
+        ends = np.stack(
+            [
+                times,
+                *(
+                    row
+                    for (way, rate), bend in zip(moved, (slopes @ self._rates).T, strict=True)
+                    for row in (way, rate, bend)
+                ),
+            ]
+        )
         if self._last is not None:
             ends = np.concatenate([self._last, ends], axis=1)
         self._last = ends[:, -1:]
-        if ends.shape[1] == 1:
-            self.record.add_forces(ends[0], ends[1], ends[2], 0.0)
-        else:
-            self.record.add_forces(*_within(*ends), 0.0)
+        time, phi, phi_dot, phi_ddot, *axis = ends
+        u_dot = axis[1] if axis else 0.0
+        if len(time) > 1:
+            if axis:
+                u_dot = _within(time, *axis)[2]
+            time, phi, phi_dot = _within(time, phi, phi_dot, phi_ddot)
+        self.record.add_forces(time, phi, phi_dot, u_dot)
 
 
 def _hermite(part: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -77,13 +91,13 @@ _COME, _SLOPE = (np.array(column).T for column in zip(*(_hermite(_PART, end) for
 
 
 def _within(
-    time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, phi_ddot: np.ndarray
+    time: np.ndarray, place: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return times [s], phi [rad] and phi_dot [rad/s] within steps, from their values and derivatives at the ends."""
+    """Return times [s], a coordinate and its rate within steps, from its value and derivatives at the ends."""
     step = np.diff(time)
-    rate, bend = np.stack([phi_dot[:-1], phi_dot[1:]]), np.stack([phi_ddot[:-1], phi_ddot[1:]])
+    rate, bend = np.stack([speed[:-1], speed[1:]]), np.stack([acceleration[:-1], acceleration[1:]])
     (rate, last_rate), (bend, last_bend) = step * rate, step**2 * bend
-    ends = np.stack([np.diff(phi), rate, bend, last_rate, last_bend], axis=1)
+    ends = np.stack([np.diff(place), rate, bend, last_rate, last_bend], axis=1)
     step = step[:, None]
-    times, angle, slope = time[:-1, None] + step * _PART, phi[:-1, None] + ends @ _COME.T, ends @ _SLOPE.T / step
-    return times.ravel(), angle.ravel(), slope.ravel()
+    times, within = time[:-1, None] + step * _PART, place[:-1, None] + ends @ _COME.T
+    return times.ravel(), within.ravel(), (ends @ _SLOPE.T / step).ravel()

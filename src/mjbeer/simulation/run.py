@@ -68,7 +68,10 @@ class Run(Trajectory):
 
     @property
     def integrator(self) -> str:
-        """Return the name of the integrator, which is "GaussJackson" or "DOP853" with a tolerance."""
+        """Return the name of the integrator.
+
+        With a tolerance it is "GaussJackson" or "DOP853", or "Radau" for a motion that damping makes stiff.
+        """
         return self.setting.integrator if self.method is None else self.method
 
     @property
@@ -117,8 +120,12 @@ class Run(Trajectory):
 
     def _in_a_step(self) -> list[str]:
         """Return what a timestep in which the load turns far says against this run: at most one sentence."""
-        turn = self.steps.fastest * (self.timestep or 0.0)
-        if turn <= _TURN or self.scene.oscillator.unevenness(self.phi0, self.phi_dot0) <= ERROR:
+        turn = self.steps.fastest * (timestep := self.timestep or 0.0)
+        if turn <= _TURN:
+            return []
+        # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
+        rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
+        if self.scene.oscillator.unevenness(self.phi0, rate) <= ERROR:
             return []
         return [
             f"the load turns by {turn:.2g} rad in a timestep (trusted up to {_TURN:g}), in which its weight and "

@@ -47,10 +47,11 @@ def simulate(
     `times` [s] from 0 on, which with MuJoCo's integrators must be multiples of the timestep. Samples at every timestep
     end with the first multiple of the timestep at or after `duration`.
 
-    With a `tolerance` [rad] no integrator is given: mjbeer takes GaussJackson where it needs fewer evaluations, and
-    otherwise DOP853, which chooses its own steps. The run is repeated until the error of phi and u/a over the whole
-    motion is below the tolerance, relative to the angle where that exceeds 1 rad; the trajectory has the estimate.
-    `timestep` is then the sampling interval, and what a contact is tuned to. The tolerance bounds the error of
+    With a `tolerance` [rad] no integrator is given: mjbeer takes GaussJackson where it needs fewer evaluations, the
+    implicit method Radau, which is slower, where strong damping makes the motion stiff, and otherwise DOP853, which
+    chooses its own steps; the trajectory says which it was. The run is repeated until the error of phi and u/a over the
+    whole motion is below the tolerance, relative to the angle where that exceeds 1 rad; the trajectory has the
+    estimate. `timestep` is then the sampling interval, and what a contact is tuned to. The tolerance bounds the error of
     integrating the model. The model itself is exact for "reduced" and "equality", but not for a soft contact. Without a
     tolerance the trajectory estimates its error when it is asked for it.
 

@@ -9,10 +9,12 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.model.state import read
-from mjbeer.simulation import residual
+from mjbeer.simulation import radau, residual
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson, plan
+from mjbeer.simulation.radau import Radau
 from mjbeer.simulation.recorder import Recorder
+from mjbeer.theory.losses import stiffest
 from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
@@ -71,6 +73,12 @@ _GAIN = 9.0
 _CHEAPER = 0.8
 """Largest number of evaluations of Gauss-Jackson over those of DOP853 to the tolerance, at which it is tried: it takes
 two runs that are nearly alike, where the first of two runs of DOP853 takes three quarters of the second one."""
+_STIFF = 3e5
+"""Duration over the time in which damping brings can and load together, from which on a run takes an implicit method.
+DOP853 has no step that is longer than 6.4 of these times, and would take a million evaluations or more."""
+_STIFFEST = 1e12
+"""Largest inverse of that time [1/s]. A torque changes by as much, times the rounding of a rate, 1e-15 rad/s or more,
+over the inertia: a thousandth of a frozen load's accelerations, 100 rad/s^2."""
 _COMPARED = 64
 """Largest number of samples at which two runs are compared; they are spread over the motion as unevenly as the golden
 section, so that no period is a multiple of the gaps. A run that is only compared has no others, as a sample in every
@@ -115,9 +123,10 @@ class Solver:
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData | None = None) -> None:
         self._model, self._scene = model, scene
-        self._integrator, self._scale = Integrator(model, data), scales(model, scene)
+        self._explicit, self._scale = Integrator(model, data), scales(model, scene)
+        self._integrator: Integrator | Radau = self._explicit
         try:
-            self._smooth: GaussJackson | None = GaussJackson(model, self._integrator)
+            self._smooth: GaussJackson | None = GaussJackson(model, self._explicit)
         except UnsupportedError:
             self._smooth = None
         # phi and u/a are sums of components of the state.
@@ -133,13 +142,22 @@ class Solver:
         run on an eighth of the distance before counts if that is larger. None of these shows the effect of rounding; it
         is estimated by further runs where it may matter.
 
-        Where Gauss-Jackson needs fewer evaluations, two of its runs are tried first. Otherwise all runs are DOP853's.
+        Where Gauss-Jackson needs fewer evaluations, two of its runs are tried first. Otherwise all runs are
+        DOP853's, or Radau's if the motion is stiff.
 
         The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
+        stiff = (rate := stiffest(self._scene)) * times[-1] > _STIFF
+        if stiff and rate > _STIFFEST:
+            raise _not_reached(
+                tolerance,
+                f"damping would bring can and load together {rate:.2g} times a second (at most {_STIFFEST:g}), and "
+                "rounding of the slip rate hides its torque; a frozen load is their limit",
+            )
+        self._integrator = Radau(self._explicit) if stiff else self._explicit
         if (swift := self._by_gauss_jackson(start, times, tolerance, friction)) is not None:
             return swift
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
@@ -173,14 +191,15 @@ class Solver:
         if rounding > tolerance:
             rounding = self._rounding_effect(fine[few], start=start, times=times[few], local=local, tolerance=tolerance)
         loss = self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
-        return Solution(fine, max(estimate, drift, rounding, loss), record, DOP853)
+        return Solution(fine, max(estimate, drift, rounding, loss), record, radau.NAME if stiff else DOP853)
 
     def _drift(self, record: Record) -> float:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum implies.
 
-        A contact has no such drift to judge by: it takes energy, and gives it back.
+        A contact has no such drift to judge by: it takes energy, and gives it back. What damping takes in the long
+        steps of an implicit method is not known to as many digits as these have.
         """
-        if self._model.npair:
+        if self._model.npair or isinstance(self._integrator, Radau):
             return 0.0
         gap = _FAR * record.to_barrier
         share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST
@@ -242,12 +261,12 @@ class Solver:
             return None
         pilot = _Pilot()
         try:
-            (end,) = self._integrator.run(
+            (end,) = self._explicit.run(
                 start, times[-1:], tolerance=_PILOT, scale=self._scale, limit=_EVALUATIONS, recorder=pilot
             )
             timestep, evaluations = plan(pilot.ends, tolerance, _PILOT)
             finer = (_PILOT * _RATIO / (_FIRST * tolerance)) ** (1 / 8)
-            if not evaluations < _CHEAPER * finer * self._integrator.evaluations:
+            if not evaluations < _CHEAPER * finer * self._explicit.evaluations:
                 return None
             few, safety, rounding = _few(len(times)), _safety(tolerance), None
             coarse = method.run(start + _NUDGE * self._scale, times[few], timestep)
@@ -270,14 +289,14 @@ class Solver:
     def _recorded(
         self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, friction: float
     ) -> tuple[np.ndarray, Record]:
-        """Return the states of one run of DOP853 with a `local` tolerance, and its record."""
+        """Return the states of one run of DOP853 or Radau with a `local` tolerance, and its record."""
         recorder = Recorder(self._model, self._scene, friction)
         return self._run(start, times, local=local, tolerance=tolerance, recorder=recorder), recorder.record
 
     def _run(
         self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, recorder: Recorder | None = None
     ) -> np.ndarray:
-        """Return the states of one run of DOP853 with a `local` tolerance.
+        """Return the states of one run of DOP853 or Radau with a `local` tolerance.
 
         The `tolerance` is only for the error message.
         """

@@ -1,4 +1,4 @@
-"""The energy of a motion, which rolling without slipping conserves."""
+"""The energy and the momentum of a motion, which rolling without slipping conserves."""
 
 import math
 
@@ -32,3 +32,15 @@ def kinetic_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
         + load.mass * (along**2 + across**2)
         + load.inertia * motion.phi_dot**2
     ) / 2
+
+
+def axis_without_swing(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
+    """Return u - (m b / M_e) sin(phi) [m] and its rate [m/s], which the swing of a sliding load leaves alone."""
+    arm = scene.load.mass * scene.load.offset / (scene.mass + scene.can.inertia / scene.can.radius**2)
+    return motion.u - arm * np.sin(motion.phi), motion.u_dot - arm * np.cos(motion.phi) * motion.phi_dot
+
+
+def steady_acceleration(scene: Scene) -> float:
+    """Return the derivative of that rate [m/s^2]: eq. (46)."""
+    effective_mass = scene.mass + scene.can.inertia / scene.can.radius**2
+    return scene.mass * scene.gravity * math.sin(scene.incline) / effective_mass

@@ -53,7 +53,7 @@ def _accelerations(
     if scene.dissipates:
         # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
         # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
-        torque, along = _dissipation(scene, phi_dot, u_dot)
+        torque, along = dissipation(scene, phi_dot, u_dot)
         arm = scene.load.mass * scene.load.offset * cos / effective_mass
         phi_ddot = phi_ddot + (torque + arm * along) / scene.oscillator.inertia(phi)
     across, uphill = sin * phi_ddot + cos * square, cos * phi_ddot - sin * square
@@ -63,7 +63,7 @@ def _accelerations(
     return (force + along) / effective_mass, phi_ddot, across, uphill  # eq. (46)
 
 
-def _dissipation(
+def dissipation(
     scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
     """Return the torque on the load [N m], and the force down the incline on the axis [N], of damping and drag."""

@@ -92,7 +92,7 @@ class Oscillator:
         """Return V [J] at `phi` [rad]."""
         return -self.slope * phi - self.depth * np.cos(phi - self.bottom)
 
-    def drop(self, phi: np.ndarray | float, start: float) -> np.ndarray:
+    def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
         turned = phi - start
         middle = (phi + start) / 2 - self.bottom

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 
+from mjbeer.theory.balance import Balance
 from mjbeer.theory.conserved import kinetic_energy, potential_energy
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import rolling_forces
+from mjbeer.theory.losses import followed
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.start import Start
 
@@ -52,12 +54,20 @@ class Record:
         self._at_first: tuple[float, float] | None = None
         self._last: Coordinates | None = None
         self._last_margin: tuple[float, float] | None = None
+        self._balance = Balance(scene) if scene.dissipates else None
 
     @classmethod
     def of(cls, motion: Coordinates, scene: Scene, friction: float = math.inf) -> "Record":
-        """Return the record of a motion whose samples are all there is; they may be in any order."""
+        """Return the record of a motion whose samples are all there is; they may be in any order.
+
+        With damping or drag, samples that are too far apart do not tell what the motion loses between them. Its drift
+        is then not known, and taken for none.
+        """
         record, order = cls(scene, friction), np.argsort(motion.time)
-        record.add(Coordinates(**{name: getattr(motion, name)[order] for name in Coordinates.__dataclass_fields__}))
+        ordered = Coordinates(**{name: getattr(motion, name)[order] for name in Coordinates.__dataclass_fields__})
+        if record._balance is not None and not followed(scene, ordered):
+            record._balance = None
+        record.add(ordered)
         return record
 
     def add(self, motion: Coordinates) -> None:
@@ -84,7 +94,12 @@ class Record:
         self._by_rates += float(np.trapezoid(np.append(np.abs(last.phi_dot), rates), time))
         self._by_angles += float(np.abs(np.diff(phi)).sum())
         self._add_energies(motion, first)
-        self._axis_change = _largest(self._axis_change, axis_drift(scene, motion, first))
+        if not scene.dissipates:
+            self._axis_change = _largest(self._axis_change, axis_drift(scene, motion, first))
+        elif self._balance is not None:
+            self._balance.add(motion, last)
+            self._energy_change, self._swing_change = self._balance.energy_change, self._balance.swing_change
+            self._axis_change = self._balance.axis_change
         self._last = _piece(motion, -1)
 
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
@@ -115,6 +130,8 @@ class Record:
     def energy_drift(self) -> float:
         """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
+        With damping or drag it is the change of the energy and the work that they have taken together.
+
         The total energy includes slip and lift, and is what users see. Warnings rest on `swing_drift` instead, where
         the energy of a can that runs away down the incline cannot hide a drift. The denominator is at least
         `_SMALL_SWING` of the well's depth, and at least `_ROUNDING` of the kinetic energy, which matters for a
@@ -125,7 +142,10 @@ class Record:
 
     @property
     def swing_drift(self) -> float:
-        """Return the largest change of the swing's energy J phi_dot^2 / 2 + V over its largest kinetic energy."""
+        """Return the largest change of the swing's energy J phi_dot^2 / 2 + V over its largest kinetic energy.
+
+        It is a change that damping and drag do not explain.
+        """
         return _ratio(self._swing_change, max(self.swing, _SMALL_SWING * self.scene.oscillator.depth))
 
     @property
@@ -147,7 +167,12 @@ class Record:
 
     @property
     def to_barrier(self) -> float:
-        """Return how far the energy of the motion is from that of the next barrier [J]; infinite if there is none."""
+        """Return how far the energy of the motion is from that of the next barrier [J]; infinite if there is none.
+
+        With damping or drag the energy falls, or is driven, and no barrier has a fixed distance from it.
+        """
+        if self.scene.dissipates:
+            return math.inf
         assert self._first is not None, "a record without a motion"
         oscillator, sign = self.scene.oscillator, 1
         if oscillator.slope < 0:
@@ -162,13 +187,15 @@ class Record:
 
     def _add_energies(self, motion: Coordinates, first: Coordinates) -> None:
         oscillator, kinetic = self.scene.oscillator, kinetic_energy(self.scene, motion)
-        total = kinetic + potential_energy(self.scene, motion)
         swing = oscillator.inertia(motion.phi) * motion.phi_dot**2 / 2
+        self._kinetic = _largest(self._kinetic, kinetic)
+        self.swing = _largest(self.swing, swing)
+        if self.scene.dissipates:
+            return
+        total = kinetic + potential_energy(self.scene, motion)
         if self._at_first is None:  # this piece begins with the first sample
             self._at_first = float(total[0]), float(swing[0])
         self._energy_change = _largest(self._energy_change, total - self._at_first[0])
-        self._kinetic = _largest(self._kinetic, kinetic)
-        self.swing = _largest(self.swing, swing)
         change = swing - self._at_first[1] - oscillator.drop(motion.phi, float(first.phi[0]))
         self._swing_change = _largest(self._swing_change, change)
 
