@@ -45,6 +45,10 @@ class UntrustedWarning(UserWarning):
     """A run is not to be relied on, as all of its steps show; `Trajectory.warnings` has the reasons."""
 
 
+class LiquidWarning(UserWarning):
+    """A liquid is so thick that its damping by the laws of one lump is an order of magnitude only."""
+
+
 class TemplateError(MjbeerError):
     """An MJCF template is missing, lacks a part that mjbeer uses, or has a part that could act on the motion."""
 
