@@ -66,11 +66,11 @@ def _roots(square: float, linear: float, constant: float, excess: float) -> np.n
     end = highest if gap(highest) >= 0 else square
     unit = excess / (square**2 + linear) if excess > 0 else 1.0  # the root's size where it is small
     pair = unit * root(lambda share: gap(unit * share), 0.0, end / unit) if excess > 0 else 0.0
-    if pair < square / 2:
-        single = pair - square
-    else:
+    single = pair - square
+    if -single < square / 16:  # a small difference: the root of pair s^2 + B s + C next to it has its digits
         both = linear + math.sqrt(max(linear**2 - 4 * pair * constant, 0.0))
-        single = -2 * constant / both if both > 0 else 0.0
+        if both > 0:
+            single = min(-2 * constant / both, -both / (2 * pair), key=lambda root: abs(root - (pair - square)))
     product = -constant / single if single else linear
     half, spread = pair / 2, pair**2 / 4 - product
     if spread < 0:
