@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -12,6 +13,7 @@ from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.forces import accelerations
+from mjbeer.theory.viscous_modes import _roots
 from tests.support.scenes import METAL, scenes
 
 # A few sums and products.
@@ -109,6 +111,23 @@ def test_modes_are_roots_of_the_cubic(c: float) -> None:
     residual = np.polyval(cubic, found) / np.polyval(np.abs(cubic), np.abs(found))
     assert np.abs(residual).max() < ROUNDING
     assert (found.real < 0).all()
+
+
+def test_roots_of_any_cubic() -> None:
+    """Relative to each root, against mpmath; double roots are left out, as coefficients do not tell them to an eps."""
+    pick, tried = np.random.default_rng(1), 0
+    while tried < 100:
+        square, linear, constant = (float(each) for each in 10 ** pick.uniform(-4, 4, 3))
+        if square * linear < 2 * constant:  # unstable, or a difference that cancels
+            continue
+        with mpmath.workdps(40):
+            expected = [complex(each) for each in mpmath.polyroots([1, square, linear, constant], 500, extraprec=200)]
+        found, sizes = _roots(square, linear, constant, square * linear - constant), np.abs(expected)
+        gaps = np.abs(np.subtract.outer(expected, expected)) / np.maximum.outer(sizes, sizes) + np.eye(3)
+        if gaps.min() > 1e-2:
+            tried += 1
+            for each in expected:
+                assert np.abs(found - each).min() < 1e-14 * abs(each)
 
 
 def test_modes_of_weak_and_strong_damping() -> None:

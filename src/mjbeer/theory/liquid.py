@@ -144,7 +144,7 @@ def liquid_in(
         law, damping = "thin layers", _fitted(thin, slip)
         if (reynolds := slip * a * arc * a / nu) > _TURBULENT:
             raise ParameterError(
-                f"the layer on the wall is turbulent, with a Reynolds number of {reynolds:.2g}, which no law "
+                f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}), which no law "
                 f"here knows: the viscosity is too small or the can too fast, got {nu:.4g} m^2/s, incline = {incline!r} rad, "
                 f"fill = {fill!r}, gravity = {gravity!r} m/s^2 and density = {density!r} kg/m^3 in {free.can!r}"
             )
