@@ -146,7 +146,8 @@ def liquid_in(
             raise ParameterError(
                 f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}), which no law "
                 f"here knows: the viscosity is too small or the can too fast, got {nu:.4g} m^2/s, "
-                f"incline = {incline!r} rad, fill = {fill!r}, gravity = {gravity!r} m/s^2, density = {density!r} kg/m^3 in {free.can!r}"
+                f"incline = {incline!r} rad, fill = {fill!r}, gravity = {gravity!r} m/s^2, "
+                f"density = {density!r} kg/m^3 in {free.can!r}"
             )
     return Liquid(name, density, nu, law, slip, math.sqrt(nu * slip / free.gravity), damping)
 
