@@ -7,9 +7,11 @@ docstrings cite are from K. T. McDonald, "The Rolling Motion of a Half-Full Beer
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from mjbeer.exceptions import AngleWarning, MjbeerError, UntrustedWarning
+from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
 from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
+from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
 from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 __all__ = [
     "AngleWarning",
     "Can",
+    "Damping",
+    "LiquidWarning",
     "Load",
     "MjbeerError",
     "Scene",
@@ -34,6 +38,7 @@ __all__ = [
     "export",
     "frozen",
     "hoop",
+    "liquid",
     "pendulum",
     "render",
     "simulate",

@@ -17,6 +17,10 @@ class NoLibrationError(MjbeerError):
     """The motion asked for is no libration: its amplitude or start is at or beyond the separatrix."""
 
 
+class DissipationError(MjbeerError):
+    """The scene has damping or drag, or has none, and what was asked for has a meaning only in the other case."""
+
+
 class UnsupportedError(MjbeerError):
     """MuJoCo, or another engine, cannot model this scene with the requested way of rolling."""
 
@@ -39,6 +43,10 @@ class AngleWarning(UserWarning):
 
 class UntrustedWarning(UserWarning):
     """A run is not to be relied on, as all of its steps show; `Trajectory.warnings` has the reasons."""
+
+
+class LiquidWarning(UserWarning):
+    """A liquid is so thick that its damping by the laws of one lump is an order of magnitude only."""
 
 
 class TemplateError(MjbeerError):

@@ -238,7 +238,7 @@ def test_turning_times() -> None:
     scene = sliding()
     period = scene.period(1.0)
     motion = exact(scene, np.arange(0, 3.2 * period, period / 1000.3), 1.0)
-    assert turning_times(motion, scene.oscillator)[-6:] == pytest.approx(np.arange(1, 7) * period / 2, rel=1e-9)
+    assert turning_times(motion, scene)[-6:] == pytest.approx(np.arange(1, 7) * period / 2, rel=1e-9)
 
 
 @pytest.mark.parametrize(("scene", "phi0", "phi_dot0"), [(sliding(), 0.5, 0.0), (sliding(), 0.0, 60.0)])

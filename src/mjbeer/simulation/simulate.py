@@ -51,9 +51,9 @@ def simulate(
     implicit method Radau, which is slower, where strong damping makes the motion stiff, and otherwise DOP853, which
     chooses its own steps; the trajectory says which it was. The run is repeated until the error of phi and u/a over the
     whole motion is below the tolerance, relative to the angle where that exceeds 1 rad; the trajectory has the
-    estimate. `timestep` is then the sampling interval, and what a contact is tuned to. The tolerance bounds the error of
-    integrating the model. The model itself is exact for "reduced" and "equality", but not for a soft contact. Without a
-    tolerance the trajectory estimates its error when it is asked for it.
+    estimate. `timestep` is then the sampling interval, and what a contact is tuned to. The tolerance bounds the error
+    of integrating the model. The model itself is exact for "reduced" and "equality", but not for a soft contact.
+    Without a tolerance the trajectory estimates its error when it is asked for it.
 
     A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
     `UntrustedWarning`. A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless

@@ -55,14 +55,24 @@ class Damping:
 
     def rate(self, torque: float) -> float:
         """Return the slip rate [rad/s] at which the torque is `torque` [N m]; it is infinite if there is no damping."""
-        if torque == 0:
-            return 0.0
-        size, powers = abs(torque), enumerate(self.coefficients, start=1)
-        # Each term alone would need a larger rate. Newton's method falls from above, as the torque is convex.
-        rate = min(((size / share) ** (1 / power) for power, share in powers if share > 0), default=math.inf)
-        while rate < math.inf and (lower := rate - (self.torque(rate) - size) / self.slope(rate)) < rate:
-            rate = float(lower)
-        return math.copysign(rate, torque)
+        return root(self.coefficients, torque)
+
+
+def root(coefficients: tuple[float, float, float], value: float) -> float:
+    """Return x with c1 x + c2 x |x| + c3 x^3 = `value`, where no coefficient is negative; infinite if all are zero."""
+    if value == 0:
+        return 0.0
+    size, (linear, quadratic, cubic) = abs(value), coefficients
+    # Each term alone would need a larger x. Newton's method falls from above, as the sum is convex.
+    terms = enumerate(coefficients, start=1)
+    x = min(((size / share) ** (1 / power) for power, share in terms if share > 0), default=math.inf)
+    while x < math.inf:
+        excess = x * (linear + x * (quadratic + x * cubic)) - size
+        lower = x - excess / (linear + x * (2 * quadratic + x * 3 * cubic))
+        if not lower < x:
+            break
+        x = lower
+    return math.copysign(x, value)
 
 
 _NONE = Damping()

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory import motion
+from mjbeer.theory import motion, viscous
 from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -27,7 +27,8 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, man
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e10 and 1e10
         rad or -1e50 and 1e50 rad/s, or the motion is too extreme for double precision.
       NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
-      ToleranceError: if the times are so late that the rounding of the scene changes phi by more than 1e-4 rad.
+      ToleranceError: if the times are so late that the rounding of the scene changes phi by more than 1e-4 rad; with
+        damping or drag, also if the start is so near an unstable balance, or the motion takes too many steps.
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
@@ -35,8 +36,11 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, man
     time = require.times("time", time)
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
-            phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
-            u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
+            if scene.dissipates:
+                phi, phi_dot, u, u_dot = viscous.solve(scene, time, phi0=phi0, phi_dot0=phi_dot0)
+            else:
+                phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
+                u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
             roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
     except (ArithmeticError, ValueError) as error:
         raise ParameterError(

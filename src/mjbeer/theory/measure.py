@@ -6,7 +6,8 @@ import numpy as np
 
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.oscillator import Oscillator
+from mjbeer.theory.forces import accelerations
+from mjbeer.theory.scene import Scene
 
 _LEAST_SWING = 1e-10
 """Smallest swing whose frequency is measured [rad], relative beyond 1 rad: a million times the rounding of phi."""
@@ -58,14 +59,14 @@ def takeoff(motion: Coordinates, radius: float) -> float | None:
     return None if not len(above) else math.pi - float(motion.phi[above[0]])
 
 
-def turning_times(motion: Coordinates, oscillator: Oscillator) -> np.ndarray:
+def turning_times(motion: Coordinates, scene: Scene) -> np.ndarray:
     """Return the times [s] at which phi_dot changes sign, with an error of fourth order in the sampling interval.
 
     Between the two samples around a change of sign, phi_dot is replaced by the cubic that has its values and its
     derivatives at both. The derivatives, phi_ddot, come from the equation of motion.
     """
     time, phi_dot = motion.time, motion.phi_dot
-    phi_ddot = oscillator.acceleration(motion.phi, phi_dot)
+    _, phi_ddot = accelerations(scene, motion.phi, phi_dot, motion.u_dot)
     turns = []
     for before in np.flatnonzero((phi_dot[:-1] > 0) != (phi_dot[1:] > 0)):
         step = time[before + 1] - time[before]
@@ -79,25 +80,38 @@ def turning_times(motion: Coordinates, oscillator: Oscillator) -> np.ndarray:
     return np.array(turns)
 
 
-def require_swing(motion: Coordinates, oscillator: Oscillator, phi0: float, phi_dot0: float) -> None:
+def swinging(motion: Coordinates, scene: Scene) -> Coordinates:
+    """Return the samples of a motion up to the last that still swings, where damping or drag ends the swing.
+
+    What is left then is the rounding of phi_dot, whose changes of sign are no turning points.
+    """
+    if not scene.dissipates:
+        return motion
+    least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(motion.phi).max()))
+    last = int(np.flatnonzero(np.abs(motion.phi_dot) > least).max(initial=-1)) + 1
+    return Coordinates(**{name: getattr(motion, name)[:last] for name in Coordinates.__dataclass_fields__})
+
+
+def require_swing(motion: Coordinates, scene: Scene, phi0: float, phi_dot0: float) -> None:
     """Check that turning points of the motion from a start [rad, rad/s] are those of a swing that its samples follow.
 
     Raises:
       NoEquilibriumError: if the load has no equilibrium to swing about.
       MjbeerError: if the motion rests but for rounding and the softness of a contact, or its samples are too far apart.
     """
-    rest = oscillator.equilibrium()
+    rest, oscillator = scene.equilibrium(), scene.oscillator
     rest += 2 * math.pi * round((phi0 - rest) / (2 * math.pi))
-    energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + float(oscillator.drop(rest, phi0))
-    least = oscillator.stiffness() * (_LEAST_SWING * max(1.0, abs(phi0))) ** 2 / 2
-    kinetic = float((oscillator.inertia(motion.phi) * motion.phi_dot**2).max()) / 2
-    if not energy > least or kinetic > 2 * energy:
-        raise MjbeerError(
-            f"no frequency: the load starts with {energy:.2g} J above its equilibrium, which is a swing of less than "
-            f"{_LEAST_SWING:g} rad, or one that is hidden by what else moves the load, up to {kinetic:.2g} J"
-        )
+    if not scene.dissipates:  # `swinging` does it where the energy is not that of a swing alone
+        energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + float(oscillator.drop(rest, phi0))
+        least = oscillator.stiffness() * (_LEAST_SWING * max(1.0, abs(phi0))) ** 2 / 2
+        kinetic = float((oscillator.inertia(motion.phi) * motion.phi_dot**2).max()) / 2
+        if not energy > least or kinetic > 2 * energy:
+            raise MjbeerError(
+                f"no frequency: the load starts with {energy:.2g} J above its equilibrium, which is a swing of less "
+                f"than {_LEAST_SWING:g} rad, or one that is hidden by what else moves the load, up to {kinetic:.2g} J"
+            )
     phi, phi_dot, step = motion.phi, motion.phi_dot, np.diff(motion.time)
-    phi_ddot = oscillator.acceleration(phi, phi_dot)
+    _, phi_ddot = accelerations(scene, phi, phi_dot, motion.u_dot)
     turned = step * (phi_dot[:-1] + phi_dot[1:]) / 2 - step**2 * np.diff(phi_ddot) / 12
     if len(phi) > 1 and not np.abs(turned - np.diff(phi)).max() <= _FOLLOWED * np.ptp(phi):
         raise MjbeerError(

@@ -5,9 +5,11 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Literal, get_args
 
+import numpy as np
+
 from mjbeer import messages, require
-from mjbeer.exceptions import NoEquilibriumError, ParameterError
-from mjbeer.theory import motion
+from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
+from mjbeer.theory import motion, steady_rolling, viscous_modes
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import BEER, Load
@@ -110,11 +112,15 @@ class Scene:
         """Return the angle phi of stable equilibrium [rad]: eq. (53) for a frozen load, with the can's mass included.
 
         For a sliding load it is the angle at which the can accelerates steadily, tan phi =
-        (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4; it is zero for a massless can.
+        (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4; it is zero for a massless can. With damping or drag it
+        is `terminal_tilt`.
 
         Raises:
-          NoEquilibriumError: if there is none; for a frozen load the message names the largest incline that has one.
+          NoEquilibriumError: if there is none; for a frozen load, and with damping or drag, the message names the
+            largest incline that has one.
         """
+        if self.dissipates:
+            return self.terminal_tilt()
         try:
             return self.oscillator.equilibrium()
         except NoEquilibriumError as error:
@@ -129,8 +135,11 @@ class Scene:
     def largest_incline(self) -> float:
         """Return the largest incline with an equilibrium [rad]: the text below eq. (53).
 
-        A sliding load has an equilibrium on every incline, so that the limit is pi/2.
+        A sliding load has an equilibrium on every incline, so that the limit is pi/2. With damping the limit is that of
+        a frozen load, which drag makes larger: beyond it there is no steady rolling.
         """
+        if self.dissipates:
+            return steady_rolling.largest_incline(self)
         if self.attachment == "sliding":
             return math.pi / 2
         return math.asin(self.load.mass * self.load.offset / (self.mass * self.can.radius))
@@ -138,9 +147,18 @@ class Scene:
     def frequency(self) -> float:
         """Return the angular frequency of small swings about the equilibrium [rad/s]: eq. (10), eq. (55) corrected.
 
+        With damping or drag it is the imaginary part of the swing's `modes`, whose real part is the decay.
+
         Raises:
           NoEquilibriumError: if there is no equilibrium.
+          NoLibrationError: if the damping is such that the load creeps back without a swing.
         """
+        if self.dissipates:
+            roots = self.modes()
+            if not (fastest := float(roots.imag.max())) > 0:
+                decays = ", ".join(f"{root:.4g}" for root in roots.real)
+                raise NoLibrationError(f"no frequency: the load creeps back without a swing, with rates {decays} 1/s")
+            return fastest
         self.equilibrium()
         return self.oscillator.frequency()
 
@@ -152,8 +170,10 @@ class Scene:
           NoEquilibriumError: if there is no equilibrium.
           NoLibrationError: if `amplitude` is at or beyond the separatrix, or within the rounding of it.
           ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
+          DissipationError: if the scene has damping or drag, so that no swing is like the one before.
         """
         amplitude = require.number("amplitude", amplitude, "rad")
+        steady_rolling.require_no_dissipation(self, "no period")
         self.equilibrium()
         return motion.period(self.oscillator, amplitude)
 
@@ -162,9 +182,57 @@ class Scene:
 
         Raises:
           NoEquilibriumError: if there is no equilibrium.
+          DissipationError: if the scene has damping or drag, so that no swing lasts.
         """
+        steady_rolling.require_no_dissipation(self, "no largest swing")
         self.equilibrium()
         return self.oscillator.separatrix()
+
+    def terminal_speed(self) -> float:
+        """Return the speed of the axis down the incline [m/s] at which a can with damping or drag rolls steadily.
+
+        Its load then stands still at `terminal_tilt`. With linear damping alone it is m_t g sin(alpha) a^2/c.
+
+        Raises:
+          DissipationError: if the scene has neither damping nor drag.
+          NoEquilibriumError: if there is no steady rolling; above the largest incline the message names that.
+        """
+        return steady_rolling.steady_rolling(self).speed
+
+    def terminal_tilt(self) -> float:
+        """Return the angle phi [rad] at which the load of a can with damping or drag stands still, once it does.
+
+        Without drag it is that of eq. (53) with the can's mass included, whatever the damping.
+
+        Raises:
+          DissipationError: if the scene has neither damping nor drag.
+          NoEquilibriumError: if there is no steady rolling; above the largest incline the message names that.
+        """
+        return steady_rolling.steady_rolling(self).tilt
+
+    def modes(self) -> np.ndarray:
+        """Return the roots s [1/s] of the three modes exp(s t) of small motions about steady rolling.
+
+        They are complex, of shape (3,), and sorted by their real parts: what decays fastest is first. Damping and drag
+        that are not linear count with their slopes at the terminal speed.
+
+        Raises:
+          DissipationError: if the scene has neither damping nor drag.
+          NoEquilibriumError: if there is no steady rolling.
+          ParameterError: if the roots are beyond double precision.
+        """
+        return viscous_modes.modes(self)
+
+    def slip_rate(self) -> float:
+        """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
+
+        It is steady in the mean if the load stands still, and also if it loops with a rate that is periodic in phi. The
+        variance of the slip rate is then D times the load's mean rate.
+
+        Raises:
+          DissipationError: if the damping is not linear, or there is none, or there is drag.
+        """
+        return steady_rolling.slip_rate(self)
 
     def start(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
         """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
@@ -185,11 +253,14 @@ class Scene:
         With a sliding load it is steady at the equilibrium: footnote 4, or eq. (1) for a massless can. A frozen load
         has none; what is returned is the acceleration as if the load were balanced about the axis with the same
         inertia, (2/3) g sin(alpha) for half a massless can of beer (A.3). In the long run the unbalanced load rolls
-        down faster, by the factor mean(J) / mean(sqrt(J))^2.
+        down faster, by the factor mean(J) / mean(sqrt(J))^2. With damping or drag the speed is bounded, and the
+        acceleration 0, in the long run; only a balanced load without drag lets the can go ever faster, as a frozen one.
         """
         force = self.mass * self.gravity * math.sin(self.incline)
         effective_can_mass = self.can.mass + self.can.inertia / self.can.radius**2
-        if self.attachment == "sliding":
+        if self.dissipates and (self.load.offset > 0 or self.drag > 0):
+            return 0.0
+        if self.attachment == "sliding" and not self.dissipates:
             return force / (self.load.mass + effective_can_mass)
         load_inertia = self.load.inertia + self.load.mass * self.load.offset**2
         return force / (self.load.mass + effective_can_mass + load_inertia / self.can.radius**2)

@@ -175,16 +175,20 @@ class Trajectory(Coordinates):
     def frequency(self) -> float:
         """Return the angular frequency of the swing [rad/s], measured at all its turning points.
 
+        With damping or drag these are the turning points until the swing has died away.
+
         Raises:
           NoEquilibriumError: if the load has no equilibrium to swing about.
+          NoLibrationError: if the damping lets it creep back without a swing.
           MjbeerError: if the motion hardly swings, if its samples are further apart than about a third of a period, or
             if there are fewer than three turning points among them, which bound a whole period.
         """
-        turns = measure.turning_times(self, self.scene.oscillator)
+        swing = measure.swinging(self, self.scene)
+        turns = measure.turning_times(swing, self.scene)
         if len(turns) < 3:
             raise MjbeerError(
                 f"no frequency: the motion turns {len(turns)} times in {self.time[-1]:.6g} s, 3 are needed"
             )
-        measure.require_swing(self, self.scene.oscillator, phi0=self.phi0, phi_dot0=self.phi_dot0)
+        measure.require_swing(swing, self.scene, phi0=self.phi0, phi_dot0=self.phi_dot0)
         periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
         return float(2 * np.pi * periods / (turns[2 * periods] - turns[0]))

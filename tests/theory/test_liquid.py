@@ -1,0 +1,131 @@
+"""Damping of real liquids: the coefficients of the laws by their boundary value problems, the fit, and the scenes."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from mjbeer import Can, LiquidWarning, liquid, sliding
+from mjbeer.exceptions import ParameterError
+from mjbeer.theory.liquid import ENDS, FIT_ERROR, WALL, liquid_in
+from mjbeer.theory.liquids import NAMES
+from mjbeer.theory.segment import segment
+
+# The coefficients are rounded to four and five digits.
+DIGITS = 1e-4
+
+
+def test_wall_is_sakiadis_layer() -> None:
+    """f''' + f f''/2 = 0 with f = 0, f' = 1 at the wall and f' = 0 far away: the drag is -2 f''(0)."""
+    x = np.linspace(0, 20, 200)
+    found = solve_bvp(
+        lambda _, y: np.array([y[1], y[2], -y[0] * y[2] / 2]),
+        lambda wall, far: np.array([wall[0], wall[1] - 1, far[1]]),
+        x,
+        np.array([1 - np.exp(-x), np.exp(-x), -np.exp(-x)]),
+        tol=1e-8,
+        max_nodes=10_000,
+    )
+    assert found.success
+    assert -2 * found.y[2, 0] == pytest.approx(WALL, rel=DIGITS)
+
+
+def test_ends_are_von_karman_s_layers() -> None:
+    """On one face of a whole disc the torque is pi/2 times -G'(0), over rho sqrt(nu) W^1.5 a^4."""
+    x = np.linspace(0, 20, 400)
+    f, g = 0.5 * np.exp(-x), np.exp(-x)
+    found = solve_bvp(
+        lambda _, y: np.array(
+            [y[1], y[0] ** 2 - y[2] ** 2 + y[4] * y[1], y[3], 2 * y[0] * y[2] + y[4] * y[3], -2 * y[0]]
+        ),
+        lambda wall, far: np.array([wall[0], wall[2] - 1, wall[4], far[0], far[2]]),
+        x,
+        np.array([x * f, f, g, -g, -0.88 * (1 - g)]),
+        tol=1e-7,
+        max_nodes=10_000,
+    )
+    assert found.success
+    assert -2 * found.y[3, 0] == pytest.approx(ENDS, rel=DIGITS)
+    half = segment(0.5)
+    assert half.area * (half.inertia + half.offset**2) == pytest.approx(math.pi / 4, rel=1e-14)
+    assert ENDS * math.pi / 4 == pytest.approx(0.97, abs=5e-3)  # both ends of a half-full can
+
+
+def test_creep_has_the_shear_of_stokes_flow_in_a_half_disc() -> None:
+    """The stream function sum b_n (r^n - r^(n+2)) sin(n theta), n odd, is biharmonic and odd, so that the flat side is
+    free. On the wall it has the speed 2 sum b_n sin(n theta), which is 1 for b_n = 2/(pi n), and the shear
+    4 sum n b_n sin(n theta). Abel's sums with r = 1 - 1e-4 give both to about that."""
+    n = np.arange(1, 400_000, 2)
+    damped = np.exp(-1e-4 * n)
+    for theta in (0.3, 1.2):
+        sines = damped * np.sin(n * theta)
+        assert (sines / n).sum() * 4 / math.pi == pytest.approx(1, abs=1e-3)
+        assert sines.sum() * 8 / math.pi == pytest.approx(4 / (math.pi * math.sin(theta)), rel=1e-3)
+    integral = 2 * math.log(1 / math.tan(1e-3 / 2))  # of 1/sin(theta) but for 1e-3 at both edges
+    assert integral == pytest.approx(2 * math.log(2 / 1e-3), rel=1e-6)
+
+
+def test_the_fit_is_as_near_as_it_says() -> None:
+    used = liquid_in("water")
+    exact_torque = used.damping.torque(used.slip)
+    assert exact_torque == pytest.approx(sliding(density=used.density).mass * 9.81 * 0.033 * math.sin(math.radians(10)))
+    x = np.geomspace(0.139, 1.39, 2001)
+    ratio = used.damping.torque(used.slip * x) / (exact_torque * x**1.5)
+    assert abs(ratio - 1).max() == pytest.approx(FIT_ERROR, rel=0.02)  # the ends are rounded to three digits
+    assert ratio.min() == pytest.approx(1 - FIT_ERROR, rel=1e-4)
+
+
+# Half full, 33 x 120 mm, at 10 degrees, as estimated once with slightly other viscosities: the effective damping
+# torque/slip rate [N m s], and the terminal speed [m/s], to the two digits that were given.
+ESTIMATES = [("water", 9.0e-5, 4.2), ("beer", 1.06e-4, 3.6), ("olive oil", 3.7e-4, 0.95), ("honey", 1.4e-2, 0.04)]
+
+
+@pytest.mark.filterwarnings("ignore::mjbeer.LiquidWarning")
+@pytest.mark.parametrize(("name", "effective", "speed"), ESTIMATES)
+def test_liquids_roll_as_estimated(name: str, effective: float, speed: float) -> None:
+    scene, used = liquid(name), liquid_in(name)
+    assert scene.terminal_speed() == pytest.approx(used.slip * 0.033, rel=1e-12)
+    assert scene.terminal_speed() == pytest.approx(speed, rel=0.15)
+    assert used.damping.torque(used.slip) / used.slip == pytest.approx(effective, rel=0.15)
+    assert used.law == ("creep" if name == "honey" else "thin layers")
+
+
+def test_a_swing_has_stokes_layers() -> None:
+    """c of the table: water 4.9e-5 with the frequency of the massless can, to its two digits."""
+    used = liquid_in("water", incline=0.0, viscosity=1e-6, density=1000.0)
+    omega = sliding(0.0).frequency()
+    wall, ends = math.pi * 0.033**3 * 0.12, math.pi * 0.033**4 / 2
+    assert used.damping.linear == pytest.approx(1000 * math.sqrt(1e-6 * omega / 2) * (wall + ends), rel=1e-12)
+    assert used.damping.linear == pytest.approx(4.9e-5, rel=0.02)
+    assert liquid("water", incline=0.0).damping == liquid_in("water", incline=0.0).damping
+
+
+def test_thick_liquids_warn() -> None:
+    for name in NAMES:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            liquid(name)
+        assert [each.category for each in caught] == [LiquidWarning] * (name in {"glycerol", "honey"})
+
+
+def test_damping_grows_with_viscosity_without_a_jump() -> None:
+    """Where creep takes over from the layers the torque is the same."""
+    slips = [liquid_in(viscosity=nu).slip for nu in np.geomspace(1e-6, 1e-1, 400)]
+    ratios = np.array(slips[1:]) / slips[:-1]
+    assert (ratios < 1).all()
+    assert ratios.min() > 0.97  # creep: in proportion to 1/nu, 2.9 % a step
+
+
+def test_what_is_not_allowed() -> None:
+    with pytest.raises(ParameterError, match=r"liquid must be one of .*; got 'Watr': did you mean 'water'\?"):
+        liquid("Watr")
+    with pytest.raises(ParameterError, match=r"viscosity must be greater than 0 \[m\^2/s\], got -1"):
+        liquid(viscosity=-1)
+    with pytest.raises(ParameterError, match=r"the layer on the wall is turbulent .* got 1e-08 m"):
+        liquid(viscosity=1e-8)
+    with pytest.raises(ParameterError, match="fill must be less than 1 and gravity more than 0"):
+        liquid(fill=1.0)
+    assert str(liquid_in("honey")).startswith("honey: 1420 kg/m^3, 0.007 m^2/s, damped by creep at a slip rate of")
+    assert liquid(can=Can.sheet_metal(), drag=1e-3).drag == 1e-3

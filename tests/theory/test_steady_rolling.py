@@ -1,0 +1,233 @@
+"""Steady rolling of a damped can and the modes of small motions about it: closed forms against what they stand for."""
+
+import math
+from dataclasses import replace
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from mjbeer import Can, Load, Scene, exact, frozen, sliding
+from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
+from mjbeer.theory.damping import Damping
+from mjbeer.theory.forces import accelerations
+from mjbeer.theory.viscous_modes import _roots
+from tests.support.scenes import METAL, scenes
+
+# A few sums and products.
+ROUNDING = 4e-15
+LAWS = {"linear": 2e-3, "every power": Damping(1e-3, 1e-5, 1e-7), "no linear part": Damping(0, 1e-4, 0)}
+
+
+def letters(scene: Scene) -> tuple[float, float, float, float, float]:
+    """M, P, k, I and a at the tilt."""
+    m, b, a = scene.load.mass, scene.load.offset, scene.can.radius
+    tilt = scene.terminal_tilt()
+    return (
+        scene.mass + scene.can.inertia / a**2,
+        m * b * math.cos(tilt),
+        m * b * scene.gravity * math.cos(scene.incline + tilt),
+        scene.load.inertia + m * b**2,
+        a,
+    )
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS.keys())
+@pytest.mark.parametrize("drag", [0.0, 0.02])
+@pytest.mark.parametrize("incline", [0.2, -0.3, 0.0])
+def test_nothing_accelerates(law: float | Damping, drag: float, incline: float) -> None:
+    scene = sliding(incline, can=METAL, damping=law, drag=drag)
+    found = accelerations(scene, scene.terminal_tilt(), 0.0, scene.terminal_speed())
+    assert np.array(found) / [scene.gravity, scene.gravity / 0.033] == pytest.approx([0, 0], abs=ROUNDING)
+    assert scene.equilibrium() == scene.terminal_tilt()
+    assert scene.acceleration() == 0
+
+
+def test_tilt_is_that_of_the_frozen_can_and_speed_a_closed_form() -> None:
+    for can in (Can(), METAL):
+        for c in (1e-9, 1e-3, 1e6):
+            scene = sliding(can=can, damping=c)
+            assert scene.terminal_tilt() == frozen(can=can).equilibrium()
+            speed = scene.mass * 9.81 * math.sin(scene.incline) * 0.033**2 / c
+            assert scene.terminal_speed() == pytest.approx(speed, rel=ROUNDING)
+            assert scene.slip_rate() == pytest.approx(speed / 0.033, rel=ROUNDING)
+            assert scene.largest_incline() == frozen(can=can).largest_incline()
+    assert sliding(damping=1.0).terminal_tilt() == pytest.approx(0.24699, abs=5e-6)
+
+
+def test_steady_rolling_ends_at_the_largest_incline() -> None:
+    for scene in (sliding(damping=1e-3), sliding(can=METAL, damping=Damping(1e-3, 1e-5), drag=0.05)):
+        limit = scene.largest_incline()
+        assert limit < math.pi / 2
+        assert replace(scene, incline=limit * (1 - 1e-9)).terminal_tilt() > 0
+        above = replace(scene, incline=limit * (1 + 1e-9))
+        for ask in (above.terminal_speed, above.terminal_tilt, above.modes, above.frequency, above.equilibrium):
+            with pytest.raises(NoEquilibriumError, match=rf"only up to {math.degrees(limit):.1f} degrees"):
+                ask()
+    assert sliding(1.5, drag=0.01).largest_incline() == math.pi / 2
+    assert sliding(1.5, drag=0.01).terminal_tilt() == pytest.approx(-1.5, rel=ROUNDING)  # the load hangs down
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(scenes(), st.floats(-3, 3), st.sampled_from([0.0, 1.0, 100.0]), st.floats(-0.95, 0.95))
+def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: float) -> None:
+    """Of the Jacobian of the accelerations, by central differences, over six decades of damping."""
+    scene = replace(scene, attachment="sliding")
+    a = scene.can.radius
+    clock = math.sqrt(a / scene.gravity)
+    mass = scene.mass + scene.can.inertia / a**2
+    scene = replace(scene, damping=10**power * mass * a**2 / clock, drag=drag * scene.mass / a)
+    scene = replace(scene, incline=steep * scene.largest_incline())
+    state = np.array([scene.terminal_tilt(), 0.0, scene.terminal_speed()])
+
+    def slope(state: np.ndarray) -> np.ndarray:
+        u_ddot, phi_ddot = accelerations(scene, state[0], state[1], state[2])
+        return np.array([state[1], float(phi_ddot), float(u_ddot)])
+
+    # The law is linear and the drag a square, of which central differences are exact; phi's is of third order.
+    steps = np.array([1e-5, 1e-4 / clock, 0.1 * abs(state[2]) if drag else 1e-4 * a / clock])
+    assume(not drag or abs(steep) > 0.05)  # at rest the drag has a corner, of which central differences see a slope
+    jacobian = np.stack(
+        [(slope(state + step) - slope(state - step)) / (2 * step.sum()) for step in np.diag(steps)], axis=1
+    )
+    units = np.array([1.0, 1 / clock, a / clock])
+    roots, expected = scene.modes(), np.sort_complex(np.linalg.eigvals(jacobian * units / units[:, np.newaxis]))
+    spread = np.abs(np.subtract.outer(expected, expected))[~np.eye(3, dtype=bool)].min()
+    assume(spread > 1e-2 * np.abs(expected).max())  # double roots are as uncertain as the root of a Jacobian
+    assert np.abs(roots - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("c", [1e-6, 1e-4, 2.17e-3, 1e-2, 1.0, 1e3])
+def test_modes_are_roots_of_the_cubic(c: float) -> None:
+    """N s^3 + c (J_f/a^2) s^2 + M k s + c k/a^2 = 0 by NumPy, whose roots have an eps of the largest."""
+    scene = sliding(can=METAL, damping=c)
+    mass, moment, k, inertia, a = letters(scene)
+    frozen_inertia = mass * a**2 + inertia - 2 * moment * a
+    cubic = [mass * inertia - moment**2, c * frozen_inertia / a**2, mass * k, c * k / a**2]
+    expected, found = np.sort_complex(np.roots(cubic)), scene.modes()
+    assert found == pytest.approx(expected, abs=1e-14 * np.abs(expected).max())
+    residual = np.polyval(cubic, found) / np.polyval(np.abs(cubic), np.abs(found))
+    assert np.abs(residual).max() < ROUNDING
+    assert (found.real < 0).all()
+
+
+def test_roots_of_any_cubic() -> None:
+    """Relative to each root, against mpmath; double roots are left out, as coefficients do not tell them to an eps."""
+    pick, tried = np.random.default_rng(1), 0
+    while tried < 100:
+        square, linear, constant = (float(each) for each in 10 ** pick.uniform(-4, 4, 3))
+        if square * linear < 2 * constant:  # unstable, or a difference that cancels
+            continue
+        with mpmath.workdps(40):
+            expected = [complex(each) for each in mpmath.polyroots([1, square, linear, constant], 500, extraprec=200)]
+        found, sizes = _roots(square, linear, constant, square * linear - constant), np.abs(expected)
+        gaps = np.abs(np.subtract.outer(expected, expected)) / np.maximum.outer(sizes, sizes) + np.eye(3)
+        if gaps.min() > 1e-2:
+            tried += 1
+            for each in expected:
+                assert np.abs(found - each).min() < 1e-14 * abs(each)
+
+
+def test_modes_of_weak_and_strong_damping() -> None:
+    """The two limits, and decays to all their digits where they are 1e-10 of the frequency."""
+    scene = sliding(can=METAL, damping=1e-12)
+    mass, moment, k, inertia, a = letters(scene)
+    swinging, stiff = mass * inertia - moment**2, mass * a**2 + inertia - 2 * moment * a
+    weak = scene.modes()
+    assert weak[0].real == pytest.approx(-1e-12 / (mass * a**2), rel=1e-9)
+    assert weak[1].real == pytest.approx(-1e-12 * (mass * a - moment) ** 2 / (2 * mass * swinging * a**2), rel=1e-9)
+    assert abs(weak[1].imag) == pytest.approx(math.sqrt(mass * k / swinging), rel=1e-12)
+    strong = sliding(can=METAL, damping=1e8).modes()
+    assert strong[0].real == pytest.approx(-1e8 * stiff / (a**2 * swinging), rel=1e-12)
+    assert strong[1].real == pytest.approx(-(a**2) * k * (mass * a - moment) ** 2 / (2 * 1e8 * stiff**2), rel=1e-12)
+    assert abs(strong[1].imag) == pytest.approx(math.sqrt(k / stiff), rel=1e-12)
+
+
+@pytest.mark.parametrize("can", [Can(), METAL], ids=["massless", "metal"])
+def test_frequency_between_sliding_and_frozen(can: Can) -> None:
+    """(10) at c to 0, on level ground where both tilts are 0, and (55) corrected at c to infinity on any."""
+    assert sliding(0.0, can=can, damping=1e-12).frequency() == pytest.approx(
+        sliding(0.0, can=can).frequency(), rel=1e-12
+    )
+    for incline in (0.0, 0.2):
+        ice = frozen(incline, can=can).frequency()
+        assert sliding(incline, can=can, damping=1e9).frequency() == pytest.approx(ice, rel=1e-12)
+
+
+def test_the_massless_can_s_numbers() -> None:
+    """As measured by hand: the digits given are all that is compared."""
+    assert sliding(damping=1e-9).frequency() == pytest.approx(18.660, abs=5e-4)
+    assert sliding(damping=1e4).frequency() == pytest.approx(13.041, abs=5e-4)
+    assert sliding(damping=1.0).modes()[0].real == pytest.approx(-9159, abs=0.5)
+    assert sliding(damping=1e-6).modes()[0].real == pytest.approx(-4473e-6, abs=5e-7)
+    sizes = np.geomspace(1e-4, 1e-1, 601)  # a step of 1.2 %
+    decays = [-sliding(damping=c).modes()[1].real for c in sizes]
+    assert max(decays) == pytest.approx(3.41, abs=5e-3)
+    assert sizes[int(np.argmax(decays))] == pytest.approx(2.17e-3, rel=0.012)
+
+
+# At 30 degrees, as measured once with another program: c, the load's rate, the mean slip rate.
+LOOPS = [(3e-3, 132.9, 11.08), (1e-2, 112.7, 3.323)]
+
+
+@pytest.mark.parametrize(("c", "rate", "mean"), LOOPS)
+def test_mean_slip_and_its_variance(c: float, rate: float, mean: float) -> None:
+    """In the steady loops above the largest incline: D, and D times the mean rate, from one passage of phi to another.
+
+    Loops approach the steady ones as exp(-t/1 s) or so: after 7 s they are 1e-3 away. Beyond that the mean of the
+    u-equation holds to the last digit with what is left of the change of momentum.
+    """
+    scene = sliding(math.radians(30), damping=c)
+    fine = np.linspace(7, 8, 4001)
+    motion = exact(scene, fine, 0.0, rate)
+    turns = math.floor((motion.phi[-1] - motion.phi[0]) / (2 * math.pi) * 0.99)
+    last = int(np.searchsorted(motion.phi, motion.phi[0] + 2 * math.pi * turns))
+    nodes, weights = np.polynomial.legendre.leggauss(16)
+    ends = np.linspace(fine[0], fine[last], 8 * turns + 1)
+    halves, middles = np.diff(ends) / 2, (ends[1:] + ends[:-1]) / 2
+    run = exact(scene, (middles[:, np.newaxis] + halves[:, np.newaxis] * nodes).ravel(), 0.0, rate)
+    slip, duration = run.u_dot / scene.can.radius - run.phi_dot, fine[last] - fine[0]
+
+    def mean_of(values: np.ndarray) -> float:
+        return float((values.reshape(-1, 16) @ weights) @ halves) / duration
+
+    found, turning = mean_of(slip), mean_of(run.phi_dot)
+    moment = scene.load.mass * scene.load.offset
+    momentum = scene.mass * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot
+    gained = float(momentum[last] - momentum[0]) / duration * scene.can.radius / c
+    assert found + gained == pytest.approx(scene.slip_rate(), rel=1e-11)  # a hundred turns of rounding
+    assert found == pytest.approx(scene.slip_rate(), rel=5e-3)
+    assert mean_of((slip - found) ** 2) == pytest.approx(scene.slip_rate() * turning, rel=1e-2)
+    assert scene.slip_rate() == pytest.approx(mean, rel=5e-4)
+    assert turning == pytest.approx(rate, rel=3e-3)
+
+
+def test_what_has_no_answer_says_so() -> None:
+    plain, damped, mixed = sliding(), sliding(damping=1e-3), sliding(damping=1e-3, drag=0.01)
+    for ask in (plain.terminal_speed, plain.terminal_tilt, plain.modes, frozen().terminal_speed):
+        with pytest.raises(DissipationError, match="damping and drag are 0"):
+            ask()
+    for scene in (plain, mixed, sliding(damping=Damping(1e-3, 1e-5)), frozen()):
+        with pytest.raises(DissipationError, match=r"no mean slip rate .* linear damping without drag, got"):
+            scene.slip_rate()
+    for scene in (damped, mixed):
+        with pytest.raises(DissipationError, match=r"no period.*scene\.modes\(\) has the rates"):
+            scene.period(0.1)
+        with pytest.raises(DissipationError, match="no largest swing"):
+            scene.separatrix()
+    balanced = Scene(METAL, Load(0.3, 0.0, 1e-4), 0.2, damping=1e-3)
+    for scene in (balanced, replace(damped, gravity=0.0)):
+        with pytest.raises(NoEquilibriumError, match="nothing restores the load"):
+            scene.terminal_speed()
+    heavy = Scene(Can.hoop(mass=100.0), Load(0.3, 0.01, 1e-6), 0.0, damping=1e-2)
+    with pytest.raises(NoLibrationError, match="no frequency: the load creeps back without a swing, with rates"):
+        heavy.frequency()
+
+
+def test_a_balanced_load_lets_the_can_go_ever_faster() -> None:
+    scene = Scene(METAL, Load(0.3, 0.0, 1e-4), 0.2, damping=1e-2)
+    motion = exact(scene, [5.0, 6.0], 0.0)  # after a hundred decays of the slip rate
+    assert np.diff(motion.u_dot) == pytest.approx([scene.acceleration()], rel=1e-12)
+    assert replace(scene, drag=1e-3).acceleration() == 0
