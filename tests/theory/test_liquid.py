@@ -72,7 +72,7 @@ def test_the_wall_carries_round_what_moffatt_says() -> None:
     """A film of thickness h on a turning wall carries h - h^3 cos(theta)/3, in units of the film and of U. It reaches
     all round up to 2/3, where h = 1 at the side that rises; then the volume is the integral of h."""
     angles = np.linspace(0, math.pi, 2001)
-    film = [brentq(lambda h, c=math.cos(angle): h - c * h**3 / 3 - 2 / 3, 0, 1) for angle in angles[1:]]
+    film = [brentq(lambda h, cosine: h - cosine * h**3 / 3 - 2 / 3, 0, 1, args=(c,)) for c in np.cos(angles[1:])]
     assert 2 * np.trapezoid([1.0, *film], angles) == pytest.approx(FILM_LOAD, rel=DIGITS)
     used = liquid_in("olive oil", fill=0.25)
     volume, wet = FILM_LOAD * used.film * 0.033 * 0.12, segment(0.25).area * 0.033**2 * 0.12

@@ -61,7 +61,7 @@ class Liquid:
     film: float
     """Thickness of the film that the wall carries round there, sqrt(nu a slip/g) [m]."""
     carried: float
-    """Share of the liquid that this film can hold; if it is more than 1, all of the liquid can go round with the can."""
+    """Share of the liquid that this film can hold; if it is more than 1, all of the liquid can go round."""
     damping: Damping
 
     def __str__(self) -> str:
