@@ -14,6 +14,7 @@ from mjbeer import exact, liquid, sliding
 from mjbeer.paper.stories import real_beer
 from mjbeer.paper.stories.real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
 from mjbeer.simulation.simulate import simulate
+from mjbeer.theory.full_can import FullCan
 from mjbeer.theory.liquid import ENDS, FIT_ERROR, WALL, liquid_in
 from mjbeer.theory.liquids import LIQUIDS, NAMES
 from mjbeer.theory.scene import Scene
@@ -251,3 +252,19 @@ def test_the_layer_is_as_thick_as_a_millilitre_is_deep() -> None:
     speed = math.sqrt(0.5 * 9.81 * math.sin(INCLINES[1]))
     layer = 6 * math.sqrt(LIQUIDS["water"].viscosity * 2 * shape.half_angle * CAN.radius / speed)
     assert 0.5 < layer / depth < 2
+
+
+def test_a_nearly_full_can_is_as_fast_as_a_full_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two theories that have nothing in common but the viscosity: of a layer that is steady, and of one that grows."""
+    monkeypatch.setattr("mjbeer.theory.liquid.ENDS", 0.0)  # the exact theory has none
+    lump = [first_metre(400.0, incline) for incline in INCLINES]
+    exactly = []
+    for incline in INCLINES:
+        full = FullCan(CAN, incline=incline)
+        time = brentq(lambda time, full=full: full.way(time)[0] - 1, 0.5, 5, xtol=1e-12)
+        exactly.append(2 / time**2 / (full.gravity * math.sin(incline)))
+    assert lump == pytest.approx(exactly, abs=4e-3)
+    text = " ".join(DOCUMENT.split())
+    assert f"has {exactly[0]:.3f}, {exactly[1]:.3f} and {exactly[2]:.3f} of $`g" in text
+    assert f"without its ends, has {lump[0]:.3f}, {lump[1]:.3f} and {lump[2]:.3f}." in text
+    assert f"400 of the can's {1e6 * math.pi * CAN.radius**2 * CAN.length:.0f} mL" in text
