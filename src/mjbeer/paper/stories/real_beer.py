@@ -173,7 +173,7 @@ def _draw_liquids(path: pathlib.Path) -> None:
         name: sliding(density=LIQUIDS[name].density, damping=liquid_in(name).damping) for name in NAMES
     }
     title = "From frictionless to frozen: each real liquid has a terminal speed"
-    subtitle = f"{in_words(sliding(), {'load'})}; let go with a level surface"
+    subtitle = f"{in_words(sliding(), {'load'})}; let go with a level surface; lines by MuJoCo"
     with chart(path, 1, 2, width=13, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
         for (name, scene), colour in zip((scenes | {"ice": frozen()}).items(), _PAINTS, strict=True):
             run = let_go(scene, times)
