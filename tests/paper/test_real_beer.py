@@ -231,6 +231,8 @@ def test_the_amounts_of_the_document_are_the_program_s() -> None:
     water, both = ([below_a_half(incline, drag) for incline in INCLINES] for drag in (0.0, DRAG))
     assert f"{water[0]:.1f} mL at 2 degrees, {water[1]:.1f} mL at 5 degrees and {water[2]:.1f} mL at 10" in text
     assert f"these amounts are {both[0]:.1f}, {both[1]:.1f} and {both[2]:.1f} mL" in text
+    assert first_metre(0.36, INCLINES[2]) > 0.5 > first_metre(0.42, INCLINES[2])
+    assert "less than 0.4 mL is dragged round" in text
     film = [real_beer.film_holds(incline) for incline in INCLINES]
     assert f"{film[0]:.1f} mL at 2 degrees, {film[1]:.1f} mL at 5 and {film[2]:.1f} mL at 10" in text
     air = [first_metre(volume, 0.1, friction=False) - first_metre(volume, 0.1, False, DRAG) for volume in (1.0, 350.0)]
