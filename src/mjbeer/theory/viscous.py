@@ -90,7 +90,7 @@ class _Walk:
         self._slip, self._turned, self._rolled = self.slip0, _Sum(0.0), _Sum(0.0)
         self._farthest = 1.0
         self._natural = math.sqrt(self.equations.depth / self.equations.base)
-        self._covariance = self._rounding() + np.diag([ROUNDINGS**2, 0.0, 0.0, 0.0])
+        self._spread = self._rounding() + np.diag([ROUNDINGS, 0.0, 0.0, 0.0])
 
     @property
     def _state(self) -> State:
@@ -236,8 +236,7 @@ class _Walk:
     def _take(self, step: Step, then: float) -> None:
         """Go to the end of a step."""
         turned, rate, slip, rolled = (float(each) for each in step.ends)
-        transfer = step.transfer()
-        self._covariance = transfer @ self._covariance @ transfer.T
+        carried = step.transfer() @ self._spread
         self._phi.add(turned)
         if abs(self._phi.value) > math.pi:
             self._phi.value = past_zero(self._phi.value)
@@ -246,10 +245,10 @@ class _Walk:
         self._rolled.add(rolled)
         self._phi_dot.add(rate)
         self._slip += slip
-        self._covariance += self._rounding()
+        self._spread = np.linalg.qr(np.hstack([carried, self._rounding()]).T).R.T
         self._farthest = max(self._farthest, abs(self._turned.value))
-        effect = 2 * math.sqrt(max(self._covariance[0, 0] / self._farthest**2, 0.0))
-        effect = max(effect, 2 * math.sqrt(self._covariance[3, 3]) / max(1.0, abs(self._rolled.value)))
+        of_phi, _, _, of_roll = (float(each) for each in np.linalg.norm(self._spread, axis=1))
+        effect = 2 * max(of_phi / self._farthest, of_roll / max(1.0, abs(self._rolled.value)))
         if not effect <= UNCERTAIN:
             raise ToleranceError(
                 f"phi is not known later than at {then:.6g} s: rounding of start and scene changes it by {effect:.2g} "
@@ -257,9 +256,9 @@ class _Walk:
             )
 
     def _rounding(self) -> np.ndarray:
-        """Return the covariance of what rounding does to the state."""
+        """Return what rounding does to the state, a column for each of its numbers."""
         state = self._state
-        return np.diag(np.square(ROUNDINGS * np.array([state.phi, state.phi_dot, state.slip, 0.0])))
+        return np.diag(ROUNDINGS * np.array([state.phi, state.phi_dot, state.slip, 0.0]))
 
 
 def _growth(slopes: np.ndarray) -> float:
