@@ -321,7 +321,7 @@ def test_the_effect_of_rounding_starts_with_that_of_the_scene() -> None:
 
 
 def test_the_effect_of_rounding_grows_as_the_motion_s_own_response() -> None:
-    """Beside the top: phi is rounded by pi at the start, with a radian for the incline, and at each step by pi again."""
+    """Beside the top phi is rounded by pi at the start, with a radian for the incline, and by pi at each step."""
     scene, start = sliding(0.0, damping=1e-3), math.pi - 1e-8
     for time in (0.4, 0.8):
         for found, expected in zip(unsure(scene, time, start), response(scene, time, start, 1e-9), strict=True):
