@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from mjbeer import Scene, build, pendulum, sliding
+from mjbeer import Scene, build, exact, pendulum, sliding
 from mjbeer.model import state
 from mjbeer.model.build import compose
 from mjbeer.model.present import farthest
@@ -135,6 +135,19 @@ def test_no_damped_can_goes_farther_than_the_bound(scene: Scene, phi0: float, sw
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_the_bound_is_reached_where_all_energy_is_the_can_s() -> None:
+    """A load passes the bottom without moving along: the can has all energy, and for a moment nothing brakes it."""
+    scene, time = replace(pendulum(0.0, gravity=0.0), damping=1e-9), 1e-6
+    assert farthest(scene, 0.0, 3.0, time) == pytest.approx(scene.start(0.0, 3.0)[1] * time, rel=1e-9)
+
+
+def test_the_bound_counts_the_energy_of_a_load_at_the_top() -> None:
+    scene = sliding(0.0, can=METAL, damping=1e-6)
+    found = np.ptp(exact(scene, np.linspace(0, 0.5, 51), math.pi - 0.1).u)
+    assert found > scene.can.radius / 10
+    assert found < farthest(scene, math.pi - 0.1, 0.0, 0.5)
+
+
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])  # a contact is soft
 def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrator: MujocoIntegrator) -> None:
     """Let go beside the top, on level ground. After a step the rate is that of the acceleration, less its damping."""
