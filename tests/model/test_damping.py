@@ -134,7 +134,6 @@ def test_no_damped_can_goes_farther_than_the_bound(scene: Scene, phi0: float, sw
     assert np.abs(way.y[0] - u).max() <= farthest(scene, phi0, rate, 3.0) * (1 + 1e-4)  # the errors of LSODA add up
 
 
-@pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_the_bound_is_reached_where_all_energy_is_the_can_s() -> None:
     """A load passes the bottom without moving along: the can has all energy, and for a moment nothing brakes it."""
     scene, time = replace(pendulum(0.0, gravity=0.0), damping=1e-9), 1e-6
@@ -148,6 +147,7 @@ def test_the_bound_counts_the_energy_of_a_load_at_the_top() -> None:
     assert found < farthest(scene, math.pi - 0.1, 0.0, 0.5)
 
 
+@pytest.mark.parametrize("integrator", INTEGRATORS)
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])  # a contact is soft
 def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrator: MujocoIntegrator) -> None:
     """Let go beside the top, on level ground. After a step the rate is that of the acceleration, less its damping."""
