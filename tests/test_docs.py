@@ -167,6 +167,13 @@ def test_the_misprints_of_the_physics_are_those_of_the_audit() -> None:
     assert not [row[4] for row in rows if f"def {row[4].strip('`')}(" not in tests]
 
 
+def test_tests_that_the_physics_names_exist() -> None:
+    tests = "".join(path.read_text() for path in (CHECKOUT / "tests").rglob("test_*.py"))
+    named = set(re.findall(r"`(test_\w+)`", PHYSICS.read_text()))
+    assert len(named) > 20
+    assert not [name for name in named if f"def {name}(" not in tests]
+
+
 def test_every_figure_is_in_a_document() -> None:
     texts = "".join(each.read_text() for each in CHECKOUT.glob("docs/*.md"))
     shown = set(re.findall(r"\(figures/([\w-]+)\.svg\)", texts))

@@ -10,10 +10,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from mjbeer import Scene, build, pendulum, sliding
+from mjbeer import Scene, build, exact, pendulum, sliding
+from mjbeer.model import state
 from mjbeer.model.build import compose
 from mjbeer.model.present import farthest
-from mjbeer.model.setting import ROLLINGS, Rolling, Setting, supported
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
 from mjbeer.model.state import places, read
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.forces import accelerations
@@ -131,3 +132,32 @@ def test_no_damped_can_goes_farther_than_the_bound(scene: Scene, phi0: float, sw
     way = solve_ivp(slope, (0, 3), [u, phi0, u_dot, rate], "LSODA", rtol=1e-6, atol=1e-9)
     assert way.success
     assert np.abs(way.y[0] - u).max() <= farthest(scene, phi0, rate, 3.0) * (1 + 1e-4)  # the errors of LSODA add up
+
+
+def test_the_bound_is_reached_where_all_energy_is_the_can_s() -> None:
+    """A load passes the bottom without moving along: the can has all energy, and for a moment nothing brakes it."""
+    scene, time = replace(pendulum(0.0, gravity=0.0), damping=1e-9), 1e-6
+    assert farthest(scene, 0.0, 3.0, time) == pytest.approx(scene.start(0.0, 3.0)[1] * time, rel=1e-9)
+
+
+def test_the_bound_counts_the_energy_of_a_load_at_the_top() -> None:
+    scene = sliding(0.0, can=METAL, damping=1e-6)
+    found = np.ptp(exact(scene, np.linspace(0, 0.5, 51), math.pi - 0.1).u)
+    assert found > scene.can.radius / 10
+    assert found < farthest(scene, math.pi - 0.1, 0.0, 0.5)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("rolling", ["reduced", "equality"])  # a contact is soft
+def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrator: MujocoIntegrator) -> None:
+    """Let go beside the top, on level ground. After a step the rate is that of the acceleration, less its damping."""
+    scene, timestep = sliding(0.0, can=METAL, damping=1e-4), 1e-4
+    for aside in (1e-4, 1e-9, 1e-13):
+        model = build(scene, rolling, integrator=integrator, timestep=timestep)
+        data = mujoco.MjData(model)
+        begin = state.settle(model, state.start(model, scene, math.pi - aside, 0.0))
+        data.qpos[:], data.qvel[:] = begin[: model.nq], begin[model.nq :]
+        mujoco.mj_step(model, data)
+        found = read(model, scene, np.concatenate([data.qpos, data.qvel])[None], np.zeros(1)).phi_dot[0]
+        _, phi_ddot = accelerations(scene, math.pi - aside, 0.0, 0.0)
+        assert found == pytest.approx(float(phi_ddot) * timestep, rel=0.01, abs=0)

@@ -182,3 +182,13 @@ def test_a_tolerance_that_the_stiff_method_has_not_is_refused() -> None:
 def test_damping_whose_torque_is_lost_in_rounding_is_refused() -> None:
     with pytest.raises(ToleranceError, match="rounding of the slip rate hides its torque"):
         simulate(sliding(damping=1e12), 1, 1.0, tolerance=1e-6)
+
+
+def test_a_run_that_explodes_without_end_is_not_trusted() -> None:
+    """In one step of 3 s the drag throws it 1e50 m away, and rounding loses more than any start may be aside."""
+    step, can = 2.9541119699441847, Can(0.0602372833438853, 0.18, 143.05675886384725, 0.5190857848226949)
+    load = Load(0.1, 0.04475897687907349, 3.628530304651521e-05)
+    scene = Scene(can, load, -0.20165489394302266, drag=84.92118769933582)
+    times = step * np.array([0.05721241519926756, 0.6780277908869407, 0.9798938151808825])
+    run = simulate(scene, step, 3.2434202840633297, 0.0, "equality", "DOP853", timestep=step, times=times)
+    assert not run.trusted

@@ -168,7 +168,8 @@ class Second:
         prepared = Prepared(scene, setting, uneven=True)
         exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
         lost = residual.lost(prepared.model, scene, run.way, run.steps, exact_constraint)
-        aside = max(START_DEPTH if setting.rolling == "contact" else _ASIDE, lost)
+        beside = START_DEPTH if setting.rolling == "contact" else _ASIDE
+        aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
         try:
             states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), run.way.time).states
         except DivergenceError:

@@ -46,7 +46,8 @@ def losses(scene: Scene, motion: Coordinates) -> Losses:
     step, count = np.diff(motion.time), parts(scene, motion)
     state = np.stack([motion.phi[:-1], motion.phi_dot[:-1], motion.u_dot[:-1]])
     if count > _MOST:
-        return _of_stiff(scene, motion, step)
+        with np.errstate(all="ignore"):  # what is not finite makes the motion untrusted
+            return _of_stiff(scene, motion, step)
     totals, way, step = np.zeros((3, len(step))), np.zeros(len(step)), step / count
     for _ in range(count):
         state, gained, further = _step(scene, state, step)

@@ -55,6 +55,11 @@ class ViscousEquations:
         """Return whether the equations are smooth where w vanishes, and where roll_dot does."""
         return self.torques[1] == 0, self.drag == 0
 
+    @property
+    def natural(self) -> float:
+        """Return the rate of the load's swing in a can that stays where it is, about [1/s]."""
+        return math.sqrt(self.depth / self.base)
+
     def forcing(self, rate: float) -> float:
         """Return the size of what the damping has to balance [1/s^2] at a `rate` phi_dot [rad/s]."""
         return abs(self.drive) + self.depth + self.beta * rate**2

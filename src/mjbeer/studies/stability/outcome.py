@@ -18,8 +18,9 @@ REFUSED = "refused"
 SILENT = "wrong and silent"
 MISSED = "tolerance missed"
 THEORIES = "theories differ"
-VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT, MISSED, THEORIES)
-"""Every way in which a run can end."""
+UNKNOWN = "beyond theory"
+VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT, MISSED, THEORIES, UNKNOWN)
+"""Every way in which a run can end. Only damped motions are beyond theory, the reference of which knows no damping."""
 NEVER = (SILENT, MISSED, THEORIES)
 """The verdicts that must not occur: a run that is trusted although it is wrong, a run whose error is above its
 tolerance, and a motion of which two theories say different things that no rounding explains."""
@@ -75,9 +76,9 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
 
 
 def _verdict(run: Run, motion: Truth, error: float) -> str:
-    """Return how a run ended whose error is known."""
+    """Return how a run ended whose error is known, if theory has its motion."""
     if not motion.explained:
-        return THEORIES
+        return UNKNOWN if run.scene.dissipates else THEORIES
     if run.trusted and not error <= ERROR:
         return SILENT
     tolerance = run.setting.tolerance

@@ -88,7 +88,9 @@ def _exact(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Coo
 
 
 def _reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Coordinates | None:
-    """Return the motion by `reference`; None if it takes too many steps."""
+    """Return the motion by `reference`; None if it takes too many steps, or is damped."""
+    if scene.dissipates:
+        return None
     try:
         return reference(scene, times, phi0, phi_dot0)
     except LongMotionError:

@@ -10,7 +10,7 @@ from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_
 from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Check
-from mjbeer.studies.validation import models
+from mjbeer.studies.validation import damped, models
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.measure import mean_acceleration
@@ -21,8 +21,8 @@ _FRICTION = 10.0
 
 
 def checks() -> list[Check]:
-    """Return all checks of the validation, of motions and of models, in the order of its table."""
-    return [*_oscillations(), *_rest(), *_trajectories(), *_tolerances(), *models.checks()]
+    """Return all checks of the validation, of motions, damped ones and models, in the order of its table."""
+    return [*_oscillations(), *_rest(), *_trajectories(), *_tolerances(), *damped.checks(), *models.checks()]
 
 
 def metal(constructor: Callable[..., Scene]) -> Scene:

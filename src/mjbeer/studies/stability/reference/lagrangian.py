@@ -29,6 +29,7 @@ import numpy as np
 from mjbeer.studies.stability.reference.taylor import integrate
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.steady_rolling import require_no_dissipation
 
 MOST_STEPS = 400_000
 """Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""
@@ -45,8 +46,10 @@ def reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.
     two near the load's mass, the radius and the fastest time of the motion, so that no conversion is rounded.
 
     Raises:
+      DissipationError: if the scene has damping or drag.
       LongMotionError: if the motion is too long.
     """
+    require_no_dissipation(scene, "no reference")
     can, load = scene.can, scene.load
     mass, length = _unit(load.mass), _unit(can.radius)
     pace = abs(phi_dot0) + math.sqrt(scene.gravity / can.radius)

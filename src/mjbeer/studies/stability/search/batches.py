@@ -16,8 +16,9 @@ GROUP = "search"
 """Name of the group of these tasks."""
 SMALL_FALSE = f"{FALSE}, error below {SMALL:g}"
 """Counted for false alarms of runs with such an error, which count as false alarms too."""
-ALONE = "judged by the reference alone"
-"""Counted for runs that exact theory refuses to follow, and that end in other ways too."""
+ALONE = "judged by one theory alone"
+"""Counted for runs that exact theory refuses to follow, or that are damped, which the reference cannot; they end in
+other ways too."""
 _TURNS = 4
 """How often a batch goes through all regions; a batch takes some seconds."""
 SIZE = _TURNS * len(REGIONS)

@@ -10,6 +10,9 @@ from mjbeer.studies.stability.outcome import ACCURATE, REFUSALS, Outcome, judge
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
+from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.exact import exact
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import ERROR, LIFT, SLIP
 
 FALSE = "false alarm"
@@ -65,7 +68,7 @@ def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
     aside = START_DEPTH if run.rolling == "contact" else _ASIDE * max(1.0, abs(run.phi0))
     sides = aside, -aside
     try:
-        motions = [reference(run.scene, times, run.phi0 + side, run.phi_dot0) for side in (0.0, *sides)]
+        motions = [_motion(run.scene, times, run.phi0 + side, run.phi_dot0) for side in (0.0, *sides)]
         others = [replace(run, phi0=run.phi0 + side, every=1, moments=None).simulate() for side in sides]
     except LongMotionError:
         return False
@@ -73,3 +76,10 @@ def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
         return True
     motion, *beside = (angles(run.scene, motion, run.phi0, run.phi_dot0) for motion in (*motions, *others))
     return not max(motion.off(other.phi, other.roll) for other in beside) * _SAFETY <= ERROR
+
+
+def _motion(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Coordinates:
+    """Return the motion from a start, by the theory that refuses as few motions as it can."""
+    if scene.dissipates:
+        return exact(scene, times, phi0, phi_dot0, many_turns=True)
+    return reference(scene, times, phi0, phi_dot0)

@@ -3,12 +3,15 @@
 import math
 
 from mjbeer.studies.stability.search.pick import Pick
-from mjbeer.studies.stability.search.starts import Start, slow
+from mjbeer.studies.stability.search.scenes import slow
+from mjbeer.studies.stability.search.starts import Start
 from mjbeer.theory.scene import Scene
 
 Pace = tuple[float, int]
 _SWINGS, _TURNED = 400.0, 3e3
 """Longest motion, in swings, and in angle [rad]."""
+_DAMPED = 0.05
+"""Share of these that a damped motion may have, which theory follows step by step."""
 
 
 def ordinary(pick: Pick, scene: Scene, start: Start) -> Pace:
@@ -68,11 +71,14 @@ def anything(pick: Pick, scene: Scene, start: Start) -> Pace:
 def _within(scene: Scene, start: Start, timestep: float, steps: float) -> Pace:
     """Return at most the given timestep and number of steps, so that they take no longer than theory can follow."""
     form = scene.oscillator
+    share = _DAMPED if scene.dissipates else 1.0
     spin = max(abs(start[1]), 1e-300)
     push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
-    longest = min(_TURNED / spin, math.sqrt(2 * _TURNED / push))
+    if scene.dissipates:  # the load may turn with the can
+        push = max(push, scene.gravity * abs(math.sin(scene.incline)) / scene.can.radius)
+    longest = min(share * _TURNED / spin, math.sqrt(2 * share * _TURNED / push))
     if (frequency := _frequency(scene, start)) > 0:
-        longest = min(longest, _SWINGS * 2 * math.pi / frequency)
+        longest = min(longest, share * _SWINGS * 2 * math.pi / frequency)
     timestep = min(timestep, longest)
     return timestep, max(1, int(min(steps, longest / timestep)))
 

@@ -59,6 +59,10 @@ def _any_scene(pick: Pick) -> Scene:
     return pick.one(*kinds)(pick)
 
 
+def _any_damped(pick: Pick) -> Scene:
+    return scenes.damped(pick, _any_scene(pick))
+
+
 def _any_pace(pick: Pick, scene: Scene, start: Start) -> Pace:
     kinds = paces.ordinary, paces.swinging, paces.anything, paces.fast, paces.resonant, paces.few, paces.long
     return pick.one(*kinds)(pick, scene, start)
@@ -81,6 +85,8 @@ REGIONS = (
     Region("weak or strong gravity", scenes.gravity),
     Region("beside the separatrix", start=starts.beside_the_separatrix, samples=samples.anything),
     Region("mixed", _any_scene, starts.anything, _any_pace, settings.anything, samples.anything),
+    Region("damped", scenes.damped_ordinary, pace=paces.either),
+    Region("damped, mixed", _any_damped, starts.anything, _any_pace, settings.anything, samples.anything),
 )
 """All regions; as many runs are drawn from each."""
 

@@ -5,8 +5,14 @@ from dataclasses import replace
 
 from mjbeer.studies.stability.search.pick import Pick
 from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendulum, sliding
+
+
+def slow(scene: Scene) -> float:
+    """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
+    return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
 
 
 def ordinary(pick: Pick) -> Scene:
@@ -94,3 +100,31 @@ def anything(pick: Pick) -> Scene:
     incline = pick.one(0.0, 1e-8, 10.0, 89.9, pick.between(-30, 30), pick.between(-89.9, 89.9))
     weight = pick.one(GRAVITY, GRAVITY, GRAVITY, 0.0, pick.decades(1e-6, 1e6))
     return Scene(can, load, math.radians(incline), pick.one(*ATTACHMENTS), weight)
+
+
+def damped(pick: Pick, scene: Scene) -> Scene:
+    """Return a scene with a sliding load and with damping over twelve decades, drag over eight, or both.
+
+    The unit of damping is M a^2 over the time of a fall through the radius, and that of drag is M/a; the torque may
+    grow with several powers of the slip rate.
+
+    Raises:
+      ParameterError: if the load cannot slide in its can.
+    """
+    radius, mass = scene.can.radius, scene.mass + scene.can.inertia / scene.can.radius**2
+    clock = slow(scene)
+    linear = mass * radius**2 / clock * pick.decades(1e-6, 1e6)
+    law = pick.one(
+        linear,
+        linear,
+        Damping(linear, linear * clock * pick.decades(1e-6, 1e2)),
+        Damping(pick.one(0.0, linear), *(linear * clock**power * pick.decades(1e-6, 1e2) for power in (1, 2))),
+        0.0,
+    )
+    drag = mass / radius * pick.decades(1e-6, 1e2)
+    return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
+
+
+def damped_ordinary(pick: Pick) -> Scene:
+    """Return an ordinary scene with damping, drag, or both."""
+    return damped(pick, ordinary(pick))

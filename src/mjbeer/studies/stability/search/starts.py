@@ -1,17 +1,14 @@
 """Random starts: an angle phi [rad] and its rate [rad/s]."""
 
 import math
+from dataclasses import replace
 
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.studies.stability.search.pick import Pick
+from mjbeer.studies.stability.search.scenes import slow
 from mjbeer.theory.scene import Scene
 
 Start = tuple[float, float]
-
-
-def slow(scene: Scene) -> float:
-    """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
-    return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
 
 
 def ordinary(pick: Pick, scene: Scene) -> Start:
@@ -34,10 +31,13 @@ def far(pick: Pick, scene: Scene) -> Start:
 
 
 def beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
-    """Return a start at rest beside a barrier's top, or anywhere with nearly the energy of that top."""
+    """Return a start at rest beside a barrier's top, or anywhere with nearly the energy of that top.
+
+    The top is that of the scene without damping and drag.
+    """
     form = scene.oscillator
     try:
-        low, high = scene.separatrix()
+        low, high = replace(scene, damping=0.0, drag=0.0).separatrix()
     except NoEquilibriumError:
         return ordinary(pick, scene)
     beside = pick.sign() * pick.decades(1e-15, 0.1)

@@ -4,7 +4,17 @@ from collections import Counter
 from typing import Any
 
 from mjbeer.output.table import Table
-from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, MISSED, REFUSED, SILENT, THEORIES, UNSTABLE, VERDICTS
+from mjbeer.studies.stability.outcome import (
+    ACCURATE,
+    INACCURATE,
+    MISSED,
+    REFUSED,
+    SILENT,
+    THEORIES,
+    UNKNOWN,
+    UNSTABLE,
+    VERDICTS,
+)
 from mjbeer.studies.stability.search.batches import ALONE, SMALL_FALSE
 from mjbeer.studies.stability.search.check import FALSE, PARTS, SENSITIVE, SMALL, WAY
 
@@ -16,6 +26,7 @@ _COLUMNS = {
     SILENT: "silent",
     MISSED: "missed",
     THEORIES: "theories",
+    UNKNOWN: "beyond",
     FALSE: "false alarms",
     SMALL_FALSE: f"below {SMALL:g}",
     PARTS: "slip or lift",
