@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from itertools import dropwhile, takewhile
 from types import FrameType
-from typing import Any, NoReturn, get_args
+from typing import Any, NoReturn, cast, get_args
 
 import tyro
 from rich.text import Text
@@ -64,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
             warnings.simplefilter("always", LiquidWarning)
-            warnings.showwarning = functools.partial(_show, warnings.showwarning)
+            cast("Any", warnings).showwarning = functools.partial(_show, warnings.showwarning)
             return command.run()
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import Field, dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import tyro
 
@@ -30,7 +30,7 @@ def if_given(kind: Any, otherwise: str) -> object:
 
 def otherwise(field: Field[Any]) -> str:
     """Return what is taken where an option is left out that has no default: the word of its `if_given`."""
-    (how,) = field.type.__metadata__  # ty: ignore[unresolved-attribute]
+    (how,) = cast("Any", field.type).__metadata__
     return how.help_behavior_hint.removeprefix("(default: ").removesuffix(")")
 
 

@@ -77,7 +77,8 @@ def _option(field: dataclasses.Field[Any], text: str) -> tuple[str, Any, Any]:
 
     The type has the help: a class that is made here has no docstrings to read it from.
     """
-    kind, default = field.type, dataclasses.field(default=field.default)
+    kind: Any = field.type
+    default = dataclasses.field(default=field.default)
     if field.default is None:  # a number that may be left out
         described = tyro.conf.arg(help=text, constructor=_NUMBERS, help_behavior_hint=f"(default: {otherwise(field)})")
         return field.name, Annotated[Values | None, described], default

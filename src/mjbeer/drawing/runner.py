@@ -29,7 +29,7 @@ class Runner:
         return self.trajectory.u - self.trajectory.u[0]
 
     def finish(self, length: float) -> float:
-        """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if its motion ends before."""
+        """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if it ends before."""
         if self.distance[-1] < length:
             return math.inf
 
@@ -40,7 +40,7 @@ class Runner:
         return float(brentq(ahead, 0, self.trajectory.time[-1], xtol=1e-12))
 
     def finish_of_theory(self, length: float) -> float:
-        """Return when exact theory has the can at a `length` [m] from the start, as a time [s]; infinite as `finish`."""
+        """Return when exact theory has the can at a `length` [m] from the start [s]; infinite where `finish` is."""
         if self.way_of_theory(self.trajectory.time[-1]) < length:
             return math.inf
         return float(brentq(lambda time: self.way_of_theory(time) - length, 1e-3, self.trajectory.time[-1], xtol=1e-12))

@@ -52,8 +52,8 @@ def told_of_beer() -> str:
         "is frozen must turn with its can: the full one is as slow as a solid cylinder, with two thirds of the "
         "winner's acceleration. The frozen one that is three quarters full starts with its beer on top, for with its "
         "beer below it would stay where it is; that gives it a lead of two centimetres, which the winner takes back "
-        "before half-way. The empty can comes last, since all of its mass is in its wall. Theory has the same times, to "
-        "all digits."
+        "before half-way. The empty can comes last, since all of its mass is in its wall. Theory has the same "
+        "times, to all digits."
     )
 
 
@@ -95,14 +95,14 @@ def told_of_liquids() -> str:
     honey = with_liquid("honey")
     way, speed = by_theory(honey).way_of_theory(times["ice"]), honey.terminal_speed()
     return (
-        f"Predict first, then look. Four equal cans, three quarters full of water, olive oil, honey and ice, are let go "
-        f"together on an incline of {in_degrees(_STEEPER)}, each with its surface level. What is in them differs in how "
-        f"hard it rubs against the can: water hardly, ice not at all, since it turns with the can. Water wins after "
-        f"{times['water']:.2f} s, and oil follows after {times['oil']:.2f} s. The ice hesitates with its load "
-        f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, for the whole of it must turn. The "
-        f"honey is last, and has come {100 * way:.0f} cm. It is between water and ice, yet slower than both: it neither "
-        f"slides freely nor turns with its can, and as it rubs it takes all that the incline gives. It creeps with "
+        "Predict first, then look. Four equal cans, three quarters full of water, olive oil, honey and ice, are let go "
+        f"together on an incline of {in_degrees(_STEEPER)}, each with its surface level. They differ in how hard the "
+        "load rubs against the can: water hardly does, and ice not at all, since it turns with the can. Water wins "
+        f"after {times['water']:.2f} s, and oil follows after {times['oil']:.2f} s. The ice hesitates with its load "
+        f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, for all of it must turn. The honey is "
+        f"last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither slides "
+        "freely nor turns with its can, and as it rubs it takes all that the incline gives: it creeps with "
         f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Real "
-        f"honey coats the can, so that its speed is an order of magnitude only, but with half or twice the viscosity "
-        f"it is last as well."
+        "honey coats the can, so that its speed is an order of magnitude only, but with half or twice the viscosity "
+        "it is last as well."
     )

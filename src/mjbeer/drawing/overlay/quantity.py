@@ -41,7 +41,7 @@ def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
     """Return where a can would be at some times [s] that accelerates evenly [m].
 
     It starts with the same momentum as the can of the motion, and with its load at rest in it where that has an
-    equilibrium: the motion goes to and fro about it. With damping or drag nothing accelerates evenly. It is then the can
+    equilibrium: the motion goes to and fro about it. With damping or drag no can accelerates evenly. It is then one
     that has neither, and what it gains on the motion is what they cost.
     """
     if scene.dissipates:

@@ -60,7 +60,7 @@ class Chart:
 
 
 class Strip:
-    """Charts side by side. Lines with a colour are drawn up to now; theory's are there from the beginning, or are not."""
+    """Charts side by side. Lines with a colour are drawn up to now; theory's may be there from the beginning."""
 
     def __init__(self, charts: Sequence[Chart], width: int, height: int) -> None:
         self._charts = charts

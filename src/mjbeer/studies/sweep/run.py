@@ -10,7 +10,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from importlib.metadata import version
 from inspect import isfunction
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -164,7 +164,7 @@ def _one_warning_of_liquids() -> Generator[None]:
             show(message, category, *place)
         shown.update({category} & {LiquidWarning})
 
-    warnings.showwarning = show_once
+    cast("Any", warnings).showwarning = show_once
     try:
         yield
     finally:
