@@ -116,7 +116,7 @@ def _in_the_end(scene: Scene) -> dict[str, str]:
         facts["drag of the air"] = f"{scene.drag:.4g} kg/m"
     try:
         speed, tilt = scene.terminal_speed(), math.degrees(scene.terminal_tilt())
-        facts["steady rolling"] = f"{speed:.6g} m/s with the load at phi = {tilt:.6g} degrees"
+        facts["steady rolling"] = f"{speed:.6g} m/s, the load at phi = {tilt:.6g} degrees"
         swing = [f"{root.real:.4g} +- {root.imag:.4g}i" for root in scene.modes() if root.imag > 0]
         creep = [f"{root.real:.4g}" for root in scene.modes() if root.imag == 0]
         facts["its modes exp(s t), s"] = f"{', '.join([*creep, *swing])} 1/s"
