@@ -25,8 +25,8 @@ _FILL = 0.75
 _EMPTY = 1e-6
 """Fill of the empty can: its beer weighs a ten millionth of the can."""
 _STEEPER = math.radians(7.1)
-"""Incline of the race of liquids [rad]: let go with its surface level, ice rolls over the top from 6.95 degrees on, and
-honey, the thickest of the liquids, from 7.3."""
+"""Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
+honey, the thickest of the liquids, from 7.38."""
 _ICE = 917.0
 """Density of ice [kg/m^3]."""
 _END = 2.5
@@ -99,8 +99,8 @@ def told_of_liquids() -> str:
         f"together on an incline of {in_degrees(_STEEPER)}, each with its surface level. They differ in how hard the "
         "load rubs against the can: water hardly does, and ice not at all, since it turns with the can. Water wins "
         f"after {times['water']:.2f} s, and oil follows after {times['oil']:.2f} s. The ice hesitates with its load "
-        f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, for all of it must turn. The honey is "
-        f"last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither slides "
+        f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The honey "
+        f"is last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither slides "
         "freely nor turns with its can, and as it rubs it takes all that the incline gives: it creeps with "
         f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Real "
         "honey coats the can, so that its speed is an order of magnitude only, but with half or twice the viscosity "
