@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from matplotlib import pyplot as plt
 
 import mjbeer
 from mjbeer import Can, LiquidWarning, liquid, simulate, sliding
@@ -84,3 +85,16 @@ def test_thick_liquids_warn_once() -> None:
     with warnings.catch_warnings(action="error", category=LiquidWarning), pytest.raises(LiquidWarning):
         sweep(liquid, 0.01, 1.0, tolerance=1e-6, name="honey", fill=[0.4, 0.5])
     assert warnings.showwarning is show
+
+
+def test_a_map_over_decades_is_logarithmic() -> None:
+    """Its cells are around their values, and a parameter in even steps stays as it is."""
+    damping, inclines = np.geomspace(1e-4, 1e-2, 3), np.radians([5.0, 10.0, 15.0])
+    axes = sweep(sliding, 0.01, 1.0, tolerance=1e-6, damping=damping, incline=inclines).plot("u")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+    assert axes.get_xlim() == pytest.approx((10**-4.5, 10**-1.5))
+    assert axes.get_ylim() == pytest.approx((2.5, 17.5))
+    assert axes.get_xlabel() == "damping [N m s]"
+    axes = sweep(sliding, 0.01, 1.0, tolerance=1e-6, damping=[1e-4, 2e-3, 1e-2]).plot("u")
+    assert axes.get_xscale() == "linear"
+    plt.close("all")
