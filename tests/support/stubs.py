@@ -26,6 +26,7 @@ from mjbeer.studies.check import Check
 from mjbeer.studies.stability import run as stability_run
 from mjbeer.studies.stability.run import tasks
 from mjbeer.studies.study import Task
+from mjbeer.studies.sweep import speed
 from mjbeer.studies.validation import motions
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
@@ -46,13 +47,15 @@ FEW = {Curve("reduced", "RK4", "timestep"): STEPS[:2], Curve("equality", "RK4", 
 
 
 def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[float, ...]] = LADDERS) -> None:
-    """Make the benchmark one of short ladders and two peers, timed twice, with a made-up cost of stages."""
+    """Make the benchmark one of short ladders and two peers, timed twice, with made-up times of stages and sweeps."""
     monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(ladders))
     monkeypatch.setattr(benchmark_run, "installed", lambda: [with_scipy.DOP853, with_scipy.ODEINT])
     monkeypatch.setattr(benchmark_run, "absent", dict)
     stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
     monkeypatch.setattr(benchmark_run, "ablate", lambda: stages)
     monkeypatch.setattr(benchmark_run, "REPEATS", 2)
+    swept = [speed.Timed("a sweep of stubs", lambda: (0.0, 0.0), 1e-3, 1e-7)]
+    monkeypatch.setattr(speed, "compare", lambda count, rounds: swept)
 
 
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,10 +6,11 @@ import warnings
 import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
+from scipy.optimize import brentq
 
 from mjbeer import Can, LiquidWarning, liquid, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.liquid import ENDS, FIT_ERROR, WALL, liquid_in
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, liquid_in
 from mjbeer.theory.liquids import NAMES
 from mjbeer.theory.segment import segment
 
@@ -67,6 +68,32 @@ def test_creep_has_the_shear_of_stokes_flow_in_a_half_disc() -> None:
     assert integral == pytest.approx(2 * math.log(2 / 1e-3), rel=1e-6)
 
 
+def test_the_wall_carries_round_what_moffatt_says() -> None:
+    """A film of thickness h on a turning wall carries h - h^3 cos(theta)/3, in units of the film and of U. It reaches
+    all round up to 2/3, where h = 1 at the side that rises; then the volume is the integral of h."""
+    angles = np.linspace(0, math.pi, 2001)
+    film = [brentq(lambda h, cosine: h - cosine * h**3 / 3 - 2 / 3, 0, 1, args=(c,)) for c in np.cos(angles[1:])]
+    assert 2 * np.trapezoid([1.0, *film], angles) == pytest.approx(FILM_LOAD, rel=DIGITS)
+    used = liquid_in("olive oil", fill=0.25)
+    volume, wet = FILM_LOAD * used.film * 0.033 * 0.12, segment(0.25).area * 0.033**2 * 0.12
+    assert used.carried == pytest.approx(volume / wet, rel=1e-12)
+
+
+def test_the_film_is_a_length() -> None:
+    """With every length three times as long and every time twice as long it is three times as thick."""
+    own = liquid_in("glycerol")
+    larger = liquid_in(
+        "glycerol",
+        can=Can.massless(3 * 0.033, 3 * 0.12),
+        density=own.density,
+        viscosity=own.viscosity * 9 / 2,
+        gravity=9.81 * 3 / 4,
+    )
+    assert larger.slip == pytest.approx(own.slip / 2, rel=1e-12)
+    assert larger.film == pytest.approx(3 * own.film, rel=1e-12)
+    assert larger.carried == pytest.approx(own.carried, rel=1e-12)
+
+
 def test_the_fit_is_as_near_as_it_says() -> None:
     used = liquid_in("water")
     exact_torque = used.damping.torque(used.slip)
@@ -108,6 +135,10 @@ def test_thick_liquids_warn() -> None:
             warnings.simplefilter("always")
             liquid(name)
         assert [each.category for each in caught] == [LiquidWarning] * (name in {"glycerol", "honey"})
+    with pytest.warns(LiquidWarning, match="film of 5.3 mm, which can hold 45 % of the liquid"):
+        liquid("honey")
+    with pytest.warns(LiquidWarning, match="water coats the can: .* which can hold all of the liquid"):
+        liquid(fill=0.02)
 
 
 def test_damping_grows_with_viscosity_without_a_jump() -> None:

@@ -38,8 +38,11 @@ _EDGE = 0.03
 or three times of it changes c by a quarter."""
 _TURBULENT = 1e6
 """Reynolds number U X/nu of the layer at its end, beyond which it is turbulent whatever the wall."""
-_CARRIED = 2 / 3
-"""Thickness of the film that the wall carries round, over a, from which on the liquid is no lump."""
+FILM_LOAD = 4.4427
+"""Largest volume of a film that a turning wall carries round steadily, over a L sqrt(nu a W/g) (Moffatt, J. Mecanique
+16, 651, 1977). More liquid than that stays below as a pool."""
+_CARRIED = 1 / 3
+"""Share of the liquid that such a film can hold, from which on the rest of it is no lump."""
 
 
 @dataclass(frozen=True)
@@ -56,14 +59,16 @@ class Liquid:
     slip: float
     """Slip rate of the steady rolling for which it is right [rad/s]; 0 on level ground."""
     film: float
-    """Thickness of the film that the wall carries round there, sqrt(nu slip/g) [m]."""
+    """Thickness of the film that the wall carries round there, sqrt(nu a slip/g) [m]."""
+    carried: float
+    """Share of the liquid that this film can hold; if it is more than 1, all of the liquid can go round."""
     damping: Damping
 
     def __str__(self) -> str:
         """Return what was used, in one line."""
         return (
             f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s, damped by {self.law} at a slip rate of "
-            f"{self.slip:.3g} rad/s, with a film of {1e3 * self.film:.2g} mm"
+            f"{self.slip:.3g} rad/s, with a film of {1e3 * self.film:.2g} mm on the wall"
         )
 
 
@@ -84,17 +89,18 @@ def liquid(
     `drag` [kg/m] is that of the air. `liquid_in` tells what was used, and the module's docstring the laws.
 
     A thin liquid's torque goes with the slip rate to 1.5, which a polynomial fits to `FIT_ERROR`. A `LiquidWarning`
-    says where the film on the wall is nearly as thick as the can: there the damping is an order of magnitude only.
+    says where the film on the wall can hold a third of the liquid: there the damping is an order of magnitude only.
 
     Raises:
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
     scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
-    if used.film > _CARRIED * scene.can.radius:
+    if used.carried > _CARRIED:
+        share = f"{100 * used.carried:.0f} %" if used.carried < 1 else "all"
         warnings.warn(
-            f"{used.name} coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, where the radius "
-            f"is {1e3 * scene.can.radius:.3g} mm. The damping of one lump is an order of magnitude only",
+            f"{used.name} coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold "
+            f"{share} of the liquid. The damping of one lump is an order of magnitude only",
             LiquidWarning,
             stacklevel=2,
         )
@@ -131,7 +137,7 @@ def liquid_in(
     if free.incline == 0:
         layer = density * math.sqrt(nu * free.frequency() / 2)
         swing = Damping(layer * a**3 * (arc * length + 2 * moment * a))
-        return Liquid(name, density, nu, "swing", 0.0, 0.0, swing)
+        return Liquid(name, density, nu, "swing", 0.0, 0.0, 0.0, swing)
     torque = free.mass * free.gravity * a * abs(math.sin(free.incline))
     torque = min(torque, free.load.mass * free.gravity * free.load.offset)  # all that the load can hold
     thin = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
@@ -149,7 +155,8 @@ def liquid_in(
                 f"incline = {incline!r} rad, fill = {fill!r}, gravity = {gravity!r} m/s^2, "
                 f"density = {density!r} kg/m^3 in {free.can!r}"
             )
-    return Liquid(name, density, nu, law, slip, math.sqrt(nu * slip / free.gravity), damping)
+    film = math.sqrt(nu * a * slip / free.gravity)
+    return Liquid(name, density, nu, law, slip, film, FILM_LOAD * film / (shape.area * a), damping)
 
 
 def _fitted(factor: float, slip: float) -> Damping:

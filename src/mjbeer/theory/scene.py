@@ -48,6 +48,8 @@ class Scene:
     drag: float = 0.0
     """Force of the air against the motion of the axis, over the square of its speed, C_d rho A / 2 [kg/m]. Only a scene
     with a sliding load has it."""
+    damping_law: Damping = field(init=False, repr=False, compare=False)
+    """The torque between can and load as a `Damping`, also where it was given as a number."""
     oscillator: Oscillator = field(init=False, repr=False, compare=False)
     """The scene without damping and drag as one degree of freedom, phi; it follows from the other fields."""
 
@@ -64,6 +66,8 @@ class Scene:
         require.store(self, drag=require.non_negative("drag", self.drag, "kg/m"))
         if not isinstance(self.damping, Damping):
             require.store(self, damping=require.non_negative("damping", self.damping, "N m s"))
+        law = self.damping if isinstance(self.damping, Damping) else Damping(self.damping)
+        require.store(self, damping_law=law)
         if self.dissipates and self.attachment == "frozen":
             raise ParameterError(
                 f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
@@ -87,11 +91,6 @@ class Scene:
     def _repr_html_(self) -> str:
         """Return the parameters of the scene as a table, for a notebook."""
         return import_module("mjbeer.drawing.views").scene_html(self)  # theory knows no pictures: not imported above
-
-    @property
-    def damping_law(self) -> Damping:
-        """Return the torque between can and load as a `Damping`, also where it was given as a number."""
-        return self.damping if isinstance(self.damping, Damping) else Damping(self.damping)
 
     @property
     def dissipates(self) -> bool:

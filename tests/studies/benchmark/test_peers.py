@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Scene, exact, frozen, pendulum, sliding
+from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
-from mjbeer.studies.benchmark.peers import equations, with_scipy
+from mjbeer.studies.benchmark.peers import equations, whole_call, with_scipy
 from mjbeer.studies.benchmark.peers import peer as peers
 from mjbeer.studies.benchmark.peers.installed import PEERS, absent, installed
 from mjbeer.studies.benchmark.peers.peer import Peer
@@ -36,7 +36,7 @@ def skipping(peers: Iterable[Peer]) -> list[Any]:
 
 
 ALL = skipping(PEERS)
-TOLERANT = skipping(peer for peer in PEERS if peer.knob == "tolerance")
+TOLERANT = skipping(peer for peer in PEERS if peer.knob == "tolerance" and peer is not whole_call.PEER)
 STEPPING = skipping(peer for peer in PEERS if peer.knob == "timestep")
 
 # A tolerance holds for one step, of which there are some hundreds, and for metres, of which a radian of rolling has
@@ -215,3 +215,10 @@ def test_what_is_broken_is_absent_and_says_why(broken: Exception, monkeypatch: p
     monkeypatch.setattr(importlib, "import_module", load)
     assert absent() == {"heyoka": str(broken)}
     assert "heyoka" not in {peer.name for peer in installed()}
+
+
+def test_a_whole_call_is_that_of_simulate() -> None:
+    phi, u = whole_call.PEER.prepare(sliding(), 1.0, 0.0, TIMES, 1e-9)()
+    run = simulate(sliding(), float(TIMES[-1]), 1.0, tolerance=1e-9, times=TIMES)
+    assert (phi == run.phi).all()
+    assert (u == run.u).all()

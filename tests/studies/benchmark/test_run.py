@@ -261,7 +261,13 @@ def test_the_command_writes_everything(short: None, tmp_path: pathlib.Path, caps
         ".lock",
     }
     summary = (tmp_path / "new" / "summary.md").read_text()
-    for text in ("frozen: cheapest setting for an error", "SciPy odeint", "share of the force", "as usually written"):
+    for text in (
+        "frozen: cheapest setting for an error",
+        "SciPy odeint",
+        "share of the force",
+        "as usually written",
+        "stubs",
+    ):
         assert text in summary
     assert "cheapest setting" in capsys.readouterr().out
     assert main(["advise", "frozen", "--tolerance", "1e-6", "--study", str(tmp_path / "new" / "study.json")]) == 0

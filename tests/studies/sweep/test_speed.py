@@ -5,15 +5,17 @@ import pytest
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.studies.sweep import speed
+from mjbeer.studies.sweep.ensemble import installed
 
 
 @pytest.mark.slow
 def test_all_that_is_timed_keeps_the_tolerance() -> None:
     ways = speed.compare(8, rounds=1, cores=2)
-    assert [way.name.split(",")[0] for way in ways] == ["mjbeer.sweep", "mjbeer.sweep", "mujoco.batch"]
+    names = ["mjbeer.sweep", "mjbeer.sweep", "mujoco.batch", *["heyoka's ensemble"] * installed()]
+    assert [way.name.split(",")[0] for way in ways] == names
     assert all(0 < way.error <= speed.TOLERANCE for way in ways)
     assert all(0 < way.seconds < np.inf for way in ways)
-    assert len(speed.table(ways).rows) == 3
+    assert len(speed.table(ways).rows) == len(ways)
 
 
 def test_the_timestep_is_the_largest_that_keeps_the_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:

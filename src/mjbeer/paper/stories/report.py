@@ -8,10 +8,10 @@ from mjbeer.drawing import studio
 from mjbeer.drawing.studio import Order
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
-from mjbeer.paper.stories import frozen, hopping, letters, massive_can, sliding
+from mjbeer.paper.stories import frozen, hopping, letters, massive_can, real_beer, sliding
 from mjbeer.paper.stories.story import Story
 
-_CHAPTERS = (sliding, massive_can, frozen, hopping)
+_CHAPTERS = (sliding, massive_can, frozen, hopping, real_beer)
 _WIDTH, _HEIGHT, _FPS = 960, 540, 30
 """Width and height [pixels] and pictures per second of a film: small, for there are ten of them."""
 

@@ -12,6 +12,7 @@ from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import CHOSEN, TOLERANCE, Curve
+from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import CASES
@@ -70,8 +71,8 @@ def _legend(panels: list[Axes]) -> list[Artist]:
 
 def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     """Draw the points of a case, the front, and the prediction for semi-implicit Euler."""
-    points = study.of(case)
-    peers = sorted({point.way for point in study.points if point.way not in (*ROLLINGS, *USUAL)})
+    points = [point for point in study.of(case) if point.way != WHOLE]  # its line is beside that of the runs alone
+    peers = sorted({point.way for point in study.points if point.way not in (*ROLLINGS, *USUAL, WHOLE)})
     for curve in dict.fromkeys(point.curve for point in points):
         times, errors = _coordinates([point for point in points if point.curve == curve])
         if curve.way in USUAL:

@@ -1,8 +1,10 @@
 """Write the results of a benchmark: the points as CSV, the diagram, and a summary with the tables."""
 
 import pathlib
+from collections.abc import Sequence
 
 from mjbeer.output import files
+from mjbeer.output.table import Table
 from mjbeer.studies.benchmark import overview, plots, predicted, tables
 from mjbeer.studies.benchmark.points import Benchmark
 
@@ -14,8 +16,10 @@ itself accurate to about 1e-12, and `of the integrator` is the distance of the r
 """
 
 
-def write(study: Benchmark, folder: pathlib.Path) -> None:
+def write(study: Benchmark, folder: pathlib.Path, further: Sequence[Table] = ()) -> None:
     """Write points.csv, the diagrams work_precision and overview (.svg and .png) and, as the last, summary.md.
+
+    `further` tables, of other studies, are the last ones of the summary.
 
     Raises:
       OutputError: if a file cannot be written.
@@ -23,7 +27,7 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
     files.write(folder / "points.csv", study.csv())
     plots.draw(study, folder / "work_precision")
     overview.draw(study, folder / "overview")
-    results = [*tables.tables(study), predicted.table()]
+    results = [*tables.tables(study), predicted.table(), *further]
     versions = ", ".join(f"{name} {number}" for name, number in study.machine["versions"].items())
     lines = [
         "# mjbeer: error against run time",

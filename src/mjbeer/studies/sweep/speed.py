@@ -1,4 +1,4 @@
-"""How long a scene of a sweep takes, beside `mujoco.batch` with RK4 at a timestep that is as exact.
+"""How long a scene of a sweep takes, beside `mujoco.batch` with RK4 at a timestep that is as exact, and heyoka.
 
 `python -m mjbeer.studies.sweep.speed` measures it on the scenes of `docs/sweeps.md`.
 """
@@ -18,6 +18,7 @@ from mjbeer.model import state
 from mjbeer.model.build import build
 from mjbeer.output import processes, terminal
 from mjbeer.output.table import Table
+from mjbeer.studies.sweep.ensemble import Propagate, ensemble, installed
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import sliding
@@ -31,6 +32,8 @@ _FEWEST, _MOST = 2000, 64_000
 """Smallest number of timesteps of RK4 that is tried, and the largest."""
 _REFINED = 2
 """How often the range between too few timesteps and enough of them is halved; at first it is a factor of 2."""
+_LOCAL = 1e-7
+"""Tolerance of heyoka's steps; with 1e-6 the largest error of 200 scenes is twice `TOLERANCE`."""
 _ROUNDS = 4
 """Times that each way is timed, one after the other; the shortest counts."""
 
@@ -83,6 +86,12 @@ class Sample:
         joints = state.places(models[0])
         return took, self.error(qpos[:, joints["phi"]], qpos[:, joints["slide"]])
 
+    def by_ensemble(self, propagate: Propagate) -> tuple[float, float]:
+        """Return the time of a scene [s] in heyoka's ensemble, without compiling it, and the largest error [rad]."""
+        began = time.perf_counter()
+        phi, u = propagate()
+        return (time.perf_counter() - began) / len(self.scenes), self.error(phi, u)
+
     def timestep(self, threads: int) -> float:
         """Return the largest timestep [s], to a fifth, at which RK4 keeps the tolerance in all scenes.
 
@@ -118,7 +127,7 @@ class Timed:
 
 
 def compare(count: int, rounds: int = _ROUNDS, cores: int | None = None) -> list[Timed]:
-    """Return the times of sweeps in threads and in processes, and of mujoco.batch, on some scenes; in rounds.
+    """Return the times of sweeps, of mujoco.batch, and of heyoka if it is there, on some scenes; in rounds.
 
     Raises:
       ToleranceError: if RK4 does not reach the tolerance.
@@ -131,6 +140,9 @@ def compare(count: int, rounds: int = _ROUNDS, cores: int | None = None) -> list
             Timed(f"mjbeer.sweep, {cores} processes", lambda: sample.by_sweep(pool)),
             Timed(f"mujoco.batch, RK4 at {timestep * 1e3:.3g} ms", lambda: sample.by_batch(timestep, cores)),
         ]
+        if installed():
+            propagate = ensemble(sample.scenes, _START, _DURATION, _LOCAL)
+            ways.append(Timed("heyoka's ensemble, equations by hand", lambda: sample.by_ensemble(propagate)))
         for way in ways:
             way.measure()  # compiles, and starts the processes
         for _ in range(rounds):
