@@ -12,11 +12,11 @@ from mjbeer.theory.liquid import liquid_in
 
 
 def test_what_a_liquid_uses_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.3", "--phi0", "20", "--duration", "0.1"]
+    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "0.1"]
     assert main([*words, "--json"]) == 0
     out, err = capsys.readouterr()
-    assert err == f"{liquid_in('olive oil', fill=0.3)}\n"
-    run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.3), 0.1, np.radians(20))
+    assert err == f"{liquid_in('olive oil', fill=0.7)}\n"
+    run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 0.1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
 
 
