@@ -9,6 +9,7 @@ from mjbeer.drawing.race import Race
 from mjbeer.paper.stories import report
 from mjbeer.report import races
 from mjbeer.report.films import FILMS
+from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.liquids import LIQUIDS
 from tests.support.labels import faults
 
@@ -44,7 +45,9 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     assert finish["honey"] == np.inf
     way, speed = cans["honey"].positions(np.array([finish["ice"]]))[0, 0], races.with_liquid("honey").terminal_speed()
     told = races.told_of_liquids()
+    honey = liquid_in("honey", cans["honey"].trajectory.scene.incline, 0.75, races.METAL)
     for words in (
+        f"the wall carries up to {100 * honey.carried:.0f} % round with it",
         f"Water wins after {finish['water']:.2f} s",
         f"oil follows after {finish['olive oil']:.2f} s",
         f"finishes after {finish['ice']:.2f} s",

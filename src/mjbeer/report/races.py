@@ -93,6 +93,7 @@ def told_of_liquids() -> str:
     scenes = {"water": with_liquid("water"), "oil": with_liquid("olive oil"), "ice": with_ice()}
     times = {name: by_theory(scene).finish_of_theory(LENGTH) for name, scene in scenes.items()}
     honey = with_liquid("honey")
+    carried = liquid_in("honey", _STEEPER, _FILL, METAL).carried
     way, speed = by_theory(honey).way_of_theory(times["ice"]), honey.terminal_speed()
     return (
         "Predict first, then look. Four equal cans, three quarters full of water, olive oil, honey and ice, are let go "
@@ -102,7 +103,7 @@ def told_of_liquids() -> str:
         f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The honey "
         f"is last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither "
         "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: it creeps with "
-        f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Real "
-        "honey coats the can, so that its speed is an order of magnitude only, but with half or twice the viscosity "
-        "it is last as well."
+        f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Of "
+        f"real honey the wall carries up to {100 * carried:.0f} % round with it, so that its speed is an estimate, but "
+        "with half or twice the viscosity it is last as well."
     )
