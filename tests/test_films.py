@@ -3,16 +3,21 @@
 import numpy as np
 import pytest
 
+from mjbeer import exact, frozen
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.race import Race
 from mjbeer.paper.stories import report
+from mjbeer.report import races
 from mjbeer.report.films import FILMS
+from mjbeer.theory.liquid import liquid_in
+from mjbeer.theory.liquids import LIQUIDS
 from tests.support.labels import faults
 
 ALL: dict[str, tuple[Film, float]] = {
     **{name: (film, 30.0) for name, film in FILMS.items()},
     **{f"paper/{order.path.stem}": (order.film, order.fps) for order in report.orders(report.pathlib.Path())},
 }
+TIMES = np.linspace(0.0, 2.3, 1151)
 TURN = 0.6
 """Largest turn from picture to picture [rad]: a tenth of a circle. From half a circle on, the eye sees it backwards."""
 
@@ -30,6 +35,43 @@ def test_nothing_turns_so_fast_that_the_eye_is_deceived(name: str) -> None:
     for motion in motions:
         fastest = max(np.abs(motion.roll_dot).max(), np.abs(motion.phi_dot).max())
         assert fastest * film.speed / fps < TURN
+
+
+def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
+    """All of its numbers are those of the simulated cans, and honey is last with half and twice its viscosity."""
+    cans = {can.name: can for can in races.of_liquids()}
+    finish = {name: can.finish(races.LENGTH) for name, can in cans.items()}
+    assert sorted(finish, key=lambda name: finish[name]) == ["water", "olive oil", "ice", "honey"]
+    assert finish["honey"] == np.inf
+    way, speed = cans["honey"].positions(np.array([finish["ice"]]))[0, 0], races.with_liquid("honey").terminal_speed()
+    told = races.told_of_liquids()
+    honey = liquid_in("honey", cans["honey"].trajectory.scene.incline, 0.75, races.METAL)
+    for words in (
+        f"the wall carries up to {100 * honey.carried:.0f} % round with it",
+        f"Water wins after {finish['water']:.2f} s",
+        f"oil follows after {finish['olive oil']:.2f} s",
+        f"finishes after {finish['ice']:.2f} s",
+        f"it has come {100 * way:.0f} cm",
+        f"creeps with {100 * speed:.1f} cm/s, at which a metre takes {1 / speed:.0f} s",
+    ):
+        assert words in told
+    own = LIQUIDS["honey"].viscosity
+    for viscosity in (own / 2, 2 * own):
+        assert races.by_theory(races.with_liquid("honey", viscosity)).way_of_theory(finish["ice"]) < 0.4
+    assert all(can.trajectory.trusted for can in cans.values())
+
+
+def test_ice_rolls_over_and_honey_does_not_because_of_the_incline() -> None:
+    """Let go with a level surface, ice would swing back on up to 6.93 degrees; here it hesitates on top."""
+    ice = exact(races.with_ice(), TIMES, -races.with_ice().incline)
+    slowest = np.abs(ice.u_dot[TIMES > 0.3]).min()
+    assert slowest < 0.1
+    for incline, swings in ((6.93, True), (6.94, False)):
+        level = frozen(np.radians(incline), 0.75, races.METAL, 917.0)
+        assert (level.separatrix()[0] < -level.incline < level.separatrix()[1]) is swings
+    honey = exact(races.with_liquid("honey"), TIMES, -races.with_ice().incline)
+    assert np.abs(honey.phi).max() < np.pi
+    assert np.abs(ice.phi).max() > 2 * np.pi
 
 
 @pytest.mark.parametrize("name", ALL)

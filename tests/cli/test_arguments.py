@@ -8,9 +8,9 @@ from typing import get_args
 
 import pytest
 
-from mjbeer import Can, Scene, build, frozen, hoop, pendulum, render, simulate, sliding
+from mjbeer import Can, Scene, build, frozen, hoop, liquid, pendulum, render, simulate, sliding
 from mjbeer.cli.app import COMMANDS, main, parse
-from mjbeer.cli.arguments import Common, Frozen, Hoop, Integrator, Motion, Pendulum, Rolling, Sliding, radians
+from mjbeer.cli.arguments import Common, Frozen, Hoop, Integrator, Liquid, Motion, Pendulum, Rolling, Sliding, radians
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
@@ -20,9 +20,10 @@ UNITS = {
     "phi0": "degrees", "phi-dot0": "degrees/s", "incline": "degrees", "duration": "s", "timestep": "s",
     "tolerance": "rad", "radius": "m", "length": "m", "offset": "m", "gravity": "m/s^2", "density": "kg/m^3",
     "hoop-mass": "kg", "wheel-mass": "kg", "load-mass": "kg", "width": "pixels", "height": "pixels",
+    "damping": "N m s", "drag": "kg/m", "viscosity": "m^2/s",
 }  # fmt: skip
 PURE_NUMBERS = {"fill", "friction", "speed"}
-SCENES = ("sliding", "frozen", "pendulum", "hoop")
+SCENES = ("sliding", "liquid", "frozen", "pendulum", "hoop")
 NUMBER = re.compile(r"--(?P<name>[\w-]+) (?:FLOAT|INT)\s(?P<text>.*?)(?=\(default|\(required)", re.DOTALL)
 
 
@@ -58,15 +59,20 @@ def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixtur
         (Pendulum(), pendulum()),
         (Hoop(), hoop()),
         (
-            Sliding(-20, 0.04, 0.2, 1.6, 0.3, 900, "metal"),
-            sliding(math.radians(-20), 0.3, Can.sheet_metal(0.04, 0.2), 900, 1.6),
+            Sliding(-20, 0.04, 0.2, 1.6, 0.3, "metal", 900, 1e-3, 1e-4),
+            sliding(math.radians(-20), 0.3, Can.sheet_metal(0.04, 0.2), 900, 1.6, 1e-3, 1e-4),
         ),
-        (Frozen(5, 0.04, 0.2, 1.6, 0.3, 900), frozen(math.radians(5), 0.3, Can.massless(0.04, 0.2), 900, 1.6)),
+        (Liquid(), liquid()),
+        (
+            Liquid(5, 0.04, 0.2, 1.6, 0.3, "metal", "olive oil", 900, 1e-5, 1e-4),
+            liquid("olive oil", math.radians(5), 0.3, Can.sheet_metal(0.04, 0.2), 900, 1e-5, 1.6, 1e-4),
+        ),
+        (Frozen(5, 0.04, 0.2, 1.6, 0.3, density=900), frozen(math.radians(5), 0.3, Can.massless(0.04, 0.2), 900, 1.6)),
         (Pendulum(20, 0.04, 0.2, 1.6, 0.5, 0.6, 0.03), pendulum(math.radians(20), 0.5, 0.6, 0.03, 0.04, 0.2, 1.6)),
         (Hoop(7, 0.04, 0.2, 1.6, 0.5, 0.6), hoop(math.radians(7), 0.5, 0.6, 0.04, 0.2, 1.6)),
     ],
 )
-def test_a_scene_is_that_of_python(said: Sliding | Frozen | Pendulum | Hoop, meant: Scene) -> None:
+def test_a_scene_is_that_of_python(said: Sliding | Liquid | Frozen | Pendulum | Hoop, meant: Scene) -> None:
     assert said.scene() == meant
 
 
@@ -97,7 +103,7 @@ def test_every_option_arrives() -> None:
     )
     command = parse(words.split())
     assert isinstance(command, Simulate)
-    assert command.scene == Frozen(3, 0.04, 0.2, 1.6, 0.3, 900, "metal")
+    assert command.scene == Frozen(3, 0.04, 0.2, 1.6, 0.3, "metal", 900)
     settings = {
         "phi0": -30, "phi_dot0": 12, "duration": 0.5, "rolling": "contact", "integrator": "discrete",
         "timestep": 2e-3, "tolerance": 1e-8, "friction": 0.4,

@@ -6,9 +6,10 @@ import math
 import numpy as np
 import pytest
 
-from mjbeer import Trajectory, exact, frozen, hoop, simulate, sliding
+from mjbeer import Damping, Trajectory, exact, frozen, hoop, simulate, sliding
 from mjbeer.cli.figures import Figures
 from mjbeer.simulation.run import Run
+from mjbeer.theory.scene import Scene
 
 # Let go with the beer on top, the can hops at 0.834 s; before, rolling needs ever more friction, 1.839 within 0.8 s.
 START, SHORT, LONG = math.pi, 0.8, 0.9
@@ -33,13 +34,53 @@ def test_the_text_says_what_a_run_says_about_itself() -> None:
 
 
 def test_the_text_fits_in_80_columns() -> None:
-    for run in (simulate(frozen(), SHORT, START, timestep=0.02), exact(hoop(), np.linspace(0, 0.5, 1001), 3.0)):
+    for run in (
+        simulate(frozen(), SHORT, START, timestep=0.02),
+        exact(hoop(), np.linspace(0, 0.5, 1001), 3.0),
+        simulate(sliding(damping=Damping(1.2345e-5, 1.2345e-5), drag=1.2345e-5), 0.1, 1.0),
+    ):
         assert max(len(line) for line in Figures(run, 0.123456).text().splitlines()) <= 80
 
 
 def test_the_text_has_the_estimated_error_of_a_tolerance() -> None:
     run = simulate(frozen(), 0.5, 1.0, tolerance=1e-9)
     assert lines(run)["estimated error of phi and u/a"] == f"{run.error_estimate:.2e} rad"
+
+
+def test_a_damped_run_has_its_steady_rolling_and_its_modes() -> None:
+    scene = sliding(damping=1e-3)
+    run = simulate(scene, 0.1, 1.0)
+    text, content = lines(run), json.loads(Figures(run).json())
+    assert text["torque at the slip rate w"] == "0.001 N m s w"
+    tilt = math.degrees(scene.terminal_tilt())
+    assert text["steady rolling"] == f"{scene.terminal_speed():.6g} m/s, the load at phi = {tilt:.6g} degrees"
+    assert text["its modes exp(s t), s"] == "-4.76, -2.2 +- 17.96i 1/s"
+    assert content["terminal speed [m/s]"] == scene.terminal_speed()
+    assert content["terminal tilt [degrees]"] == tilt
+    assert [complex(*root) for root in content["modes, real and imaginary parts [1/s]"]] == scene.modes().tolist()
+
+
+@pytest.mark.parametrize(
+    ("scene", "reason"),
+    [
+        (sliding(incline=0.7, damping=1e-3, drag=1e-3), "no steady rolling at an incline of 40.11 degrees"),
+        (sliding(fill=1.0, damping=1e-3), "nothing restores the load"),
+        (sliding(gravity=0.0, drag=1e-3), "nothing restores the load"),
+    ],
+)
+def test_a_damped_run_without_steady_rolling_says_why(scene: Scene, reason: str) -> None:
+    run = simulate(scene, 0.1, 1.0)
+    text, content = lines(run), json.loads(Figures(run).json())
+    assert text["steady rolling"].startswith(reason)
+    assert "its modes exp(s t), s" not in text
+    assert content["terminal speed [m/s]"] is content["modes, real and imaginary parts [1/s]"] is None
+    assert len(text["steady rolling"]) <= 80 - 32
+
+
+def test_a_run_without_damping_has_no_such_figures() -> None:
+    run = simulate(sliding(), 0.1, 1.0)
+    assert "steady rolling" not in lines(run)
+    assert "terminal speed [m/s]" not in json.loads(Figures(run).json())
 
 
 def test_a_motion_of_theory_has_no_estimated_error() -> None:

@@ -16,6 +16,7 @@ from mjbeer.output import terminal
 UNITS = {
     "--incline": "degrees", "--radius": "m", "--length": "m", "--gravity": "m/s^2", "--fill": "",
     "--density": "kg/m^3", "--can": "", "--wheel-mass": "kg", "--load-mass": "kg", "--offset": "m", "--hoop-mass": "kg",
+    "--damping": "N m s", "--drag": "kg/m", "--liquid": "", "--viscosity": "m^2/s",
 }  # fmt: skip
 
 
@@ -27,7 +28,7 @@ def listed(capsys: pytest.CaptureFixture[str]) -> list[dict[str, str]]:
 
 
 def test_every_scene_and_every_unit(listed: list[dict[str, str]]) -> None:
-    assert {row["scene"] for row in listed} == set(SCENES) == {"sliding", "frozen", "pendulum", "hoop"}
+    assert {row["scene"] for row in listed} == set(SCENES) == {"sliding", "liquid", "frozen", "pendulum", "hoop"}
     assert {row["option"]: row["unit"] for row in listed} == UNITS
     assert all(row["meaning"].endswith(".") for row in listed)
 
@@ -39,9 +40,14 @@ def test_the_defaults_are_those_of_python(name: str, listed: list[dict[str, str]
     shared = [each for each in meant if f"--{each.replace('_', '-')}" in said and each != "can"]
     assert {"incline", "gravity"} <= set(shared)
     for each in shared:
-        value = float(said[f"--{each.replace('_', '-')}"])
+        text = said[f"--{each.replace('_', '-')}"]
+        if meant[each].default is None:
+            assert text == "the liquid's own"
+            continue
+        value = float(text)
         assert (math.radians(value) if each == "incline" else value) == pytest.approx(meant[each].default, rel=1e-6)
     assert ("--can" in said) == ("can" in meant)
+    assert said.get("--liquid") == (meant["name"].default if "name" in meant else None)
 
 
 def test_no_option_is_left_out(listed: list[dict[str, str]], capsys: pytest.CaptureFixture[str]) -> None:

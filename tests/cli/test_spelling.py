@@ -8,7 +8,7 @@ from mjbeer.cli.app import COMMANDS, main, parse
 from mjbeer.cli.arguments import SCENES
 from mjbeer.cli.spelling import options
 
-SCENE_LIST = "sliding, frozen, pendulum"
+SCENE_LIST = "sliding, liquid, frozen, pendulum"
 
 
 @pytest.mark.parametrize(
@@ -28,7 +28,7 @@ SCENE_LIST = "sliding, frozen, pendulum"
         ("simulate --timestp=3 sliding", "`mjbeer simulate` has no option --timestp; did you mean --timestep?"),
         ("validate --jsn", "`mjbeer validate` has no option --jsn; did you mean --json?"),
         ("simulate sliding --wheel-mass 1", "`mjbeer simulate sliding` has no option --wheel-mass; pendulum has it"),
-        ("simulate hoop --fill 1", "`mjbeer simulate hoop` has no option --fill; sliding and frozen have it"),
+        ("simulate hoop --fill 1", "`mjbeer simulate hoop` has no option --fill; sliding, liquid and frozen have it"),
         (
             "simulate frozen --speed 2",
             "`mjbeer simulate frozen` has no option --speed; `mjbeer render` and `mjbeer view` have it",
@@ -37,7 +37,7 @@ SCENE_LIST = "sliding, frozen, pendulum"
             "paper --quick",
             "`mjbeer paper` has no option --quick; `mjbeer benchmark`, `mjbeer stability` and `mjbeer report` have it",
         ),
-        ("simulate --fill 0.3 sliding", "--fill is an option of the scene: write it after sliding or frozen"),
+        ("simulate --fill 0.3 sliding", "--fill is an option of the scene: write it after sliding, liquid or frozen"),
         ("paper --xyzzy", "`mjbeer paper` has no option --xyzzy; `mjbeer paper --help` lists them"),
         ("", "a command is missing: simulate, render, view, export, scenes, "),
         ("simulate", f"a scene is missing: {SCENE_LIST} or hoop; see `mjbeer scenes`"),

@@ -53,9 +53,9 @@ def test_the_file_has_what_python_gives(
         ("sweep frozen --fill 1:2", "'1:2' is no number, no list as 1,2,5, and no range as 1:20:39"),
         ("sweep frozen", "a plot needs one or two options with several values, got 0: write .csv, .npz or .nc"),
         ("sweep frozen --fill 0.2,0.3 --output map.jpg", "name must end in .png or .svg or .csv or .npz or .nc, got"),
-        ("sweep --fill 0.2,0.3 frozen", "--fill is an option of the scene: write it after sliding or frozen"),
+        ("sweep --fill 0.2,0.3 frozen", "--fill is an option of the scene: write it after sliding, liquid or frozen"),
         ("sweep frozn", "'frozn' is no scene; did you mean frozen?"),
-        ("sweep hoop --fill 0.3", "`mjbeer sweep hoop` has no option --fill; sliding and frozen have it"),
+        ("sweep hoop --fill 0.3", "`mjbeer sweep hoop` has no option --fill; sliding, liquid and frozen have it"),
         ("sweep", "a scene is missing"),
     ],
 )

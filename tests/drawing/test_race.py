@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, exact, frozen, simulate, sliding
+from mjbeer.drawing.overlay.sheet import Sheet
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.runner import Runner
 from mjbeer.exceptions import ParameterError
@@ -46,9 +47,40 @@ def test_at_the_finish_a_can_is_at_the_line(scene: Scene, phi0: float) -> None:
     assert runner.finish(0.7) == pytest.approx(time, abs=SIMULATED)
 
 
-def test_a_run_that_is_too_short_is_an_error() -> None:
-    with pytest.raises(ParameterError, match=r"a can rolls 0\.0\d+ m, and the race is over 1 m"):
-        run(frozen(INCLINE, fill=1.0), duration=0.3).finish(1.0)
+def test_a_can_that_does_not_finish_is_followed_until_the_others_have() -> None:
+    """What honey does not reach has no time, and the table has how far it came."""
+    fast, slow = run(sliding(INCLINE, can=METAL)), run(sliding(INCLINE, can=METAL, damping=1e-2), duration=1.8)
+    assert slow.finish(1.0) == slow.finish_of_theory(1.0) == math.inf
+    race = Race("a race", lambda: [fast, slow], length=1.0, speed=1.0, told=str, still=0.0, after=0.1)
+    end = fast.finish(1.0)
+    assert race.reel().end == end + 0.1
+    results = race.course([fast, slow], 320, 180).results
+    (first, by_theory), (second, second_by_theory) = results.words
+    assert first == by_theory == f"{end:.4f} s"
+    assert second == second_by_theory == f"{slow.way_of_theory(end):.4f} m"
+
+
+def test_runs_that_are_too_short_are_errors() -> None:
+    fast, short = run(sliding(INCLINE, can=METAL)), run(frozen(INCLINE, fill=1.0), duration=0.3)
+    with pytest.raises(
+        ParameterError, match=r"a can rolls 0\.0\d+ m to t = 0\.3 s, and the race is over 1 m and lasts"
+    ):
+        Race("a race", lambda: [fast, short], 1.0, 1.0, told=str, still=0.0).reel()
+    with pytest.raises(ParameterError, match="no can finishes: none rolls 1 m while its motion lasts"):
+        Race("a race", lambda: [short], 1.0, 1.0, told=str, still=0.0).reel()
+
+
+def test_the_chart_of_a_race_does_not_tell_who_wins() -> None:
+    """Theory's line is there at the end, and at the start only in the legend."""
+    cans = [run(sliding(INCLINE, can=METAL))]
+    race = Race("a race", lambda: cans, 1.0, 1.0, told=str, still=0.0)
+    course, counts = race.course(cans, 640, 360), []
+    for time in (0.0, cans[0].finish(1.0)):
+        sheet = Sheet(640, 360)
+        course.strip.draw(sheet, time, 0)
+        grey = np.abs(sheet.picture().astype(int) - [180, 188, 200]).max(axis=2) < 12
+        counts.append(grey.sum())
+    assert 0 < counts[0] < 0.3 * counts[1]
 
 
 @pytest.mark.draws
@@ -56,7 +88,7 @@ def test_a_run_that_is_too_short_is_an_error() -> None:
 def test_a_race_is_drawn_with_its_cans_at_the_lines() -> None:
     """Each can's colour is found where it is at the start, and beyond the finish in the end."""
     cans = [run(frozen(INCLINE, fill=1.0, can=METAL)), run(sliding(INCLINE, can=METAL))]
-    race = Race("a race", lambda: cans, length=0.5, speed=1.0, caption="", still=0.0, after=0.1)
+    race = Race("a race", lambda: cans, length=0.5, speed=1.0, told=str, still=0.0, after=0.1)
     reel = race.reel()
     assert reel.end == pytest.approx(max(can.finish(0.5) for can in cans) + 0.1)
     course = race.course(cans, 320, 180)

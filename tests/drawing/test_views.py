@@ -10,6 +10,8 @@ from matplotlib import pyplot as plt
 
 import mjbeer
 from mjbeer import MjbeerError, exact, frozen, simulate, sliding
+from mjbeer.drawing.overlay.charts import charts
+from mjbeer.drawing.overlay.look import Look
 from mjbeer.exceptions import OutputError
 
 
@@ -94,6 +96,34 @@ def test_a_notebook_shows_whether_a_run_is_trusted() -> None:
     assert "no: from t = 0.83" in bad._repr_html_()
     assert "N &lt; 0" in bad._repr_html_()
     assert "<th>incline</th><td>10 degrees</td>" in good.scene._repr_html_()
+
+
+def test_a_notebook_shows_what_brakes_a_scene() -> None:
+    shown = sliding(damping=1e-3, drag=2e-4)._repr_html_()
+    assert "<th>torque of the damping</th><td>0.001 N m s w</td>" in shown
+    assert "<th>drag of the air</th><td>0.0002 kg/m</td>" in shown
+    assert "damping" not in sliding()._repr_html_()
+
+
+def test_a_plot_of_a_damped_run_has_exact_theory_beneath() -> None:
+    run = simulate(sliding(damping=1e-3), 0.5, 1.0, tolerance=1e-9)
+    above, below = run.plot(theory=True)
+    for axes, values in ((above, np.degrees(run.phi)), (below, run.u)):
+        theory = axes.get_lines()[0]
+        at_samples = np.interp(run.time, np.asarray(theory.get_xdata()), np.asarray(theory.get_ydata()))
+        assert at_samples == pytest.approx(values, abs=1e-6)
+    assert above.figure.get_suptitle() == "half-full massless can, beer sliding, damping 0.001 N m s, incline 10°"
+    plt.close(above.figure)
+
+
+def test_a_damped_run_is_drawn_with_its_speed_and_without_a_ghost() -> None:
+    for scene in (sliding(damping=1e-3), sliding(drag=1e-3)):
+        look = Look.usual(simulate(scene, 0.1, 1.0))
+        assert look.title == "A can that its load or the air brakes"
+        assert (look.strips, look.marks) == (("phi", "u_dot"), ("phi", "paths"))
+    chart = charts(simulate(sliding(damping=1e-3), 0.1, 1.0, tolerance=1e-9), ["u_dot"])[0]
+    simulated, theory = chart.lines
+    assert np.interp(simulated.time, theory.time, theory.values) == pytest.approx(simulated.values, abs=1e-4)
 
 
 def test_help_says_what_the_coordinates_are() -> None:

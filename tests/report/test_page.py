@@ -26,7 +26,7 @@ from tests.support import pages, stubs
 from tests.support.pages import Page
 
 VOID_OF_NETWORK = ("data:", "#")
-SECTIONS = ["race", "scenes", "precision", "stability", "misprints", "stories", "verdict", "machine"]
+SECTIONS = ["races", "scenes", "precision", "stability", "misprints", "stories", "verdict", "machine"]
 
 
 @pytest.fixture(scope="module")
@@ -35,7 +35,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Generator[pathlib.Path]:
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stories_report, "stories", pages.stories)
-        patch.setitem(films.FILMS, films.RACE, films.FILMS["sliding"])
         pages.fill(folder)
         yield folder
 
@@ -91,7 +90,7 @@ def test_everything_has_a_name_of_its_own(text: str) -> None:
 
 def test_every_film_is_in_the_page_whole(folder: pathlib.Path, text: str) -> None:
     read = Page.of(text)
-    names = [films.RACE, *(name for name in films.FILMS if name != films.RACE), "paper/told"]
+    names = [*films.RACES, *(name for name in films.FILMS if name not in films.RACES), "paper/told"]
     assert [element.attributes["src"] for element in read.all("source")] == [
         data_uri(folder / f"{name}.mp4") for name in names
     ]

@@ -18,7 +18,7 @@ from tests.support import stubs
 from tests.support.pages import Page
 
 SENTENCE = r"{} of {} checks and {} of {} rows of the audit passed, in \d+ s\n"
-FILMS = ("race", "sliding", "frozen", "pendulum", "hoop")
+FILMS = ("race", "liquids", "sliding", "frozen", "pendulum", "hoop")
 DRAWN = {f"{film}{end}" for film in FILMS for end in (".mp4", "-still.png")}
 FILES = {"validation.json", "index.html", "paper", *DRAWN}
 
@@ -212,7 +212,7 @@ def test_what_was_written_before_a_failure_is_whole_and_has_no_page(
     (tmp_path / "index.html").write_text("of an earlier report")
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: cannot draw pendulum.mp4\n")
-    before = {f"{film}{end}" for film in ("race", "sliding", "frozen") for end in (".mp4", "-still.png")}
+    before = {f"{film}{end}" for film in ("race", "liquids", "sliding", "frozen") for end in (".mp4", "-still.png")}
     assert set(os.listdir(tmp_path)) == {"validation.json", "paper", *before}
     assert json.loads((tmp_path / "validation.json").read_text())["passed"] is True
 

@@ -1,14 +1,15 @@
 """The entry point of `mjbeer`: parse the command line, run the command, and turn errors into exit statuses."""
 
 import contextlib
+import functools
 import io
 import signal
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import dropwhile, takewhile
 from types import FrameType
-from typing import Any, NoReturn, get_args
+from typing import Any, NoReturn, cast, get_args
 
 import tyro
 from rich.text import Text
@@ -21,7 +22,7 @@ from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Vali
 from mjbeer.cli.sweep import Sweep
 from mjbeer.cli.view import View
 from mjbeer.drawing import opengl
-from mjbeer.exceptions import MjbeerError, ParameterError, UntrustedWarning
+from mjbeer.exceptions import LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
@@ -62,6 +63,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         opengl.keep_out()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
+            warnings.simplefilter("always", LiquidWarning)
+            cast("Any", warnings).showwarning = functools.partial(_show, warnings.showwarning)
             return command.run()
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")
@@ -70,6 +73,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         say("mjbeer: interrupted; what was written is whole", "red")
         (number,) = error.args or (signal.SIGINT,)
         return 128 + number
+
+
+def _show(otherwise: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:
+    """Say what a liquid's warning says in one line, and show any other warning as Python does."""
+    if issubclass(category, LiquidWarning):
+        say(f"note: {message}", "yellow")
+    else:
+        otherwise(message, category, *place)
 
 
 def _interrupt(number: int, _: FrameType | None) -> NoReturn:

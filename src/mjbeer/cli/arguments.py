@@ -1,15 +1,19 @@
 """The options for scenes and simulations: angles in degrees, everything else in SI units."""
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args
+from collections.abc import Iterable
+from dataclasses import Field, dataclass
+from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import tyro
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Integrator, Rolling
+from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
+from mjbeer.theory.liquid import liquid, liquid_in
+from mjbeer.theory.liquids import NAMES, Name
 from mjbeer.theory.load import BEER
 from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, pendulum, sliding
 
@@ -22,6 +26,23 @@ CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop"]
 def if_given(kind: Any, otherwise: str) -> object:
     """Return how tyro reads an option that may be left out: as a value of some kind, with a word for what is then."""
     return tyro.conf.arg(constructor=kind, help_behavior_hint=f"(default: {otherwise})")
+
+
+def otherwise(field: Field[Any]) -> str:
+    """Return what is taken where an option is left out that has no default: the word of its `if_given`."""
+    (how,) = cast("Any", field.type).__metadata__
+    return how.help_behavior_hint.removeprefix("(default: ").removesuffix(")")
+
+
+def one_of(name: str, allowed: Iterable[str]) -> object:
+    """Return how tyro reads an option that takes one of some names; an error asks after one that is spelled alike."""
+    return tyro.constructors.PrimitiveConstructorSpec(
+        nargs=1,
+        metavar="NAME",
+        instance_from_str=lambda words: require.choice(name, words[0], allowed),
+        is_instance=lambda value: isinstance(value, str),
+        str_from_instance=lambda value: [value],
+    )
 
 
 def radians(name: str, value: float, unit: str = "degrees") -> float:
@@ -57,15 +78,31 @@ class Common:
             raise ParameterError(f"incline must be between -90 and 90 [degrees], got {self.incline!r}")
         return math.radians(self.incline)
 
+    def scene(self) -> Scene:
+        """Return the scene of these options."""
+        return self.at(self.alpha)
+
+    def told_scene(self) -> Scene:
+        """Return the scene of these options, and say what it takes that was not given."""
+        if told := self.told(self.alpha):
+            say(told)
+        return self.scene()
+
+    def at(self, alpha: float) -> Scene:
+        """Return the scene of these options on an incline of `alpha` [rad], whatever their own incline is."""
+        raise NotImplementedError
+
+    def told(self, alpha: float) -> str:
+        """Return what the scene takes that was not given, in one line; empty if there is nothing of that kind."""
+        return ""
+
 
 @dataclass(frozen=True)
 class Filled(Common):
-    """The further options of a scene with beer in a can."""
+    """The further options of a scene with a load that fills a can."""
 
     fill: float = 0.5
-    """Height of the beer as a fraction of the can's diameter, in (0, 1]."""
-    density: float = BEER
-    """Density of the beer [kg/m^3]."""
+    """Height of the load as a fraction of the can's diameter, in (0, 1]."""
     can: Literal["massless", "metal"] = "massless"
     """The can: massless (section 2 of the paper), or metal, of aluminium sheet 0.1 mm thick (section 3)."""
 
@@ -77,24 +114,67 @@ class Filled(Common):
 
 @dataclass(frozen=True)
 class Sliding(Filled):
-    """Beer that slides without friction inside its can (sections 2 and 3 of the paper)."""
+    """Beer that slides inside its can, without friction unless there is damping (sections 2 and 3 of the paper)."""
 
-    def scene(self) -> Scene:
-        """Return the scene of these options."""
+    density: float = BEER
+    """Density of the beer [kg/m^3]."""
+    damping: float = 0.0
+    """Torque between can and beer over the rate at which the can turns faster than the beer [N m s]."""
+    drag: float = 0.0
+    """Force of the air against the motion over the square of the speed [kg/m]."""
+
+    def at(self, alpha: float) -> Scene:
         return sliding(
-            incline=self.alpha, fill=self.fill, can=self.build_can(), density=self.density, gravity=self.gravity
+            incline=alpha,
+            fill=self.fill,
+            can=self.build_can(),
+            density=self.density,
+            gravity=self.gravity,
+            damping=self.damping,
+            drag=self.drag,
         )
+
+
+@dataclass(frozen=True)
+class Liquid(Filled):
+    """A real liquid, which is neither free nor frozen: its damping follows from its viscosity and the can."""
+
+    liquid: Annotated[Name, one_of("liquid", NAMES)] = "water"
+    """The liquid: water, beer, "olive oil", glycerol or honey, at 20 degrees Celsius."""
+    density: Annotated[float | None, if_given(float, "the liquid's own")] = None
+    """Density [kg/m^3]."""
+    viscosity: Annotated[float | None, if_given(float, "the liquid's own")] = None
+    """Kinematic viscosity [m^2/s]; water has 1e-6."""
+    drag: float = 0.0
+    """Force of the air against the motion over the square of the speed [kg/m]."""
+
+    def at(self, alpha: float) -> Scene:
+        return liquid(**self._given(alpha), drag=self.drag)
+
+    def told(self, alpha: float) -> str:
+        return str(liquid_in(**self._given(alpha)))
+
+    def _given(self, alpha: float) -> dict[str, Any]:
+        return {
+            "name": self.liquid,
+            "incline": alpha,
+            "fill": self.fill,
+            "can": self.build_can(),
+            "density": self.density,
+            "viscosity": self.viscosity,
+            "gravity": self.gravity,
+        }
 
 
 @dataclass(frozen=True)
 class Frozen(Filled):
     """Beer frozen to its can (appendix A of the paper)."""
 
-    def scene(self) -> Scene:
-        """Return the scene of these options."""
-        return frozen(
-            incline=self.alpha, fill=self.fill, can=self.build_can(), density=self.density, gravity=self.gravity
-        )
+    density: float = BEER
+    """Density of the beer [kg/m^3]."""
+
+    def at(self, alpha: float) -> Scene:
+        return frozen(incline=alpha, fill=self.fill, can=self.build_can(), density=self.density, gravity=self.gravity)
 
 
 @dataclass(frozen=True)
@@ -108,10 +188,9 @@ class Pendulum(Common):
     offset: float = 0.025
     """Length of the pendulum, from the axle to the bob [m]."""
 
-    def scene(self) -> Scene:
-        """Return the scene of these options."""
+    def at(self, alpha: float) -> Scene:
         return pendulum(
-            incline=self.alpha,
+            incline=alpha,
             wheel_mass=self.wheel_mass,
             load_mass=self.load_mass,
             offset=self.offset,
@@ -132,10 +211,9 @@ class Hoop(Common):
     load_mass: float = 0.2
     """Mass of the load [kg]."""
 
-    def scene(self) -> Scene:
-        """Return the scene of these options."""
+    def at(self, alpha: float) -> Scene:
         return hoop(
-            incline=self.alpha,
+            incline=alpha,
             hoop_mass=self.hoop_mass,
             load_mass=self.load_mass,
             radius=self.radius,
@@ -144,7 +222,7 @@ class Hoop(Common):
         )
 
 
-AnyScene = Sliding | Frozen | Pendulum | Hoop
+AnyScene = Sliding | Liquid | Frozen | Pendulum | Hoop
 SCENES: dict[str, type[Common]] = {scene.__name__.lower(): scene for scene in get_args(AnyScene)}
 """The classes of the scenes, by the names that they have on the command line."""
 
@@ -180,7 +258,7 @@ class Motion:
         from mjbeer.simulation.simulate import simulate
 
         return simulate(
-            self.scene.scene(),
+            self.scene.told_scene(),
             self.duration,
             phi0=radians("phi0", self.phi0),
             phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),

@@ -5,12 +5,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
 from mjbeer.theory.record import Record
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.words import damping_in_words
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +67,8 @@ class Figures:
         for friction, until in self.rolls_until.items():
             end = "to the end" if math.isinf(until) else f"until t = {until:.6g} s"
             facts[f"with a coefficient of {friction:g}"] = f"can roll {end}"
+        if trajectory.scene.dissipates:
+            facts |= _in_the_end(trajectory.scene)
         if trajectory.error_estimate is not None:
             facts["estimated error of phi and u/a"] = f"{trajectory.error_estimate:.2e} rad"
         return "".join(f"{name:<30}  {value}\n" for name, value in facts.items())
@@ -95,11 +101,45 @@ class Figures:
                 {"friction coefficient": friction, "to the end": math.isinf(until), "until [s]": _finite(until)}
                 for friction, until in self.rolls_until.items()
             ],
+            **_steady(trajectory.scene),
             "trusted": trajectory.trusted,
             "warnings": trajectory.warnings,
             "notes": self.notes,
         }
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
+
+
+def _in_the_end(scene: Scene) -> dict[str, str]:
+    """Return by name what takes energy from a motion, and the steady rolling to which it may come."""
+    facts = {"torque at the slip rate w": damping_in_words(scene)}
+    if scene.drag:
+        facts["drag of the air"] = f"{scene.drag:.4g} kg/m"
+    try:
+        speed, tilt = scene.terminal_speed(), math.degrees(scene.terminal_tilt())
+        facts["steady rolling"] = f"{speed:.6g} m/s, the load at phi = {tilt:.6g} degrees"
+        swing = [f"{root.real:.4g} +- {root.imag:.4g}i" for root in scene.modes() if root.imag > 0]
+        creep = [f"{root.real:.4g}" for root in scene.modes() if root.imag == 0]
+        facts["its modes exp(s t), s"] = f"{', '.join([*creep, *swing])} 1/s"
+    except MjbeerError as error:
+        facts.setdefault("steady rolling", _reason(error))
+    return facts
+
+
+def _steady(scene: Scene) -> dict[str, Any]:
+    """Return the steady rolling of a damped scene for JSON, with null for what it does not have."""
+    if not scene.dissipates:
+        return {}
+    names = ("terminal speed [m/s]", "terminal tilt [degrees]", "modes, real and imaginary parts [1/s]")
+    try:
+        roots = [[root.real, root.imag] for root in scene.modes().tolist()]
+        return dict(zip(names, (scene.terminal_speed(), math.degrees(scene.terminal_tilt()), roots), strict=True))
+    except MjbeerError:
+        return dict.fromkeys(names)
+
+
+def _reason(error: MjbeerError) -> str:
+    """Return the first clause of an error, which says what there is not."""
+    return str(error).split(":")[0]
 
 
 def _needed(record: Record) -> str:

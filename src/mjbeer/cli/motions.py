@@ -124,7 +124,7 @@ class Export:
         from mjbeer.model.export import export
 
         export(
-            self.scene.scene(),
+            self.scene.told_scene(),
             self.output,
             phi0=radians("phi0", self.phi0),
             phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),

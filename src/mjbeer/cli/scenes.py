@@ -7,7 +7,7 @@ import itertools
 import re
 from dataclasses import dataclass
 
-from mjbeer.cli.arguments import SCENES
+from mjbeer.cli.arguments import SCENES, otherwise
 from mjbeer.output import terminal
 from mjbeer.output.table import Table
 
@@ -51,6 +51,8 @@ def options(name: str) -> list[tuple[str, str, str, str]]:
     rows = []
     for field in dataclasses.fields(scene):
         default = f"{field.default:g}" if isinstance(field.default, float) else str(field.default)
+        if field.default is None:
+            default = otherwise(field)
         unit = _UNIT.search(told[field.name])
         meaning = _UNIT.sub("", told[field.name])
         rows.append(("--" + field.name.replace("_", "-"), default, unit["unit"] if unit else "", meaning))

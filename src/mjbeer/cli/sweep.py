@@ -12,7 +12,7 @@ import numpy as np
 import tyro
 
 from mjbeer import require
-from mjbeer.cli.arguments import SCENES, if_given
+from mjbeer.cli.arguments import SCENES, if_given, otherwise
 from mjbeer.cli.scenes import documented
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Integrator, Rolling
@@ -66,28 +66,32 @@ _NUMBERS: Any = Annotated[
         metavar="NUMBERS",
         instance_from_str=lambda words: values(words[0]),
         is_instance=lambda value: isinstance(value, tuple),
-        str_from_instance=lambda numbers: [",".join(f"{number:g}" for number in numbers)],
+        str_from_instance=lambda numbers: [",".join(f"{number:g}" for number in numbers or ())],
     ),
 ]
 """How tyro reads an option that takes one number or several."""
 
 
-def _described(kind: Any, text: str) -> Any:
-    """Return the type of an option with its help: a class that is made here has no docstrings to read it from."""
-    return Annotated[kind, tyro.conf.arg(help=text)]
+def _option(field: dataclasses.Field[Any], text: str) -> tuple[str, Any, Any]:
+    """Return name, type and default of an option, of which a number may be several.
+
+    The type has the help: a class that is made here has no docstrings to read it from.
+    """
+    kind: Any = field.type
+    default = dataclasses.field(default=field.default)
+    if field.default is None:  # a number that may be left out
+        described = tyro.conf.arg(help=text, constructor=_NUMBERS, help_behavior_hint=f"(default: {otherwise(field)})")
+        return field.name, Annotated[Values | None, described], default
+    if isinstance(field.default, float):
+        kind, default = _NUMBERS, dataclasses.field(default=(field.default,))
+    return field.name, Annotated[kind, tyro.conf.arg(help=text)], default
 
 
 def _swept(scene: type[Any]) -> type[Any]:
     """Return the options of a scene as a class in which every number may be several."""
     told = documented(scene)
-    fields = [
-        (field.name, _described(_NUMBERS, told[field.name]), (field.default,))
-        if isinstance(field.default, float)
-        else (field.name, _described(field.type, told[field.name]), field.default)
-        for field in dataclasses.fields(scene)
-    ]
-    typed = [(name, kind, dataclasses.field(default=default)) for name, kind, default in fields]
-    made = dataclasses.make_dataclass(scene.__name__, typed, frozen=True)
+    options = [_option(field, told[field.name]) for field in dataclasses.fields(scene)]
+    made = dataclasses.make_dataclass(scene.__name__, options, frozen=True)
     made.__doc__ = scene.__doc__
     return made
 
@@ -193,9 +197,7 @@ class _Maker:
         return self.kind
 
     def __call__(self, incline: float, **options: Any) -> Scene:
-        return dataclasses.replace(
-            cast("type[Any]", SCENES[self.kind])(incline=0.0, **options).scene(), incline=incline
-        )
+        return cast("type[Any]", SCENES[self.kind])(**options).at(incline)
 
 
 def _in_degrees(result: Any, index: tuple[int, ...]) -> str:

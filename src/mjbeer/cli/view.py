@@ -36,7 +36,7 @@ class View:
         from mjbeer.drawing.viewer import view
 
         view(
-            self.scene.scene(),
+            self.scene.told_scene(),
             phi0=radians("phi0", self.phi0),
             phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),
             rolling=self.rolling,

@@ -16,6 +16,7 @@ from mjbeer.drawing.size import UNITS
 from mjbeer.drawing.world.canvas import Canvas
 from mjbeer.drawing.world.display import Display, on_incline
 from mjbeer.drawing.world.view import View
+from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.exact import exact
 from mjbeer.theory.words import in_degrees
@@ -82,10 +83,10 @@ class Course:
         top, below = round(HEIGHT * unit), round(_STRIP * unit)
         scenes = [runner.trajectory.scene for runner in runners]
         display = Display.of(scenes, -_NAMES, length, APART, lines=(0.0, length))
-        display.paint([runner.colour for runner in runners])
+        display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         view = _view(display, length, (width, height - top - below))
         strip = Strip([_chart(length, runners)], round(_CHART * width), below)
-        results = Results.of(length, runners)
+        results = Results.of(length, runners, last(runners, length))
         sheet = Sheet(width, height)
         return cls(title, length, speed, runners, sheet, display, view, strip, results, top, unit)
 
@@ -103,6 +104,18 @@ class Course:
         self.results.draw(sheet, time, self.positions(time), (round(_CHART * sheet.width), below), self.unit)
 
 
+def last(runners: Sequence[Runner], length: float) -> float:
+    """Return when the last of those cans finishes that do finish a race over a `length` [m], as a time [s].
+
+    Raises:
+      ParameterError: if none does.
+    """
+    times = [time for runner in runners if (time := runner.finish(length)) < math.inf]
+    if not times:
+        raise ParameterError(f"no can finishes: none rolls {length:g} m while its motion lasts")
+    return max(times)
+
+
 def _view(display: Display, length: float, pixels: tuple[int, int]) -> View:
     """Return the view that shows all cans from start to finish, and their names."""
     ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_NAMES, length)]
@@ -113,15 +126,15 @@ def _view(display: Display, length: float, pixels: tuple[int, int]) -> View:
 
 
 def _chart(length: float, runners: Sequence[Runner]) -> Chart:
-    """Return the chart of the ways of all cans from the start to the finish."""
-    lines = []
+    """Return the chart of the ways of all cans from the start to the finish; who looks on is to guess who wins."""
+    lines, end = [], last(runners, length)
     for runner in runners:
         motion = runner.trajectory
-        times = np.linspace(0, runner.finish(length), _SMOOTH)
+        times = np.linspace(0, min(runner.finish(length), end), _SMOOTH)
         lines.append(Line("MuJoCo", times, runner.positions(times)[:, 0], runner.colour))
         theory = exact(motion.scene, times, motion.phi0, motion.phi_dot0)
         lines.append(Line("theory", times, theory.u - theory.u[0]))
-    return Chart("way [m]", lines)
+    return Chart("way [m]", lines, tells=False)
 
 
 def _name(sheet: Sheet, display: Display, view: View, runners: Sequence[Runner], top: int, unit: float) -> None:

@@ -14,30 +14,40 @@ from mjbeer.theory.segment import segment
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """The table of the race: each can from its end, and when it has finished, by MuJoCo and by theory."""
+    """The table of the race: each can from its end, and when it has finished, by MuJoCo and by theory.
+
+    Of a can that does not finish it has how far it has come when the last of the others does.
+    """
 
     runners: Sequence[Runner]
     finish: Sequence[float]
-    theory: Sequence[float]
+    words: Sequence[tuple[str, str]]
+    """What is written of each can once it has finished, or all have: by MuJoCo, and by theory."""
+    end: float
+    """When the last can finishes that does [s]."""
 
     @classmethod
-    def of(cls, length: float, runners: Sequence[Runner]) -> "Results":
-        return cls(
-            runners,
-            [runner.finish(length) for runner in runners],
-            [runner.finish_of_theory(length) for runner in runners],
-        )
+    def of(cls, length: float, runners: Sequence[Runner], end: float) -> "Results":
+        finish = [runner.finish(length) for runner in runners]
+        words = []
+        for runner, time in zip(runners, finish, strict=True):
+            if time < math.inf:
+                words.append((f"{time:.4f} s", f"{runner.finish_of_theory(length):.4f} s"))
+            else:
+                way = float(runner.positions(np.array([end]))[0, 0])
+                words.append((f"{way:.4f} m", f"{runner.way_of_theory(end):.4f} m"))
+        return cls(runners, finish, words, end)
 
     def draw(self, sheet: Sheet, time: float, positions: np.ndarray, corner: tuple[int, int], unit: float) -> None:
         """Draw the table as it is at a `time` [s]; `corner` is its upper left corner."""
         sheet.blank(*corner, sheet.width, sheet.height)
         left, top = corner
         columns = left + unit * np.array([1.6, 3.6, 19.5, 25.0])
-        for column, words in zip(columns[2:], ("MuJoCo", "theory"), strict=True):
-            sheet.text((column, top + 1.2 * unit), words, 0.95 * unit, "#52606d", anchor=(0.5, 0.5))
+        for column, by in zip(columns[2:], ("MuJoCo", "theory"), strict=True):
+            sheet.text((column, top + 1.2 * unit), by, 0.95 * unit, "#52606d", anchor=(0.5, 0.5))
         order = sorted(self.finish)
-        for row, (runner, finish, theory, position) in enumerate(
-            zip(self.runners, self.finish, self.theory, positions, strict=True)
+        for row, (runner, finish, words, position) in enumerate(
+            zip(self.runners, self.finish, self.words, positions, strict=True)
         ):
             middle = top + (2.9 + 2.25 * row) * unit
             _section(sheet, np.array([columns[0], middle]), 0.95 * unit, runner, position)
@@ -45,8 +55,9 @@ class Results:
             if time >= finish:
                 place = f"{order.index(finish) + 1}."
                 sheet.text((columns[2] - 3.6 * unit, middle), place, 1.05 * unit, runner.colour, (1, 0.5), bold=True)
-                sheet.text((columns[2], middle), f"{finish:.4f} s", 1.05 * unit, anchor=(0.5, 0.5))
-                sheet.text((columns[3], middle), f"{theory:.4f} s", 1.05 * unit, anchor=(0.5, 0.5))
+            if time >= min(finish, self.end):
+                for column, number in zip(columns[2:], words, strict=True):
+                    sheet.text((column, middle), number, 1.05 * unit, anchor=(0.5, 0.5))
 
 
 def _section(sheet: Sheet, centre: np.ndarray, radius: float, runner: Runner, position: np.ndarray) -> None:
@@ -57,7 +68,8 @@ def _section(sheet: Sheet, centre: np.ndarray, radius: float, runner: Runner, po
         half = segment(fill).half_angle
         angles = tilt + np.linspace(-half, half, 40)
         arc = centre + radius * np.stack([-np.sin(angles), np.cos(angles)], axis=1)
-        sheet.area(arc, (0.92, 0.58, 0.06) if scene.attachment == "sliding" else (0.62, 0.78, 0.90))
+        usual = (0.92, 0.58, 0.06) if scene.attachment == "sliding" else (0.62, 0.78, 0.90)
+        sheet.area(arc, runner.load or usual)
     sheet.line(centre + circle(radius), 0.14 * radius, runner.colour)
     turned = np.array([math.sin(roll + scene.incline), -math.cos(roll + scene.incline)])
     sheet.line(centre + radius * np.array([[0.72], [1.0]]) * turned, 0.2 * radius, "#c0272d")

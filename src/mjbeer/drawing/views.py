@@ -20,7 +20,7 @@ from mjbeer.output import files
 from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import in_words
+from mjbeer.theory.words import damping_in_words, in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -193,6 +193,9 @@ def scene_html(scene: Scene) -> str:
         + (f", filled to {load.fill:.4g} of the can's diameter" if load.fill is not None else ""),
         "gravity": f"{scene.gravity:.6g} m/s²",
     }
+    if scene.dissipates:
+        rows["torque of the damping"] = damping_in_words(scene)
+        rows["drag of the air"] = f"{scene.drag:.6g} kg/m"
     return _html(rows)
 
 

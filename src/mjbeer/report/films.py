@@ -8,51 +8,33 @@ from functools import partial
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.overlay.look import Look
 from mjbeer.drawing.race import Race
-from mjbeer.drawing.runner import Runner
 from mjbeer.drawing.studio import Order
 from mjbeer.paper.stories import report as stories_report
+from mjbeer.report import races
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.can import Can
 from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
-
-_METAL = Can.sheet_metal()
-_GENTLE = math.radians(5)
-"""Incline of the race [rad]: gentle enough for the frozen can to roll to the finish without leaving the board."""
-_FILL = 0.75
-"""How full the cans of the race are that are neither full nor empty."""
-_EMPTY = 1e-6
-"""Fill of the empty can: its beer weighs a ten millionth of the can."""
-
-
-def runners() -> Sequence[Runner]:
-    """Return the cans of the race, each with its motion."""
-    cans = (
-        ("beer slides, ¾ full", sliding(_GENTLE, can=_METAL, fill=_FILL), math.radians(30), (0.80, 0.45, 0.0)),
-        ("beer frozen, ¾ full", frozen(_GENTLE, can=_METAL, fill=_FILL), math.pi, (0.15, 0.45, 0.75)),
-        ("beer frozen, full", frozen(_GENTLE, can=_METAL, fill=1.0), 0.0, (0.40, 0.25, 0.60)),
-        ("empty", sliding(_GENTLE, can=_METAL, fill=_EMPTY), 0.0, (0.35, 0.38, 0.42)),
-    )
-    return [Runner(name, simulate(scene, 2.3, phi0, tolerance=1e-9), colour) for name, scene, phi0, colour in cans]
-
 
 FILMS: dict[str, Film] = {
     "race": Race(
         "Which can wins?",
-        runners,
-        length=1.0,
+        races.of_beer,
+        length=races.LENGTH,
         speed=0.25,
-        caption="Four equal cans are let go together on an incline of 5 degrees, and race over one metre. The can wins "
-        "whose beer slides: the beer only goes downhill and does not turn, so that almost nothing is spent on turning. "
-        "What is frozen must turn with its can: the full one is as slow as a solid cylinder, with two thirds of the "
-        "winner's acceleration. The frozen one that is three quarters full starts with its beer on top, for with its "
-        "beer below it would stay where it is; that gives it a lead of two centimetres, which the winner takes back "
-        "before half-way. The empty can comes last, since all of its mass is in its wall. Theory has the same times, "
-        "to all digits.",
+        told=races.told_of_beer,
         still=1.4,
         after=0.2,
     ),
+    "liquids": Race(
+        "Water, oil, honey or ice: which can wins, and which is last?",
+        races.of_liquids,
+        length=races.LENGTH,
+        speed=0.25,
+        told=races.told_of_liquids,
+        still=2.4,
+        after=0.15,
+    ),
     "sliding": Take(
-        partial(simulate, sliding(can=_METAL), 1.2, math.radians(60), tolerance=1e-9),
+        partial(simulate, sliding(can=races.METAL), 1.2, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="Half a can of beer, let go at φ = 60°. The beer slides in its can without friction and swings. The "
         "can goes to and fro about the dashed one, which accelerates evenly: it hesitates with every swing. The camera "
@@ -86,8 +68,8 @@ FILMS: dict[str, Film] = {
     ),
 }
 """The films by the names of their files."""
-RACE = "race"
-"""The film that the page shows first and alone."""
+RACES = ("race", "liquids")
+"""The films that the page shows first, each alone."""
 COMMANDS = {
     "sliding": "mjbeer render sliding --can metal --phi0 60 --duration 1.2 --tolerance 1e-9 --speed 0.25",
     "frozen": "mjbeer render frozen --phi0 180 --duration 0.82 --tolerance 1e-9 --speed 0.2",

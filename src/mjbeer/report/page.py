@@ -15,7 +15,7 @@ from mjbeer.paper.misprints import FORMULAS
 from mjbeer.paper.stories import report as stories_report
 from mjbeer.report import precision, stability
 from mjbeer.report.embed import data_uri, plotting
-from mjbeer.report.films import COMMANDS, FILMS, RACE
+from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
 from mjbeer.studies.benchmark.advice import SHIPPED
 from mjbeer.studies.benchmark.points import Benchmark
@@ -72,7 +72,7 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
     plots |= {f"{group['name']}-{place}": each["plot"] for group in groups for place, each in enumerate(group["plots"])}
     return environment.get_template("page.html").render(
         sketch=data_uri(folder / "paper" / "letters.svg"),
-        race=films.pop(RACE, None),
+        races=[films.pop(name) for name in RACES],
         films=list(films.values()),
         not_drawn=not_drawn,
         tools=precision.TOOLS,

@@ -44,6 +44,15 @@ def test_ahead_is_the_swing_of_eq_12() -> None:
     assert QUANTITIES["ahead"].of(motion.scene, motion) == pytest.approx(expected, abs=1e-9)
 
 
+def test_a_damped_can_is_behind_the_one_that_accelerates_evenly() -> None:
+    """By what damping costs: the even one is that without damping, and starts alike."""
+    free, damped = sliding(can=Can.sheet_metal()), sliding(can=Can.sheet_metal(), damping=1e-3, drag=1e-4)
+    motion, without = exact(damped, TIMES, 1.2, 3.0), exact(free, TIMES, 1.2, 3.0)
+    even = quantity.even(damped, motion, TIMES)
+    assert even == pytest.approx(quantity.even(free, without, TIMES), abs=1e-12)
+    assert even[-1] - motion.u[-1] > 0.2
+
+
 def test_even_acceleration_of_a_full_can_is_its_own() -> None:
     motion = exact(frozen(fill=1.0), TIMES, 0.3)
     assert QUANTITIES["ahead"].of(motion.scene, motion) == pytest.approx(np.zeros_like(TIMES), abs=1e-9)

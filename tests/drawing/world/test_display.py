@@ -87,11 +87,21 @@ def test_cans_side_by_side_are_posed_by_themselves() -> None:
     assert line.size[1] == display.model.geom("board").size[1]
 
 
-def test_each_can_has_a_label_of_its_colour() -> None:
-    display = Display.of([sliding(can=METAL), frozen(can=METAL)], 0, 1, apart=0.2)
-    display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)])
+def test_each_can_has_a_label_and_a_load_of_its_colours() -> None:
+    """Two with one template do not share them, and a load without a colour keeps its own."""
+    scenes = [sliding(can=METAL), frozen(can=METAL), sliding(can=METAL), hoop()]
+    display = Display.of(scenes, 0, 1, apart=0.2)
+    beer = display.model.mat("2-beer").rgba.tolist()
+    green = (0.0, 1.0, 0.0)
+    display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0), green, green], [green, green, None, None])
     assert display.model.mat("label").rgba.tolist() == [1, 0, 0, 1]
     assert display.model.mat("1-label").rgba.tolist() == [0, 0, 1, 1]
+    for load in ("beer", "1-ice"):
+        assert display.model.mat(load).rgba.tolist() == [0, 1, 0, 1]
+    assert display.model.mat("2-beer").rgba.tolist() == beer != [0, 1, 0, 1]
+    foam = display.model.mat("foam").rgba
+    assert foam[1] == 1
+    assert 0 < foam[0] == foam[2] < 1
 
 
 def test_hidden_cans_are_out_of_sight() -> None:

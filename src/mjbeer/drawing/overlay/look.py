@@ -16,6 +16,7 @@ _TITLES = {
     "pendulum": "A pendulum in a rolling wheel",
     "hoop": "A weight on the rim of a hoop",
 }
+_DAMPED = "A can that its load or the air brakes"
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,11 @@ class Look:
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
         """Return the look of a motion of which nothing else is known."""
-        title = _TITLES[templates.name(trajectory.scene)]
+        title = _DAMPED if trajectory.scene.dissipates else _TITLES[templates.name(trajectory.scene)]
         if trajectory.rolling == "contact":
             return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "forces"), camera=camera)
+        if trajectory.scene.dissipates:
+            return cls(title, strips=("phi", "u_dot"), camera=camera)
         if trajectory.scene.attachment == "sliding":
             return cls(title, strips=("phi", "ahead"), marks=("phi", "ghost"), camera=camera)
         return cls(title, camera=camera)

@@ -1,5 +1,6 @@
 """What a strip chart below a film can show: a quantity of the motion over time, with its letter and unit."""
 
+import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,8 +41,11 @@ def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
     """Return where a can would be at some times [s] that accelerates evenly [m].
 
     It starts with the same momentum as the can of the motion, and with its load at rest in it where that has an
-    equilibrium: the motion goes to and fro about it.
+    equilibrium: the motion goes to and fro about it. With damping or drag no can accelerates evenly. It is then one
+    that has neither, and what it gains on the motion is what they cost.
     """
+    if scene.dissipates:
+        scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
     u, u_dot = motion.u[0], motion.u_dot[0]
     if scene.attachment == "sliding":
         swing = scene.load.mass * scene.load.offset / (scene.mass + scene.can.inertia / scene.can.radius**2)
@@ -85,6 +89,7 @@ def _normal(scene: Scene, motion: Coordinates) -> np.ndarray:
 QUANTITIES = {
     "phi": Quantity("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), least=10.0),
     "u": Quantity("way down the incline, u [m]", lambda _, motion: motion.u),
+    "u_dot": Quantity("speed down the incline [m/s]", lambda _, motion: motion.u_dot),
     "ahead": Quantity(
         "ahead of even acceleration [mm]", lambda scene, motion: 1e3 * (motion.u - even(scene, motion, motion.time))
     ),

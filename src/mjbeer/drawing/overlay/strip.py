@@ -55,10 +55,12 @@ class Chart:
     """Largest value that it has room for."""
     least: float = 0.0
     """Least range of values that it shows: a straight line is not to look like a crooked one."""
+    tells: bool = True
+    """Whether theory's lines are there from the beginning, and tell what will be."""
 
 
 class Strip:
-    """Charts side by side. Lines with a colour are drawn up to now; the others are there from the beginning."""
+    """Charts side by side. Lines with a colour are drawn up to now; theory's may be there from the beginning."""
 
     def __init__(self, charts: Sequence[Chart], width: int, height: int) -> None:
         self._charts = charts
@@ -100,7 +102,7 @@ class Strip:
             if not possible.all():
                 style |= {"linestyle": ":", "linewidth": 0.25 * unit}
                 panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style)
-            if line.colour is None:
+            if line.colour is None and chart.tells:
                 drawn.pop()
         panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))

@@ -7,6 +7,7 @@ too small or too large for the graphics, which compute in single precision.
 import dataclasses
 import math
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
@@ -20,6 +21,9 @@ from mjbeer.theory.scene import Scene
 
 _PAINT = [0.15, 0.17, 0.2, 1.0]
 """Colour of lines on the board."""
+Colour: TypeAlias = tuple[float, float, float]
+_PALER = 0.35
+"""How much nearer to white the surface of a painted load is."""
 _HIDDEN = 1e3
 """How far off a hidden can is [m]: behind whatever looks at the board."""
 
@@ -67,10 +71,19 @@ class Display:
         model = compile_spec(board)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 
-    def paint(self, colours: Sequence[tuple[float, float, float]]) -> None:
-        """Give each can's label a colour."""
-        for number, colour in enumerate(colours):
-            self.model.mat(_prefix(number) + "label").rgba[:3] = colour
+    def paint(self, labels: Sequence[Colour], loads: Sequence[Colour | None]) -> None:
+        """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
+        for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
+            self.model.mat(_prefix(number) + "label").rgba[:3] = label
+            if load is not None:
+                for name, share in (("load", 0.0), ("foam", _PALER)):
+                    self._paint(_prefix(number) + name, np.array(load) * (1 - share) + share)
+
+    def _paint(self, name: str, colour: np.ndarray) -> None:
+        """Give the material of a geom a colour, if the model has the geom."""
+        geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, name)
+        if geom >= 0:
+            self.model.mat_rgba[self.model.geom_matid[geom], :3] = colour
 
     def pose(self, positions: np.ndarray) -> None:
         """Put each can at u [m], phi [rad], roll [rad] and lift [m], one row for each; a frozen load turns with it."""
@@ -131,4 +144,4 @@ def _resize(scene: Scene) -> Scene:
     size = scale(scene)
     can = dataclasses.replace(scene.can, radius=RADIUS, length=scene.can.length * size, mass=1.0, inertia=RADIUS**2)
     load = dataclasses.replace(scene.load, mass=1.0, offset=min(scene.load.offset * size, RADIUS), inertia=RADIUS**2)
-    return dataclasses.replace(scene, can=can, load=load, gravity=9.81)
+    return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)

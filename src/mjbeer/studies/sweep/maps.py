@@ -1,6 +1,6 @@
-"""The two maps of `docs/sweeps.md`, by MuJoCo, with the borders that theory gives.
+"""Two of the maps of `docs/sweeps.md`, by MuJoCo, with the borders that theory gives.
 
-`python -m mjbeer.studies.sweep.maps docs/figures` draws them.
+`python -m mjbeer.studies.sweep.maps docs/figures` draws them, and that of `damped_map`.
 """
 
 import math
@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
 from mjbeer.output.plots import COLOURS, chart, name_below
+from mjbeer.studies.sweep import damped_map
 from mjbeer.studies.sweep.arrays import Sweep
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.exact import exact
@@ -174,3 +175,4 @@ if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
     draw_outcomes(folder / "sweep-outcomes")
     draw_periods(folder / "sweep-periods")
+    damped_map.draw(folder / "sweep-damping")

@@ -4,25 +4,26 @@ import json
 import os
 import pathlib
 import time
+import warnings
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, contextmanager
 from importlib.metadata import version
 from inspect import isfunction
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import messages, require
-from mjbeer.exceptions import ParameterError
+from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output.terminal import STDERR, progress_bar
 from mjbeer.simulation.run import Run
 from mjbeer.studies.sweep import files
 from mjbeer.studies.sweep.arrays import Sweep, empty
 from mjbeer.studies.sweep.chunks import carry_out
-from mjbeer.studies.sweep.plan import arrange, check_names, label
+from mjbeer.studies.sweep.plan import Plan, arrange, check_names, label
 from mjbeer.studies.sweep.quantities import ALWAYS, ASKED, NOT_YET, STATUS, TRUSTED
 from mjbeer.studies.sweep.work import MOST_SAMPLES, Work
 from mjbeer.theory.scene import Scene
@@ -100,11 +101,17 @@ def sweep(
             f"{duration!r} s has too many of {setting.timestep!r} s"
         )
     work = Work(make, fixed, start, tuple(plan.axes), setting, end, asked, functions)
+    with _one_warning_of_liquids():
+        return _swept(work, plan, executor, path, progress)
+
+
+def _swept(work: Work, plan: Plan, executor: Executor | None, path: pathlib.Path | None, progress: bool) -> Sweep:
+    """Check the scenes, go on from what is there already, and simulate the others."""
     plan.check(work)
     about = _about(work)
     result = empty(plan, about, work.columns)
     if path is not None:
-        _nameable(make, *functions.values())
+        _nameable(work.make, *work.functions.values())
         result = _continued(path, result)
     _fill(result, work, executor, path, progress)
     return result
@@ -145,6 +152,23 @@ def _fill(result: Sweep, work: Work, executor: Executor | None, path: pathlib.Pa
     finally:
         if path is not None:
             files.save(result, path)
+
+
+@contextmanager
+def _one_warning_of_liquids() -> Generator[None]:
+    """Have what liquids warn of shown for the first such scene only: each would say it with other numbers."""
+    show, shown = warnings.showwarning, set[type[Warning]]()
+
+    def show_once(message: Warning | str, category: type[Warning], *place: Any) -> None:
+        if category not in shown:
+            show(message, category, *place)
+        shown.update({category} & {LiquidWarning})
+
+    cast("Any", warnings).showwarning = show_once
+    try:
+        yield
+    finally:
+        warnings.showwarning = show
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.exceptions import DivergenceError, MjbeerError, NoEquilibriumError, ToleranceError
+from mjbeer.exceptions import DivergenceError, MjbeerError, ToleranceError
 from mjbeer.model.setting import OWN, Setting
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.studies.sweep.quantities import ALWAYS, ASKED, DIVERGED, NO_VALUE, NOT_REACHED, REFUSED, WELL
@@ -132,7 +132,7 @@ def _times(work: Work, scene: Scene) -> np.ndarray:
         return np.array([end])
     try:
         interval = 2 * math.pi / scene.frequency() / _EACH_SWING
-    except NoEquilibriumError:
+    except MjbeerError:  # the quantity itself then says why it has no value
         return np.array([end])
     interval = max(interval, end / MOST_SAMPLES)
     if not stepped:

@@ -1,0 +1,109 @@
+"""The races of the report: cans of one size, each with its motion, and what is told of them."""
+
+import math
+from collections.abc import Sequence
+from functools import cache
+
+import numpy as np
+
+from mjbeer.drawing.runner import Runner
+from mjbeer.simulation.simulate import simulate
+from mjbeer.theory.can import Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.liquid import liquid_in
+from mjbeer.theory.liquids import Name
+from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.words import in_degrees
+
+METAL = Can.sheet_metal()
+LENGTH = 1.0
+"""Distance from start to finish [m]."""
+_GENTLE = math.radians(5)
+"""Incline of the race of beer [rad]: gentle enough for the frozen can to finish without leaving the board."""
+_FILL = 0.75
+"""How full the cans are that are neither full nor empty."""
+_EMPTY = 1e-6
+"""Fill of the empty can: its beer weighs a ten millionth of the can."""
+_STEEPER = math.radians(7.1)
+"""Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
+honey, the thickest of the liquids, from 7.38."""
+_ICE = 917.0
+"""Density of ice [kg/m^3]."""
+_END = 2.5
+"""When the can with honey, which does not finish, has been followed for long enough [s]."""
+
+
+def of_beer() -> Sequence[Runner]:
+    """Return the cans of the race of beer that slides, frozen beer, and none."""
+    cans = (
+        ("beer slides, ¾ full", sliding(_GENTLE, can=METAL, fill=_FILL), math.radians(30), (0.80, 0.45, 0.0)),
+        ("beer frozen, ¾ full", frozen(_GENTLE, can=METAL, fill=_FILL), math.pi, (0.15, 0.45, 0.75)),
+        ("beer frozen, full", frozen(_GENTLE, can=METAL, fill=1.0), 0.0, (0.40, 0.25, 0.60)),
+        ("empty", sliding(_GENTLE, can=METAL, fill=_EMPTY), 0.0, (0.35, 0.38, 0.42)),
+    )
+    return [Runner(name, simulate(scene, 2.3, phi0, tolerance=1e-9), colour) for name, scene, phi0, colour in cans]
+
+
+def told_of_beer() -> str:
+    """Return what is seen in the race of beer."""
+    return (
+        "Four equal cans are let go together on an incline of 5 degrees, and race over one metre. The can wins whose "
+        "beer slides: the beer only goes downhill and does not turn, so that almost nothing is spent on turning. What "
+        "is frozen must turn with its can: the full one is as slow as a solid cylinder, with two thirds of the "
+        "winner's acceleration. The frozen one that is three quarters full starts with its beer on top, for with its "
+        "beer below it would stay where it is; that gives it a lead of two centimetres, which the winner takes back "
+        "before half-way. The empty can comes last, since all of its mass is in its wall. Theory has the same "
+        "times, to all digits."
+    )
+
+
+def with_liquid(name: Name, viscosity: float | None = None) -> Scene:
+    """Return the can of the race with a liquid in it, whose `viscosity` [m^2/s] may be another than its own."""
+    used = liquid_in(name, _STEEPER, _FILL, METAL, viscosity=viscosity)
+    return sliding(_STEEPER, _FILL, METAL, used.density, damping=used.damping)
+
+
+def with_ice() -> Scene:
+    """Return the can of the race with ice in it."""
+    return frozen(_STEEPER, _FILL, METAL, _ICE)
+
+
+def of_liquids() -> Sequence[Runner]:
+    """Return the cans of the race of water, oil, honey and ice, all let go with a level surface."""
+    cans = (
+        ("water", with_liquid("water"), 1.7, (0.08, 0.40, 0.72), (0.36, 0.66, 0.93)),
+        ("olive oil", with_liquid("olive oil"), 2.1, (0.42, 0.45, 0.05), (0.78, 0.76, 0.20)),
+        ("honey", with_liquid("honey"), _END, (0.72, 0.38, 0.0), (0.88, 0.52, 0.05)),
+        ("ice", with_ice(), _END, (0.40, 0.42, 0.55), (0.84, 0.93, 0.98)),
+    )
+    return [
+        Runner(name, simulate(scene, end, -_STEEPER, tolerance=1e-9), colour, load)
+        for name, scene, end, colour, load in cans
+    ]
+
+
+def by_theory(scene: Scene) -> Runner:
+    """Return a can of the race of liquids that moves as exact theory says."""
+    return Runner("theory", exact(scene, np.array([0.0, _END]), -_STEEPER), (0.0, 0.0, 0.0))
+
+
+@cache
+def told_of_liquids() -> str:
+    """Return what is seen in the race of liquids, with the numbers of exact theory."""
+    scenes = {"water": with_liquid("water"), "oil": with_liquid("olive oil"), "ice": with_ice()}
+    times = {name: by_theory(scene).finish_of_theory(LENGTH) for name, scene in scenes.items()}
+    honey = with_liquid("honey")
+    carried = liquid_in("honey", _STEEPER, _FILL, METAL).carried
+    way, speed = by_theory(honey).way_of_theory(times["ice"]), honey.terminal_speed()
+    return (
+        "Predict first, then look. Four equal cans, three quarters full of water, olive oil, honey and ice, are let go "
+        f"together on an incline of {in_degrees(_STEEPER)}, each with its surface level. They differ in how hard the "
+        "load rubs against the can: water hardly does, and ice not at all, since it turns with the can. Water wins "
+        f"after {times['water']:.2f} s, and oil follows after {times['oil']:.2f} s. The ice hesitates with its load "
+        f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The honey "
+        f"is last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither "
+        "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: it creeps with "
+        f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Of "
+        f"real honey the wall carries up to {100 * carried:.0f} % round with it, so that its speed is an estimate, but "
+        "with half or twice the viscosity it is last as well."
+    )
