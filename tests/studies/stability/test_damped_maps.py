@@ -2,12 +2,14 @@
 
 import json
 import pathlib
+from collections.abc import Collection
 
 import pytest
 
-from mjbeer.model.setting import Integrator, Rolling
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
+from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.predictions.soft_rolling import System
-from mjbeer.studies.stability import damped_maps, damped_plots
+from mjbeer.studies.stability import damped_maps, damped_plots, stored
 from mjbeer.studies.stability.damped_runs import EXPLODED, INACCURATE, SILENT, TRUSTED, WARNED, DampedRuns
 from mjbeer.theory.record import Record
 from tests.support import figures
@@ -15,6 +17,7 @@ from tests.support import figures
 pytestmark = pytest.mark.slow
 
 COARSE = (3, 4)
+DOCUMENT = (pathlib.Path(__file__).parents[3] / "docs" / "stability.md").read_text()
 SAMPLE: list[tuple[Rolling, Integrator]] = [
     ("reduced", "Euler"),
     ("reduced", "RK4"),
@@ -97,3 +100,38 @@ def test_tasks_are_told_apart() -> None:
     names = [task.name for task in damped_maps.tasks()]
     assert len(set(names)) == len(names) == 18
     assert {task.name for task in damped_maps.tasks(quick=True)} < set(names)
+
+
+def test_the_errors_of_the_document_are_measured_now() -> None:
+    text = DOCUMENT.partition("errors of φ and u/a at h = 1 ms")[2]
+    for integrator in (*INTEGRATORS, DOP853):
+        line = next(line for line in text.splitlines() if line.startswith(f"| {integrator} |"))
+        for rolling, cell in zip(ROLLINGS, line.strip("| ").split(" | ")[1:], strict=True):
+            runs = [DampedRuns(rolling, integrator, damping, [1e-3]).measure(1e-3) for damping in (0.01, 0.1, 1.0)]
+            for run, told in zip(runs, cell.split(", "), strict=True):
+                if told == "explodes":
+                    assert run.outcome == EXPLODED
+                elif float(told) > 1e-10:  # below is rounding, which differs from machine to machine
+                    assert run.error == pytest.approx(float(told), rel=0.05)
+
+
+def test_the_counts_of_the_document_are_those_of_the_stored_maps() -> None:
+    kept = stored.load()["damped"]
+
+    def count(outcomes: Collection[int], integrators: Collection[str] = (*INTEGRATORS, DOP853)) -> int:
+        cells = "".join(row for result in kept if result["integrator"] in integrators for row in result["measured"])
+        return sum(cells.count(str(outcome)) for outcome in outcomes)
+
+    accurate, first, high = (WARNED, TRUSTED), ("Euler", "implicit", "implicitfast", "discrete"), RUNGE_KUTTA
+    words = " ".join(DOCUMENT.split())
+    assert f"Of the {count(range(5)):,} runs in the maps {count([EXPLODED])} explode." in words
+    assert f"{count([INACCURATE]):,} are inaccurate, and say it." in words
+    assert f"Of {count(accurate, first)} accurate runs of `Euler`" in words
+    assert count([TRUSTED], first) == 2
+    assert f"of {count(accurate, high)} of RK4 and DOP853 only {count([WARNED], high)} do." in words
+    worst = {result["name"]: f"{100 * result['worst']:.1f} %" for result in kept}
+    borders = {number for name, number in worst.items() if not name.startswith("contact")}
+    assert f"agree within {max(borders)}, in contact within {worst['contact, RK4']} under RK4" in words
+    assert f"and {worst['contact, DOP853']} under DOP853" in words
+    drifts = [result["warned"] for result in kept if result["rolling"] == "reduced" and result["integrator"] in first]
+    assert f"up to {max(run['implied'] / run['error'] for run in drifts):.0f} times as large" in words
