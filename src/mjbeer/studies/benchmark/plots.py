@@ -93,8 +93,8 @@ def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     start = MEASURED[case]
     axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 2, 20))
     axes.minorticks_off()
-    held = f", damping {start.scene.damping_law.linear:g} N m s" if start.scene.dissipates else ""
-    axes.set_title(f"{case}: {in_words(start.scene)}{held}, from φ = {in_degrees(start.phi0)}")
+    damped, begun = f"c = {start.scene.damping_law.linear:g} N m s", f"from φ = {in_degrees(start.phi0)}"
+    axes.set_title(f"{case}: {in_words(start.scene)}, {damped if start.scene.dissipates else begun}")
     axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of φ and u/a [rad]")
 
 
