@@ -20,7 +20,7 @@ from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, pendulum, sliding
 if TYPE_CHECKING:
     from mjbeer.theory.trajectory import Trajectory
 
-CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop"]
+CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop", "stiff", "stiffer"]
 
 
 def if_given(kind: Any, otherwise: str) -> object:

@@ -134,7 +134,7 @@ class Stability:
     quick: bool = False
     """Make 250 random runs instead of 3000; takes two minutes."""
     maps: bool = False
-    """Make only the maps of timestep and stiffness, but all 40 of them, and fine; takes three minutes."""
+    """Make only the maps of timestep and stiffness or damping, but all 58 of them, and fine; takes five minutes."""
     json: bool = False
     """Print the results as JSON."""
 

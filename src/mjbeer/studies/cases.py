@@ -83,3 +83,26 @@ CASES = {
 }
 DEFAULT = ("sliding", "sliding-metal", "frozen", "pendulum")
 """The cases that the benchmark measures if none is named."""
+STIFF = {
+    case.name: case
+    for case in (
+        Case(
+            name="stiff",
+            scene=sliding(damping=1.0),
+            phi0=1.0,
+            command="sliding --damping 1 --phi0 57.3",
+            story="beer that hardly slides in a massless can, from 1 rad",
+        ),
+        Case(
+            name="stiffer",
+            scene=sliding(damping=100.0),
+            phi0=1.0,
+            command="sliding --damping 100 --phi0 57.3",
+            story="beer that is nearly frozen to a massless can, from 1 rad",
+        ),
+    )
+}
+"""Cases of the benchmark alone: damping brings can and load together ten thousand times a second, or a million times,
+which explicit methods have to follow."""
+MEASURED = CASES | STIFF
+"""All cases that the benchmark can measure."""

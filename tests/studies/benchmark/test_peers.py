@@ -11,10 +11,11 @@ import pytest
 
 from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
-from mjbeer.studies.benchmark.peers import equations, whole_call, with_scipy
+from mjbeer.studies.benchmark.peers import equations, whole_call, with_exudyn, with_heyoka, with_scipy
 from mjbeer.studies.benchmark.peers import peer as peers
 from mjbeer.studies.benchmark.peers.installed import PEERS, absent, installed
 from mjbeer.studies.benchmark.peers.peer import Peer
+from mjbeer.studies.cases import STIFF, Case
 from tests.support.scenes import METAL
 
 pytestmark = pytest.mark.slow
@@ -222,3 +223,19 @@ def test_a_whole_call_is_that_of_simulate() -> None:
     run = simulate(sliding(), float(TIMES[-1]), 1.0, tolerance=1e-9, times=TIMES)
     assert (phi == run.phi).all()
     assert (u == run.u).all()
+
+
+DAMPED = skipping((with_scipy.LSODA, *with_scipy.STIFF, with_heyoka.PEER))
+
+
+@pytest.mark.parametrize("peer", DAMPED)
+@pytest.mark.parametrize("case", STIFF.values(), ids=STIFF.keys())
+def test_stiff_cases_lead_to_exact_theory(peer: Peer, case: Case) -> None:
+    """Implicit methods lose some digits more than a tolerance says: measured up to 500 times the tolerance."""
+    fine = 1e-7
+    assert error(peer, case.scene, case.phi0, 0.0, fine) <= 1000 * fine
+
+
+def test_damping_is_unknown_to_exudyn() -> None:
+    with pytest.raises(UnsupportedError, match="neither damping nor drag"):
+        with_exudyn.PEER.prepare(sliding(can=METAL, damping=1.0), 1.0, 0.0, TIMES, 1e-3)

@@ -15,7 +15,10 @@ from hypothesis import strategies as st
 from mpmath import MPContext
 
 from mjbeer import Scene, exact, frozen, sliding
+from mjbeer.exceptions import UnsupportedError
 from mjbeer.studies.benchmark.peers import equations
+from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.forces import accelerations
 from tests.support.scenes import METAL, SCENES, scenes
 
@@ -96,6 +99,23 @@ def test_the_theory_has_the_same_accelerations(scene: Scene) -> None:
         assert rates[-1] == pytest.approx(phi_ddot, rel=0, abs=ROUNDING * size * scene.frequency() ** 2)
         if scene.attachment == "sliding":
             assert rates[2] == pytest.approx(u_ddot, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("damping", [1e-4, 1.0])
+@pytest.mark.parametrize("can", [Can(), METAL])
+def test_damped_loads_have_the_accelerations_of_the_theory(can: Can, damping: float) -> None:
+    scene = sliding(can=can, damping=damping)
+    for phi, phi_dot, u_dot in ((0.0, 0.0, 1.0), (1.0, -3.0, -0.3), (-2.5, 20.0, 0.0)):
+        rates = equations.right_hand_side(scene)(0.0, [0.7, phi, u_dot, phi_dot])
+        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
+        assert rates[:2] == (u_dot, phi_dot)
+        assert rates[2:] == pytest.approx((float(u_ddot), float(phi_ddot)), rel=20 * ROUNDING)
+
+
+@pytest.mark.parametrize("scene", [sliding(drag=0.1), sliding(damping=Damping(0.1, 0.2))])
+def test_other_losses_are_refused(scene: Scene) -> None:
+    with pytest.raises(UnsupportedError, match="linear damping alone"):
+        equations.right_hand_side(scene)
 
 
 @pytest.mark.parametrize("scene", [sliding(), sliding(can=METAL), SCENES["pendulum"]])

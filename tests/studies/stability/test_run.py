@@ -120,7 +120,9 @@ def test_tables_say_what_happened() -> None:
 def test_tasks_have_names_of_their_own(extent: str) -> None:
     names = [(each.group, each.name) for each in run.tasks(extent)]
     assert len(set(names)) == len(names)
-    groups = {"maps"} if extent == "maps" else {"laws", "limits", "maps", "catalogue", "search", "endurance"}
+    groups = {"maps", "damped"}
+    if extent != "maps":
+        groups |= {"laws", "limits", "catalogue", "search", "endurance"}
     assert {group for group, _ in names} == groups
 
 

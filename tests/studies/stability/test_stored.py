@@ -8,7 +8,8 @@ import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError
-from mjbeer.studies.stability import maps, stored
+from mjbeer.studies.stability import damped_maps, maps, stored
+from mjbeer.studies.stability.damped_runs import SILENT
 from mjbeer.studies.stability.run import OPTIONS, Stability
 
 pytestmark = pytest.mark.slow
@@ -21,10 +22,18 @@ def measured(name: str) -> dict:
     return next(maps.measure(plan, 4) for plan in maps.PLANS if plan.name == name)
 
 
+def damped() -> dict:
+    """A map of the damping, measured now with two timesteps and dampings."""
+    return damped_maps.measure("reduced", "RK4", (2, 2))
+
+
 def test_the_stored_maps_are_all_that_the_study_makes_and_agree_with_theory() -> None:
     kept = stored.load()
     assert [each["name"] for each in kept["maps"]] == [task.name for task in maps.tasks()]
     assert all(each["agrees"] and each["same"] == 1 for each in kept["maps"])
+    assert [each["name"] for each in kept["damped"]] == [task.name for task in damped_maps.tasks()]
+    assert all(each["agrees"] for each in kept["damped"])
+    assert str(SILENT) not in "".join(row for each in kept["damped"] for row in each["measured"])
     assert kept["command"] == "mjbeer stability --maps"
     assert datetime.date.fromisoformat(kept["date"]) >= DAY
     assert {"processor", "system", "python", "versions"} <= set(kept["machine"])
@@ -32,9 +41,17 @@ def test_the_stored_maps_are_all_that_the_study_makes_and_agree_with_theory() ->
 
 def test_the_stored_file_has_the_form_that_the_study_writes() -> None:
     kept = stored.load()
-    study = Stability({"extent": "maps"}, kept["machine"], {"maps": {"a map": measured("gravity, Euler")}})
+    results = {"maps": {"a map": measured("gravity, Euler")}, "damped": {"a map": damped()}}
+    study = Stability({"extent": "maps"}, kept["machine"], results)
     written = json.loads(stored.to_json(study, DAY))
     assert list(written) == list(kept)
+    (now,) = written["damped"]
+    for each in kept["damped"]:
+        assert list(each) == list(now)
+        columns, rows = damped_maps.CELLS
+        assert (len(each["timesteps"]), len(each["values"])) == (columns, rows)
+        assert [len(row) for row in each["measured"]] == [columns] * rows
+        assert [len(edge) for edge in each["boundaries"]] == [2] * rows
     (now,) = written["maps"]
     for each in kept["maps"]:
         assert list(each) == list(now)
@@ -57,6 +74,13 @@ def test_a_stored_map_is_what_is_measured_now() -> None:
     )
 
 
+def test_a_stored_map_of_the_damping_is_what_is_measured_now() -> None:
+    (kept,) = (each for each in stored.load()["damped"] if each["name"] == "reduced, RK4")
+    now = damped()
+    corners = [[kept["measured"][row][column] for column in (0, -1)] for row in (0, -1)]
+    assert corners == [[str(cell) for cell in row] for row in now["measured"]]
+
+
 @pytest.mark.parametrize(("extent", "option"), OPTIONS.items())
 def test_the_command_is_the_one_that_was_given(extent: str, option: str) -> None:
     document = json.loads(stored.to_json(Stability({"extent": extent}, {}), DAY))
@@ -76,11 +100,14 @@ def test_maps_alone_make_a_report(
 ) -> None:
     monkeypatch.setattr(maps, "CELLS", 4)
     monkeypatch.setattr(maps, "PLANS", maps.PLANS[:1])
+    monkeypatch.setattr(damped_maps, "CELLS", (2, 2))
+    monkeypatch.setattr(damped_maps, "PLANS", damped_maps.PLANS[:1])
     assert main(["stability", "--maps", "--output", str(tmp_path)]) == 0
     capsys.readouterr()
     assert [each["name"] for each in stored.load(tmp_path / "maps.json")["maps"]] == ["equality, Euler"]
     assert "Maps of timestep and stiffness" in (tmp_path / "summary.md").read_text()
     assert (tmp_path / "stability-solref.svg").exists()
+    assert (tmp_path / "stability-damping.svg").exists()
 
 
 @pytest.mark.parametrize("options", [("--long", "--quick"), ("--long", "--maps"), ("--quick", "--maps")])

@@ -14,6 +14,8 @@ _COARSEST, _RUNGS = 16e-3, 10
 _COARSEST_DOP853, _RUNGS_DOP853 = 128e-3, 15
 _COARSEST_GAUSS_JACKSON, _RUNGS_GAUSS_JACKSON = 32e-3, 29
 """Coarsest timestep [s] of a ladder, and its number of timesteps; those of MuJoCo's integrators come first."""
+_COARSEST_STIFF = 1e-3
+"""Coarsest timestep [s] of DOP853 in a stiff case, in which longer ones explode."""
 _QUICK_RUNGS = 6
 
 
@@ -52,7 +54,8 @@ def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
     two; tolerances are a factor of 1000 apart.
     """
     steps = tuple(_COARSEST / 2**k for k in range(_QUICK_RUNGS if quick else _RUNGS))
-    large = tuple(_COARSEST_DOP853 / 2 ** (k / 2) for k in range(0, _RUNGS_DOP853, 2 if quick else 1))
+    coarsest = _COARSEST_STIFF if scene.dissipates else _COARSEST_DOP853
+    large = tuple(coarsest / 2 ** (k / 2) for k in range(0, _RUNGS_DOP853, 2 if quick else 1))
     dense = tuple(_COARSEST_GAUSS_JACKSON / 2 ** (k / 4) for k in range(0, _RUNGS_GAUSS_JACKSON, 2 if quick else 1))
     allowed = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
     ladders: dict[Curve, tuple[float, ...]] = {}
@@ -62,7 +65,8 @@ def curves(scene: Scene, quick: bool = False) -> dict[Curve, tuple[float, ...]]:
         ladders |= {Curve(way, integrator, TIMESTEP): steps for integrator in INTEGRATORS}
         ladders[Curve(way, DOP853, TIMESTEP)] = large
         ladders[Curve(way, CHOSEN, TOLERANCE)] = allowed
-    ladders[Curve("reduced", GAUSS_JACKSON, TIMESTEP)] = dense
+    if not scene.dissipates:
+        ladders[Curve("reduced", GAUSS_JACKSON, TIMESTEP)] = dense
     for name, setting in USUAL.items():
         if supported(scene, setting.rolling):
             ladders[Curve(name, setting.integrator, TIMESTEP)] = (setting.timestep,)

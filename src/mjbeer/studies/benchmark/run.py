@@ -13,10 +13,11 @@ from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
 from mjbeer.studies.benchmark.curves import TIMESTEP, Curve, aligned
 from mjbeer.studies.benchmark.measure import Rung
+from mjbeer.studies.benchmark.peers import with_scipy
 from mjbeer.studies.benchmark.peers.installed import absent, installed
 from mjbeer.studies.benchmark.peers.peer import Peer
 from mjbeer.studies.benchmark.points import Benchmark, Point
-from mjbeer.studies.cases import CASES, Case
+from mjbeer.studies.cases import MEASURED, Case
 from mjbeer.studies.convergence import convergence
 
 REPEATS = 5
@@ -38,13 +39,13 @@ def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Co
       ParameterError: if a case does not exist, or study.json is not a benchmark.
       OutputError: if the file cannot be written.
     """
-    cases = [CASES[require.choice("scene", name, CASES)] for name in names]
+    cases = [MEASURED[require.choice("scene", name, MEASURED)] for name in names]
     path = folder / "study.json"
     settings = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": absent()}
     study = Benchmark.begin(path, settings, console)
     (folder / "summary.md").unlink(missing_ok=True)  # an earlier summary would not match the study
-    peers = {peer.name: peer for peer in installed()}
-    rungs = [Rung(CASES[point.case], point, peers.get(point.way)) for point in study.points]
+    peers = {peer.name: peer for peer in (*installed(), *with_scipy.STIFF)}
+    rungs = [Rung(MEASURED[point.case], point, peers.get(point.way)) for point in study.points]
     ladders = [(case, curve, values) for case in cases for curve, values in _curves(case, peers, quick).items()]
     measured = {(point.case, point.curve) for point in study.points}
     with progress_bar(console, len(ladders) + REPEATS * len(cases) + 1) as begin:
@@ -71,6 +72,8 @@ def _curves(case: Case, peers: dict[str, Peer], quick: bool) -> dict[Curve, tupl
     """Return the curves of a case with their ladders, of mjbeer's models and of other tools."""
     ladders = curves.curves(case.scene, quick)
     for peer in peers.values():
+        if peer in with_scipy.STIFF and not case.scene.dissipates:
+            continue
         knobs = peer.knobs[:6] if peer.knob == TIMESTEP else peer.knobs[::2]
         ladders[Curve(peer.name, "", peer.knob)] = knobs if quick else peer.knobs
     return ladders

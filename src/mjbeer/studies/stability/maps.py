@@ -67,13 +67,11 @@ def measure(plan: Plan, cells: int) -> dict[str, Any]:
         runs = ShortRuns(plan, value)
         measured.append([runs.measure(timestep) for timestep in times])
         predicted.append([runs.predict(timestep) for timestep in times])
-        boundary = {
-            "value": value,
-            "measured": _boundary(runs.measure, times, measured[-1]),
-            "predicted": _boundary(runs.predict, times, predicted[-1]),
-        }
-        boundaries.append(boundary)
-    differences = [_difference(boundary["measured"], boundary["predicted"]) for boundary in boundaries]
+        boundaries.append(
+            {"value": value, "measured": _edge(runs.measure, times, measured[-1])}
+            | {"predicted": _edge(runs.predict, times, predicted[-1])}
+        )
+    differences = [difference(edge["measured"], edge["predicted"]) for edge in boundaries]
     return {
         **{"name": plan.name, "family": plan.family, "integrator": plan.integrator, "refsafe": plan.refsafe},
         **{"dampratio": plan.dampratio, "written": plan.written},
@@ -94,21 +92,26 @@ def table(results: list[dict[str, Any]]) -> Table:
     return Table("Maps of timestep and stiffness", ("map", "cells as predicted", "boundary off by", "agrees"), rows)
 
 
-def _boundary(judge: Callable[[float], int], timesteps: list[float], outcomes: list[int]) -> float | None:
-    """Return the least unstable timestep [s], by bisection beside the first unstable one; None if all are stable."""
-    if UNSTABLE not in outcomes:
+def _edge(judge: Callable[[float], int], timesteps: list[float], outcomes: list[int]) -> float | None:
+    """Return the least unstable timestep [s]; None if all are stable."""
+    return boundary(lambda h: judge(h) == UNSTABLE, timesteps, [outcome == UNSTABLE for outcome in outcomes])
+
+
+def boundary(explodes: Callable[[float], bool], timesteps: list[float], exploded: list[bool]) -> float | None:
+    """Return the least timestep [s] that explodes, by bisection beside the first that did; None if none did."""
+    if True not in exploded:
         return None
-    place = outcomes.index(UNSTABLE)
+    place = exploded.index(True)
     if place == 0:
         return timesteps[0]
     low, high = timesteps[place - 1], timesteps[place]
     while high / low > _RESOLUTION:
         middle = math.sqrt(low * high)
-        low, high = (low, middle) if judge(middle) == UNSTABLE else (middle, high)
+        low, high = (low, middle) if explodes(middle) else (middle, high)
     return math.sqrt(low * high)
 
 
-def _difference(measured: float | None, predicted: float | None) -> float:
+def difference(measured: float | None, predicted: float | None) -> float:
     """Return the relative difference of two boundaries: 0 if neither exists, 1 if only one of them does."""
     if measured is None or predicted is None:
         return float(measured is not predicted)

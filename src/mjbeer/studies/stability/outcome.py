@@ -84,14 +84,17 @@ def _verdict(run: Run, motion: Truth, error: float) -> str:
     tolerance = run.setting.tolerance
     if tolerance is not None and run.rolling != "contact" and not error - (motion.apart or 0.0) <= tolerance:
         return MISSED
-    if not run.trusted and _explodes(run, motion):
+    if not run.trusted and explodes(run, motion.kinetic):
         return UNSTABLE
     return ACCURATE if error <= ERROR else INACCURATE
 
 
-def _explodes(run: Run, motion: Truth) -> bool:
-    """Return whether a run has so much more kinetic energy than the motion can have that it is unstable."""
-    most = motion.kinetic + 2 * run.scene.oscillator.depth
+def explodes(run: Run, kinetic: float) -> bool:
+    """Return whether a run has so much more kinetic energy than the motion can have that it is unstable.
+
+    `kinetic` is the largest kinetic energy of can and load at the samples of the exact motion [J].
+    """
+    most = kinetic + 2 * run.scene.oscillator.depth
     return not float(kinetic_energy(run.scene, run).max()) <= _GAIN * most
 
 

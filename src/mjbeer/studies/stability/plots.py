@@ -157,7 +157,7 @@ def _draw_map(axes: Axes, result: dict[str, Any]) -> None:
     colours = ListedColormap(_CELLS)
     cells = np.array(result["measured"])
     axes.pcolormesh(
-        _edges(result["timesteps"]), _edges(result["values"]), cells, cmap=colours, vmin=0, vmax=2, rasterized=True
+        edges(result["timesteps"]), edges(result["values"]), cells, cmap=colours, vmin=0, vmax=2, rasterized=True
     )
     axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
@@ -186,7 +186,7 @@ def _draw_map(axes: Axes, result: dict[str, Any]) -> None:
     axes.set_title(result["name"].partition(", ")[2], fontsize=10.5)
 
 
-def _edges(centres: list[float]) -> np.ndarray:
+def edges(centres: list[float]) -> np.ndarray:
     """Return the edges of cells whose centres are in geometric progression."""
     half = math.sqrt(centres[1] / centres[0])
     return np.append(np.array(centres) / half, centres[-1] * half)

@@ -4,7 +4,7 @@ import datetime
 import pathlib
 
 from mjbeer.output import files
-from mjbeer.studies.stability import plots, stored, tables
+from mjbeer.studies.stability import damped_maps, damped_plots, plots, stored, tables
 from mjbeer.studies.stability.run import Stability
 
 _READ = """
@@ -38,6 +38,8 @@ def write(study: Stability, folder: pathlib.Path) -> None:
     files.write(folder / "runs.csv", tables.runs(study))
     files.write(folder / "maps.json", stored.to_json(study, datetime.date.today()))
     pictures = plots.draw(study.of("limits"), study.of("maps"), folder)
+    if study.of(damped_maps.GROUP):
+        pictures.append(damped_plots.draw(study.of(damped_maps.GROUP), folder))
     if study.of("endurance"):
         plots.draw_endurance(study.of("endurance"), folder / "stability-endurance")
         pictures.append(_ENDURANCE)

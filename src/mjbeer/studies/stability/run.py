@@ -7,7 +7,7 @@ from typing import Any
 from rich.console import Console
 
 from mjbeer.output.terminal import progress_bar
-from mjbeer.studies.stability import endurance, laws, limits, maps
+from mjbeer.studies.stability import damped_maps, endurance, laws, limits, maps
 from mjbeer.studies.stability.catalogue import cases
 from mjbeer.studies.stability.crew import crew
 from mjbeer.studies.stability.search import batches
@@ -46,12 +46,13 @@ the other two differ in the number of random runs."""
 def tasks(extent: str) -> list[Task]:
     """Return all tasks of a study of this extent, one of `OPTIONS`."""
     if extent == "maps":
-        return maps.tasks()
+        return [*maps.tasks(), *damped_maps.tasks()]
     sample = extent != "long"
     return [
         *laws.tasks(),
         *limits.tasks(sample),
         *maps.tasks(sample),
+        *damped_maps.tasks(sample),
         *cases.tasks(sample),
         *batches.tasks(extent),
         *endurance.tasks(sample),

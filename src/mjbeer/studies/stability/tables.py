@@ -7,7 +7,7 @@ from typing import Any
 
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.output.table import Table
-from mjbeer.studies.stability import limits, maps
+from mjbeer.studies.stability import damped_maps, limits, maps
 from mjbeer.studies.stability.outcome import ACCURATE, VERDICTS
 from mjbeer.studies.stability.run import Stability
 from mjbeer.studies.stability.search import tables as search
@@ -23,6 +23,7 @@ def tables(study: Stability) -> list[Table]:
         laws(study),
         limits.table(study.of("limits")),
         maps.table(study.of("maps")),
+        damped_maps.table(study.of(damped_maps.GROUP)),
         *search.tables(study.of("search")),
         endurance(study),
     )

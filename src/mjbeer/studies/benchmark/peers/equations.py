@@ -8,7 +8,9 @@ p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and
     sliding:  phi_ddot = (p cos(phi) - (q + swing phi_dot^2 cos(phi)) sin(phi)) / (base + swing sin^2(phi)),
               u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),                  eqs. (46), (47)
 
-with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine.
+with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine. Damping c between can and
+load is a torque c w with w = u_dot/a - phi_dot. It adds c w (1 - m b/(M_e a) cos(phi)) to the numerator of phi_ddot,
+and -c w/(M_e a) to u_ddot.
 """
 
 import math
@@ -17,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from mjbeer.exceptions import UnsupportedError
 from mjbeer.theory.scene import Scene
 
 RightHandSide = Callable[[float, Sequence[float]], tuple[float, ...]]
@@ -29,7 +32,12 @@ def right_hand_side(
 
     Pass the state as plain floats: with NumPy's scalars the function takes four times as long. With the `sin` and `cos`
     of a library of symbols, it returns symbols.
+
+    Raises:
+      UnsupportedError: if the scene has drag, or damping that is not proportional to the slip rate.
     """
+    if scene.drag or any(scene.damping_law.coefficients[1:]):
+        raise UnsupportedError("the equations written by hand have linear damping alone: leave out drag and the rest")
     return _frozen(scene, sin, cos) if scene.attachment == "frozen" else _sliding(scene, sin, cos)
 
 
@@ -68,8 +76,11 @@ def _sliding(scene: Scene, sin: Callable[[Any], Any], cos: Callable[[Any], Any])
     form, can, load = scene.oscillator, scene.can, scene.load
     p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
     base, swing = form.base, form.swing
-    steady = scene.acceleration()
-    share = load.mass * load.offset / (scene.mass + can.inertia / can.radius**2)
+    effective_mass = scene.mass + can.inertia / can.radius**2
+    steady = scene.mass * scene.gravity * math.sin(scene.incline) / effective_mass
+    share = load.mass * load.offset / effective_mass
+    damping, radius = scene.damping_law.linear, can.radius
+    lever, pull = share / radius, 1 / (effective_mass * radius)
 
     def rates(_: float, state: Sequence[float]) -> tuple[float, ...]:
         _u, phi, u_dot, phi_dot = state
@@ -77,4 +88,12 @@ def _sliding(scene: Scene, sin: Callable[[Any], Any], cos: Callable[[Any], Any])
         phi_ddot = (p * c - (q + swing * square * c) * s) / (base + swing * (s * s))
         return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
 
-    return rates
+    def damped(_: float, state: Sequence[float]) -> tuple[float, ...]:
+        _u, phi, u_dot, phi_dot = state
+        s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
+        torque = damping * (u_dot / radius - phi_dot)
+        turned = p * c - (q + swing * square * c) * s + torque * (1 - lever * c)
+        phi_ddot = turned / (base + swing * (s * s))
+        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square) - pull * torque, phi_ddot
+
+    return damped if damping else rates

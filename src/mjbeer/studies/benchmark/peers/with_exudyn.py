@@ -68,6 +68,8 @@ def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, 
     )
 
     can, load = scene.can, scene.load
+    if scene.dissipates:
+        raise UnsupportedError("the EXUDYN model of a can has neither damping nor drag; leave them out")
     if scene.attachment == "sliding" and can.mass == 0:
         raise UnsupportedError(
             "EXUDYN moves bodies with mass only: a massless can with a sliding load is none; give the can a mass"
