@@ -109,7 +109,7 @@ def test_tables_say_what_happened() -> None:
             "1 refused",
         )
     ]
-    assert tables.verdicts(found).rows == [("stiff", "1", "1", "1", "1", "0", "0", "0")]
+    assert tables.verdicts(found).rows == [("stiff", "1", "1", "1", "1", "0", "0", "0", "0")]
     lines = tables.runs(found).splitlines()
     assert lines[0] == "kind,case,setting,verdict,error,admitted,says,expected,as_expected"
     assert lines[1] == 'stiff,a case,"reduced, RK4",stable and accurate,1e-09,1e-09,,stable and accurate,True'
