@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from mjbeer.report import films, page
+from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.advice import SHIPPED
 from mjbeer.studies.benchmark.points import Benchmark
 from tests.support import browser, pages
@@ -86,7 +87,7 @@ def test_every_film_plays(visit: Visit) -> None:
 @pytest.mark.parametrize("visit", [(PHONE, "light"), (PROJECTOR, "light")], indirect=True)
 def test_a_point_tells_its_setting(visit: Visit) -> None:
     visit.show("[data-plot=precision]")
-    assert visit.page.locator(POINTS).count() >= len(Benchmark.load(SHIPPED).of("sliding"))
+    assert visit.page.locator(POINTS).count() >= len(frontier.drawn(Benchmark.load(SHIPPED).of("sliding")))
     visit.page.locator(POINTS).last.hover(force=True)
     tip = visit.page.locator("#vg-tooltip-element.visible")
     tip.wait_for()

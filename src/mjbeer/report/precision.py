@@ -4,6 +4,7 @@ from typing import Any
 
 from mjbeer.model.setting import OWN, ROLLINGS, USUAL
 from mjbeer.studies.benchmark import frontier
+from mjbeer.studies.benchmark.curves import CHOSEN
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import milliseconds, setting
 from mjbeer.studies.cases import CASES, DURATION
@@ -41,7 +42,7 @@ def plot(study: Benchmark) -> dict[str, Any]:
 
     Its parameter `scene` is the name of the case that is shown, and `shown` the list of the tools.
     """
-    points = [record for case in study.cases for record in _records(study.of(case))]
+    points = [record for case in study.cases for record in _records(frontier.drawn(study.of(case)))]
     x = {"field": "time", "type": "quantitative", "scale": {"type": "log"}}
     y = {"field": "error", "type": "quantitative", "scale": {"type": "log"}}
     span = f"run time of {DURATION:.1f} s of motion [ms]"
@@ -166,7 +167,7 @@ def _levels(points: list[Point]) -> list[tuple[float, Point]]:
 def _tool(point: Point) -> str:
     """Return which of `TOOLS` a point belongs to."""
     if point.way in ROLLINGS:
-        return "mjbeer" if point.method in OWN else "MuJoCo"
+        return "mjbeer" if point.method in (*OWN, CHOSEN) else "MuJoCo"
     if point.way in USUAL:
         return "MuJoCo as usually written"
     return next(tool for tool in TOOLS if point.way.startswith(tool))

@@ -8,6 +8,7 @@ import numpy as np
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import ROLLINGS, USUAL
 from mjbeer.studies.benchmark.curves import CHOSEN, TIMESTEP, TOLERANCE, Curve
+from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE
 from mjbeer.studies.benchmark.points import Point
 
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
@@ -17,6 +18,11 @@ LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
 def ours(points: Iterable[Point]) -> list[Point]:
     """Return the points of mjbeer's own models: not of other tools, nor of models as people usually write them."""
     return [point for point in points if point.way in ROLLINGS]
+
+
+def drawn(points: Iterable[Point]) -> list[Point]:
+    """Return the points that plots show: not those of whole calls, which lie beside those of the runs alone."""
+    return [point for point in points if point.way != WHOLE]
 
 
 def front(points: Iterable[Point]) -> list[Point]:

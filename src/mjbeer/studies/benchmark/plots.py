@@ -12,7 +12,6 @@ from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import CHOSEN, TOLERANCE, Curve
-from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import MEASURED
@@ -25,7 +24,7 @@ _LINES = {"reduced": ("-", "o"), "equality": ("--", "s"), "contact": (":", "^")}
 """Lines and markers of the ways of rolling."""
 _USUAL = {"equality, slide first": "X", "equality, hinge first": "P", "contact, defaults": "*"}
 """Markers of models as people usually write them."""
-_PEERS = ("v", "<", ">", "D", "p", "h", "8")
+_PEERS = ("v", "<", ">", "D", "+", "x", "*")
 """Markers of other tools."""
 _SHORT = "GJ"
 """GaussJackson in the labels beside points; the legend says so."""
@@ -71,9 +70,9 @@ def _legend(panels: list[Axes]) -> list[Artist]:
 
 def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     """Draw the points of a case, the front, and the prediction for semi-implicit Euler."""
-    points = [point for point in study.of(case) if point.way != WHOLE]  # its line is beside that of the runs alone
-    ran = {point.way for point in study.points if point.failure is None}
-    peers = sorted(ran - {*ROLLINGS, *USUAL, WHOLE})
+    points = frontier.drawn(study.of(case))
+    ran = {point.way for point in frontier.drawn(study.points) if point.failure is None}
+    peers = sorted(ran - {*ROLLINGS, *USUAL})
     for curve in dict.fromkeys(point.curve for point in points):
         times, errors = _coordinates([point for point in points if point.curve == curve])
         if curve.way in USUAL:
@@ -94,8 +93,8 @@ def _panel(axes: Axes, study: Benchmark, case: str) -> None:
     start = MEASURED[case]
     axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 2, 20))
     axes.minorticks_off()
-    damped, begun = f"c = {start.scene.damping_law.linear:g} N m s", f"from φ = {in_degrees(start.phi0)}"
-    axes.set_title(f"{case}: {in_words(start.scene)}, {damped if start.scene.dissipates else begun}")
+    begun = "" if start.scene.dissipates else f", from φ = {in_degrees(start.phi0)}"
+    axes.set_title(f"{case}: {in_words(start.scene)}{begun}")
     axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of φ and u/a [rad]")
 
 
