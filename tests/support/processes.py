@@ -59,15 +59,20 @@ def interrupt(
     process: subprocess.Popen[str], when: Callable[[], object], *numbers: int, everybody: bool = True
 ) -> tuple[int, str]:
     """Send signals as soon as `when` is true, to all of its processes or to it alone; exit status and last words."""
-    end = time.monotonic() + _PATIENCE
+    end, send = time.monotonic() + _PATIENCE, os.killpg if everybody else os.kill
     while not when():
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < end
         time.sleep(0.02)
     for number in numbers:
-        (os.killpg if everybody else os.kill)(process.pid, number)
+        send(process.pid, number)
         time.sleep(0.3)
-    _, err = process.communicate(timeout=_PATIENCE)
+    try:
+        _, err = process.communicate(timeout=_PATIENCE / 2)
+    except subprocess.TimeoutExpired:
+        # Python forgets an interrupt that arrives while it clears a lock of its imports; one would press again.
+        send(process.pid, numbers[-1])
+        _, err = process.communicate(timeout=_PATIENCE)
     return process.returncode, err
 
 
