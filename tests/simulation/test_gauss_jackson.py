@@ -14,13 +14,13 @@ from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.model.state import read, start
-from mjbeer.simulation import gauss_jackson_kernel, tolerance
+from mjbeer.simulation import comparison, gauss_jackson_kernel, gauss_jackson_pair
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
+from mjbeer.simulation.gauss_jackson_pair import GaussJacksonPair
 from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.recorder import Recorder
-from mjbeer.simulation.tolerance import Solver
 from mjbeer.studies.convergence import observed_order
 from mjbeer.theory.measure import distance
 from mjbeer.theory.scene import Scene
@@ -254,7 +254,7 @@ def test_a_tolerance_takes_fewer_evaluations_with_it(
     totals = {}
     for name in ("GaussJackson", "DOP853"):
         if name == "DOP853":
-            monkeypatch.setattr(Solver, "_by_gauss_jackson", lambda *_: None)
+            monkeypatch.setattr(GaussJacksonPair, "solve", lambda *_: None)
         run = simulate(sliding(), 2.0, 1.0, tolerance=error)
         assert run.integrator == name
         totals[name] = sum(evaluations)
@@ -278,9 +278,9 @@ def counted(integrator: Any, evaluations: list[int]) -> Callable[..., np.ndarray
 @pytest.mark.parametrize("constant", ["_ASTRAY", "_GAIN"])
 def test_a_tolerance_falls_back_on_dop853(constant: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where two runs agree but are far from the first, coarse one, or where they are too far apart."""
-    monkeypatch.setattr(tolerance, constant, 0.0)
+    monkeypatch.setattr(gauss_jackson_pair, constant, 0.0)
     if constant == "_GAIN":
-        monkeypatch.setattr(tolerance, "_SAFETY", 1e9)
+        monkeypatch.setattr(comparison, "_SAFETY", 1e9)
     run = simulate(frozen(), 2.0, 1.0, tolerance=1e-8)
     assert run.integrator == "DOP853"
     assert np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max() < 1e-8

@@ -14,8 +14,9 @@ from mjbeer.model.setting import DOP853, GAUSS_JACKSON, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.recorder import Recorder
+from mjbeer.simulation.solution import Solution
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.simulation.tolerance import Solution, Solver, tuning
+from mjbeer.simulation.tolerance import Solver, tuning
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.scene import Scene
 
