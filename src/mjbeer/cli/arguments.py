@@ -15,7 +15,8 @@ from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import liquid, liquid_in
 from mjbeer.theory.liquids import NAMES, Name
 from mjbeer.theory.load import BEER
-from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import GRAVITY, Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
 if TYPE_CHECKING:
     from mjbeer.theory.trajectory import Trajectory

@@ -12,7 +12,8 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.liquids import Name
-from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.words import in_degrees
 
 METAL = Can.sheet_metal()

@@ -23,7 +23,8 @@ from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.liquids import LIQUIDS, NAMES
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, sliding
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
+from mjbeer.theory.scenes import sliding
 from mjbeer.theory.segment import segment
 
 WALL = 0.8875

@@ -1,4 +1,4 @@
-"""The scene: can, load, incline, gravity and how the load is attached; and the four scenes of the paper."""
+"""The scene: can, load, incline, gravity, and how the load is attached and damped."""
 
 import math
 from dataclasses import dataclass, field
@@ -10,9 +10,9 @@ import numpy as np
 from mjbeer import messages, require
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory import motion, steady_rolling, viscous_modes
-from mjbeer.theory.can import LENGTH, RADIUS, Can
+from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.load import BEER, Load
+from mjbeer.theory.load import Load
 from mjbeer.theory.oscillator import Oscillator
 
 Attachment = Literal["sliding", "frozen"]
@@ -39,7 +39,8 @@ class Scene:
     incline: float = INCLINE
     """Angle alpha of the incline to the horizontal [rad]; if positive, u grows downhill."""
     attachment: Attachment = "sliding"
-    """"sliding": the load slides without friction about the axis; "frozen": it is rigidly attached."""
+    """"sliding": the load slides about the axis, without friction unless there is `damping`; "frozen": it is rigidly
+    attached."""
     gravity: float = GRAVITY
     """Acceleration of gravity g [m/s^2]."""
     damping: float | Damping = 0.0
@@ -263,83 +264,3 @@ class Scene:
             return force / (self.load.mass + effective_can_mass)
         load_inertia = self.load.inertia + self.load.mass * self.load.offset**2
         return force / (self.load.mass + effective_can_mass + load_inertia / self.can.radius**2)
-
-
-def sliding(
-    incline: float = INCLINE,
-    fill: float = 0.5,
-    can: Can | None = None,
-    density: float = BEER,
-    gravity: float = GRAVITY,
-    damping: float | Damping = 0.0,
-    drag: float = 0.0,
-) -> Scene:
-    """Return the scene of beer that slides in a can: sections 2 (massless can, the default) and 3 of the paper.
-
-    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. The beer slides without
-    friction unless `damping` [N m s] is given; `drag` [kg/m] is that of the air. Both are fields of `Scene`.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-    """
-    can = Can.massless() if can is None else require.instance("can", can, Can)
-    load = Load.segment(can.radius, can.length, fill=fill, density=density)
-    return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity, damping=damping, drag=drag)
-
-
-def frozen(
-    incline: float = INCLINE, fill: float = 0.5, can: Can | None = None, density: float = BEER, gravity: float = GRAVITY
-) -> Scene:
-    """Return the scene of beer frozen to the can: appendix A (massless can, the default).
-
-    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3].
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-    """
-    can = Can.massless() if can is None else require.instance("can", can, Can)
-    load = Load.segment(can.radius, can.length, fill=fill, density=density)
-    return Scene(can, load, incline=incline, attachment="frozen", gravity=gravity)
-
-
-def pendulum(
-    incline: float = INCLINE,
-    wheel_mass: float = 0.2,
-    load_mass: float = 0.1,
-    offset: float = 0.025,
-    radius: float = RADIUS,
-    length: float = LENGTH,
-    gravity: float = GRAVITY,
-) -> Scene:
-    """Return the scene of a hoop wheel with a simple pendulum on its axle: appendix B.
-
-    `incline` is in [rad]; `wheel_mass` and `load_mass` are M and m [kg], and `offset` is the pendulum's length b [m].
-    The paper gives no numbers: the defaults are a wheel of the can's size and a bob of half its mass.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-    """
-    radius = require.positive("wheel radius", radius, "m")
-    wheel_mass = require.positive("wheel mass", wheel_mass, "kg")
-    can, load = Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset)
-    return Scene(can, load, incline=incline, attachment="sliding", gravity=gravity)
-
-
-def hoop(
-    incline: float = 0.0,
-    hoop_mass: float = 0.01,
-    load_mass: float = 0.2,
-    radius: float = RADIUS,
-    length: float = LENGTH,
-    gravity: float = GRAVITY,
-) -> Scene:
-    """Return the scene of a hoop with a point load on its rim, the hopping hoop: appendix A.4.
-
-    `incline` is in [rad]; `hoop_mass` and `load_mass` are M and m [kg]. The default M/m = 1/20 is light enough to hop,
-    for which M/m must be below 1/13.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-    """
-    can, load = Can.hoop(radius, length, hoop_mass), Load.point(load_mass, radius)
-    return Scene(can, load, incline=incline, attachment="frozen", gravity=gravity)

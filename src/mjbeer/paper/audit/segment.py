@@ -12,7 +12,7 @@ from mjbeer.paper.equations import segment as equations
 from mjbeer.paper.letters import Terms
 from mjbeer.theory.can import ALUMINIUM, LENGTH, RADIUS, THICKNESS, Can
 from mjbeer.theory.load import BEER, Load
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.scenes import sliding
 from mjbeer.theory.segment import Segment, segment
 
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)

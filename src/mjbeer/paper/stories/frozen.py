@@ -28,7 +28,8 @@ from mjbeer.output.plots import (
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import INCLINE, Scene, frozen, pendulum, sliding
+from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import in_degrees, in_words
 

@@ -17,7 +17,7 @@ from mjbeer.paper.scenarios import GRIP, MU, RATIO, fall_from_top
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import hoop
+from mjbeer.theory.scenes import hoop
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import in_degrees, in_words
 

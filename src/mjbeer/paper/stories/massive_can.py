@@ -17,7 +17,8 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.measure import mean_acceleration
-from mjbeer.theory.scene import INCLINE, Scene, frozen, pendulum, sliding
+from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import in_degrees, in_words
 

@@ -17,7 +17,8 @@ from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import FILM_LOAD, liquid_in
 from mjbeer.theory.liquids import LIQUIDS, NAMES
-from mjbeer.theory.scene import INCLINE, Scene, frozen, sliding
+from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import in_degrees, in_words
 

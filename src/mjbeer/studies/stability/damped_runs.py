@@ -24,7 +24,8 @@ from mjbeer.studies.stability.truth import angles
 from mjbeer.theory.can import Can
 from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import sliding
 from mjbeer.theory.trust import ERROR
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)
