@@ -1,49 +1,62 @@
-# make report: validate, draw the scenes, and write one page, report/index.html.   make test: all checks.
-# Both set themselves up in .venv; the second time that takes a second. Without OpenGL, neither draws films.
+# `make` alone says what there is to make. Everything is installed into .venv, once; without OpenGL, no films are drawn.
 .DEFAULT_GOAL := help
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-STAMP := $(VENV)/.installed
+PACKAGE := $(VENV)/.package
+TOOLS := $(VENV)/.tools
+# What is not compiled when it is installed is compiled when it is first used: a sixth less disk, and sooner done.
+PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
 .PHONY: help report test quick search portability renders lint clean
 
 help:
-	@sed -n '1,2p' $(MAKEFILE_LIST)
+	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
+	@echo "make test         installs the tools of the tests as well, then lints and runs all tests (minutes)"
+	@echo "make quick        runs the tests that take no time"
+	@echo "make lint         runs ruff, the type checker, and import-linter"
+	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
+	@echo "make renders      draws the animated pictures of the README anew"
+	@echo "make portability  tries exported models in other tools (an hour, 3 GB)"
+	@echo "make clean        removes what the others wrote"
 
-report: $(STAMP)
+report: $(PACKAGE)
 	$(BIN)/mjbeer report --output report
 
-test: $(STAMP) lint
+test: $(TOOLS) lint
 	$(BIN)/python -m pytest -n auto
 
-# What takes no time, for the loop of an edit: half a minute.
-quick: $(STAMP)
+quick: $(TOOLS)
 	$(BIN)/python -m pytest -n auto -m "not slow"
 
-# Two thousand new random runs, of which none may be wrong and silent: a minute or two. -s shows the table.
-search: $(STAMP)
+# -s shows the table.
+search: $(TOOLS)
 	MJBEER_EXAMPLES=2000 $(BIN)/python -m pytest -s tests/studies/stability/test_search.py -k wrong_and_silent
 
-# What other tools make of portable exports, as docs/portability.md has it: 3 GB in build/, and an hour.
-portability: $(STAMP)
+# The other tools go into build/, as docs/portability.md has it.
+portability: $(TOOLS)
 	$(BIN)/python -m tests.support.others
 
-# The films that the documents show, as animated pictures: half a minute.
-renders: $(STAMP)
+renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.gallery renders
 
-lint: $(STAMP)
+lint: $(TOOLS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/ty check src tests
 	$(BIN)/lint-imports
 
-$(STAMP): pyproject.toml
+$(PACKAGE): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mjbeer needs Python 3.11 or later, this is " + sys.version)'
-	$(PYTHON) -m venv --clear $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade pip
-	$(BIN)/python -m pip install --quiet --editable . --group dev
+	@echo "Installing mjbeer and what it needs into $(VENV), about 0.8 GB: this takes a minute or two."
+	@$(PYTHON) -m venv --clear $(VENV)
+	@$(PIP) --editable .
+	@touch $@
+
+$(TOOLS): $(PACKAGE)
+	@echo "Installing the tools of the tests into $(VENV), about 0.6 GB: this takes a minute or two."
+	@$(PIP) --upgrade pip
+	@$(PIP) --group dev
 	@touch $@
 
 clean:

@@ -1,8 +1,13 @@
 """Many films at once are all there, whole, and an error in one of them is told."""
 
+import multiprocessing
 import os
 import pathlib
-from collections.abc import Sequence
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -12,7 +17,7 @@ from rich.console import Console
 
 from mjbeer import exact, frozen
 from mjbeer.drawing import animation, studio
-from mjbeer.drawing.film import Take, reel
+from mjbeer.drawing.film import Reel, Take, reel
 from mjbeer.drawing.studio import Order, produce
 from mjbeer.exceptions import RenderingError
 
@@ -42,20 +47,92 @@ def test_a_film_that_fails_is_an_error(tmp_path: pathlib.Path, monkeypatch: pyte
     assert os.listdir(tmp_path) == []
 
 
-@pytest.mark.draws
-def test_a_film_that_another_process_was_writing_leaves_nothing(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(orders: Sequence[Order], _: Console) -> None:
-        (tmp_path / ".a-12345678.mp4").touch()
-        (tmp_path / ".a-still-12345678.png").touch()
-        raise KeyboardInterrupt
+@dataclass(frozen=True)
+class Fragile:
+    """A film whose process is ended by a `signal` before it draws, or stands still for want of one.
 
-    monkeypatch.setattr(studio, "_produce", interrupted)
-    (tmp_path / "a.mp4").write_text("an older film")
-    with pytest.raises(KeyboardInterrupt):
-        produce(orders(tmp_path, "a"), Console(quiet=True))
-    assert os.listdir(tmp_path) == ["a.mp4"]
+    It happens as often as there are files in `lives`, each of which one attempt takes.
+    """
+
+    lives: pathlib.Path
+    signal: int | None
+    still: float = 0.2
+    caption: str = ""
+
+    def reel(self) -> Reel:
+        if multiprocessing.parent_process() is not None and (left := list(self.lives.iterdir())):
+            left[0].unlink()
+            (self.lives.parent / "films" / ".a-12345678.mp4").touch()  # what a film that is being written looks like
+            if self.signal is None:
+                time.sleep(600)
+            else:
+                os.kill(os.getpid(), self.signal)
+        return TAKE.reel()
+
+
+def fragile(folder: pathlib.Path, lives: int, signal: int | None) -> list[Order]:
+    (folder / "films").mkdir()
+    (folder / "lives").mkdir()
+    for life in range(lives):
+        (folder / "lives" / str(life)).touch()
+    weak = Order(Fragile(folder / "lives", signal), folder / "films" / "a.mp4", 160, 90, 10)
+    return [weak, *orders(folder / "films", "bc")]
+
+
+@pytest.mark.draws
+def test_a_film_whose_process_dies_is_drawn_once_more(tmp_path: pathlib.Path) -> None:
+    produce(fragile(tmp_path, 1, signal.SIGSEGV), Console(quiet=True))
+    films = [f"{name}{ending}" for name in "abc" for ending in ("-still.png", ".mp4")]
+    assert sorted(os.listdir(tmp_path / "films")) == films
+    assert (tmp_path / "films/a.mp4").read_bytes() == (tmp_path / "films/b.mp4").read_bytes()
+
+
+@pytest.mark.draws
+def test_a_film_that_stands_still_is_drawn_once_more(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(studio, "_PATIENCE", 20.0)  # a slow machine takes some seconds to begin
+    produce(fragile(tmp_path, 1, None), Console(quiet=True))
+    assert (tmp_path / "films/a.mp4").read_bytes() == (tmp_path / "films/b.mp4").read_bytes()
+
+
+@pytest.mark.draws
+@pytest.mark.parametrize(
+    ("signal", "told"),
+    [(signal.SIGSEGV, "was ended by SIGSEGV$"), (signal.SIGKILL, r"was ended by SIGKILL: is memory short\?$")],
+)
+def test_a_film_whose_process_dies_twice_is_an_error_that_names_the_signal(
+    tmp_path: pathlib.Path, signal: int, told: str
+) -> None:
+    with pytest.raises(RenderingError, match=rf"^a\.mp4 could not be drawn: its process {told}"):
+        produce(fragile(tmp_path, 2, signal), Console(quiet=True))
+    assert [name for name in os.listdir(tmp_path / "films") if name.startswith(".")] == []
+
+
+RASTERIZERS = """
+import pathlib
+from mjbeer.drawing import opengl
+context = opengl.context(64, 64)
+context.make_current()
+from OpenGL import GL
+threads = [(task / "comm").read_text() for task in pathlib.Path("/proc/self/task").iterdir()]
+print(sum(name.startswith("llvmpipe") for name in threads), GL.glGetString(GL.GL_RENDERER).decode())
+"""
+
+
+@pytest.mark.draws
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere nothing is drawn by Mesa")
+def test_mesa_draws_in_the_thread_that_calls_it_unless_the_user_says_otherwise() -> None:
+    def rasterizers(**said: str) -> tuple[int, str]:
+        given = {name: value for name, value in os.environ.items() if name != "LP_NUM_THREADS"} | said
+        done = subprocess.run(
+            [sys.executable, "-c", RASTERIZERS], env=given, capture_output=True, text=True, check=True
+        )
+        count, renderer = done.stdout.split(maxsplit=1)
+        return int(count), renderer
+
+    count, renderer = rasterizers()
+    assert count == 0
+    if "llvmpipe" in renderer:  # on a graphics card there are none whatever is said
+        assert rasterizers(LP_NUM_THREADS="2")[0] == 2
 
 
 @pytest.mark.draws

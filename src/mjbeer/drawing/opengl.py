@@ -51,12 +51,23 @@ def context(width: int, height: int) -> Context:
         import mujoco
 
         return mujoco.GLContext(width, height)
+    rasterize_in_one_thread()
     # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window system's by default.
     if backend() == "egl":
         from mujoco.egl import GLContext
     else:
         from mujoco.osmesa import GLContext
     return GLContext(width, height)
+
+
+def rasterize_in_one_thread() -> None:
+    """Make Mesa draw in the thread that calls it, unless the user has set how many threads it takes.
+
+    Mesa's software rasterizer (llvmpipe, seen in 22.3) frees a fence while another of its threads still unlocks it, and
+    so writes into memory that is free or somebody else's: now and then the process that draws crashes. Without threads
+    of its own it cannot. It has to be said before the first context.
+    """
+    os.environ.setdefault("LP_NUM_THREADS", "0")
 
 
 @functools.cache

@@ -1,14 +1,16 @@
-"""Draws many films at once, one process for each core."""
+"""Draws many films at once, in one process for each core, and a film once more whose process failed."""
 
+import contextlib
 import os
 import pathlib
+import signal
+import time
 import warnings
-from collections.abc import Sequence
-from concurrent.futures import Future, wait
-from concurrent.futures.process import BrokenProcessPool
+from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from multiprocessing import get_context
-from multiprocessing.sharedctypes import Synchronized
+from multiprocessing.connection import Connection, wait
 
 import rich.console
 from PIL import Image
@@ -19,8 +21,11 @@ from mjbeer.exceptions import RenderingError, UntrustedWarning
 from mjbeer.output import files, processes
 from mjbeer.output.terminal import progress_bar
 
-_OFTEN = 0.2
-"""How often the progress bar is brought up to date [s]."""
+_PATIENCE = 60.0
+"""How long a process may be at work without a new picture [s]; a picture takes a fraction of a second."""
+_ATTEMPTS = 2
+"""How often a film is begun whose process dies or stands still: a driver of OpenGL that fails by chance hardly fails
+twice, and one that always fails must be reported."""
 
 
 @dataclass(frozen=True)
@@ -41,67 +46,129 @@ class Order:
         """Return how many pictures the film has, and the still picture."""
         return len(self.film.reel().times(self.fps)) + 1
 
-    def write(self) -> None:
-        """Write film and still picture, each whole or not at all."""
+    def write(self, count: Callable[[], None]) -> None:
+        """Write film and still picture, each whole or not at all, and call `count` for each picture."""
         reel = self.film.reel()
-        video.write(reel, self.path, self.width, self.height, self.fps, _count)
+        video.write(reel, self.path, self.width, self.height, self.fps, count)
         picture = video.still(reel, self.film.still, self.width, self.height)
         with files.whole(self.path.with_name(f"{self.path.stem}-still.png")) as temporary:
             Image.fromarray(picture).save(temporary)
-        _count()
+        count()
+
+    def clear(self) -> None:
+        """Remove the hidden files that a process leaves which is ended while it writes."""
+        for ending in (".mp4", ".png"):
+            for unfinished in self.path.parent.glob(f".{self.path.stem}-*{ending}"):
+                unfinished.unlink(missing_ok=True)
 
 
 def produce(orders: Sequence[Order], console: rich.console.Console) -> None:
     """Write films and their still pictures, with a progress bar.
 
+    A film whose process dies, or draws nothing for a minute, is drawn once more in a new process.
+
     Raises:
-      RenderingError: if ffmpeg or OpenGL does not work; the message says what to do.
+      RenderingError: if ffmpeg or OpenGL does not work, or a film's process fails twice; the message says what to do.
       OutputError: if a file cannot be written.
     """
-    try:
-        _produce(orders, console)
-    except BaseException:
-        for order in orders:  # a process that is ended leaves the hidden file that it was writing
-            for ending in (".mp4", ".png"):
-                for unfinished in order.path.parent.glob(f".{order.path.stem}-*{ending}"):
-                    unfinished.unlink(missing_ok=True)
-        raise
-
-
-def _produce(orders: Sequence[Order], console: rich.console.Console) -> None:
-    drawn = get_context("spawn").Value("l", 0)
     counts = {order.path: order.pictures() for order in orders}
-    longest_first = sorted(orders, key=lambda order: -counts[order.path] * order.width * order.height)
-    with (
-        progress_bar(console, sum(counts.values())) as begin,
-        processes.pool(len(orders), _prepare, (drawn,)) as executor,
-    ):
-        running: set[Future[None]] = {executor.submit(order.write) for order in longest_first}
-        seen = 0
-        while running:
-            done, running = wait(running, timeout=_OFTEN)
-            for _ in range(seen, drawn.value):
-                begin("drawing films")
-            seen = drawn.value
-            for future in done:
-                try:
-                    future.result()
-                except BrokenProcessPool as error:
-                    raise RenderingError("a process that drew films was ended: is memory short?") from error
+    waiting = deque(sorted(orders, key=lambda order: -counts[order.path] * order.width * order.height))
+    failures = dict.fromkeys(counts, 0)
+    painters: list[_Painter] = []
+    try:
+        with progress_bar(console, sum(counts.values())) as begin:
+            while waiting or painters:
+                while waiting and len(painters) < (os.cpu_count() or 1):
+                    painters.append(_Painter(waiting.popleft()))
+                wait([painter.pipe for painter in painters], timeout=1.0)
+                for painter in list(painters):
+                    for _ in range(painter.listen()):
+                        begin("drawing films")
+                    if painter.failure:
+                        painters.remove(painter)
+                        painter.end()
+                        failures[painter.order.path] += 1
+                        if failures[painter.order.path] == _ATTEMPTS:
+                            raise RenderingError(f"{painter.order.path.name} could not be drawn: {painter.failure}")
+                        waiting.append(painter.order)
+                    elif painter.done and waiting:
+                        painter.take(waiting.popleft())
+                    elif painter.done:
+                        painters.remove(painter)
+                        painter.end()
+    finally:
+        for painter in painters:
+            painter.end()
 
 
-_drawn: list[Synchronized] = []
-"""In a process that draws films, the number of pictures that all of them have drawn."""
+class _Painter:
+    """A process that draws one film after the other."""
+
+    def __init__(self, order: Order) -> None:
+        context = get_context("spawn")  # a copy of a process that has OpenGL would be of no use
+        self.pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_paint, args=(theirs,), daemon=True)
+        self._process.start()
+        theirs.close()  # so that the pipe ends when the process does
+        self.take(order)
+
+    def take(self, order: Order) -> None:
+        """Begin a film."""
+        self.order, self.done, self.failure = order, False, ""
+        self._heard = time.monotonic()
+        with contextlib.suppress(BrokenPipeError):  # a process that has just died is found out by `listen`
+            self.pipe.send(order)
+
+    def listen(self) -> int:
+        """Return how many pictures were drawn since the last call, and note whether the film is done or has failed.
+
+        Raises:
+          MjbeerError: what the film's own process raised.
+        """
+        pictures = 0
+        try:
+            while not self.done and self.pipe.poll():
+                self._heard = time.monotonic()
+                match self.pipe.recv():
+                    case BaseException() as error:
+                        raise error
+                    case "picture":
+                        pictures += 1
+                    case _:
+                        self.done = True
+        except (EOFError, ConnectionResetError):
+            self._process.join()
+            self.failure = _told(self._process.exitcode or 0)
+        if not self.done and time.monotonic() - self._heard > _PATIENCE:
+            self.failure = f"its process drew nothing for {_PATIENCE:g} s"
+        return pictures
+
+    def end(self) -> None:
+        """End the process, and remove what it leaves unfinished."""
+        self._process.kill()
+        self._process.join()
+        self.pipe.close()
+        if not self.done:
+            self.order.clear()
 
 
-def _prepare(drawn: Synchronized) -> None:
-    """Prepare a process for drawing."""
-    _drawn.append(drawn)
+def _told(status: int) -> str:
+    """Return what the exit status of a process says, which is negative if a signal ended it."""
+    if status >= 0:
+        return f"its process ended with status {status}"
+    memory = ": is memory short?" if -status == signal.SIGKILL else ""
+    return f"its process was ended by {signal.Signals(-status).name}{memory}"
+
+
+def _paint(pipe: Connection) -> None:
+    """Write the films that come through a pipe, and answer with a word for each picture and at the end of each film."""
+    processes.follow_parent()
     warnings.simplefilter("ignore", UntrustedWarning)  # films show on purpose what cannot be trusted
-    os.environ["LP_NUM_THREADS"] = "1"  # more threads of Mesa would only wait for each other's cores
-
-
-def _count() -> None:
-    for drawn in _drawn:
-        with drawn.get_lock():
-            drawn.value += 1
+    while True:
+        order: Order = pipe.recv()
+        try:
+            order.write(lambda: pipe.send("picture"))
+        except Exception as error:
+            pipe.send(error)
+        else:
+            pipe.send("done")

@@ -6,6 +6,7 @@ import time
 import mujoco
 
 from mjbeer import require
+from mjbeer.drawing import opengl
 from mjbeer.drawing.window import require_window
 from mjbeer.exceptions import RenderingError, UnsupportedError
 from mjbeer.model.build import finish
@@ -94,6 +95,7 @@ def view(
     setting = Setting(rolling, integrator, timestep, friction=friction)
     require.positive("speed", speed)
     model = finish(present(scene, setting, *require.start(phi0, phi_dot0)), setting)
+    opengl.rasterize_in_one_thread()
     require_window()
     _play(Player(model, speed))
 

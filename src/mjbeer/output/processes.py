@@ -4,24 +4,20 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from typing import Any
 
 
 @contextmanager
-def pool(
-    most: int, prepare: Callable[..., None] | None = None, arguments: tuple[Any, ...] = ()
-) -> Generator[ProcessPoolExecutor]:
+def pool(most: int) -> Generator[ProcessPoolExecutor]:
     """Yield an executor with a process for each core, but not more than `most`; they start when work is submitted.
 
-    Each process calls `prepare` with some `arguments` first. At the end of the block, or when it is interrupted, the
-    processes are ended.
+    At the end of the block, or when it is interrupted, the processes are ended.
     """
     # Not forked: a copy of a process with several threads may hang, and a copy of OpenGL is of no use.
     context, count = multiprocessing.get_context("spawn"), max(1, min(os.cpu_count() or 1, most))
-    executor = ProcessPoolExecutor(count, context, _begin, (prepare, arguments))
+    executor = ProcessPoolExecutor(count, context, follow_parent)
     try:
         yield executor
     except BaseException:
@@ -32,7 +28,7 @@ def pool(
         executor.shutdown(cancel_futures=True)
 
 
-def _begin(prepare: Callable[..., None] | None, arguments: tuple[Any, ...]) -> None:
+def follow_parent() -> None:
     """Make this process leave interruptions to its parent, and end when the parent does, even if that is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = multiprocessing.parent_process()
@@ -43,5 +39,3 @@ def _begin(prepare: Callable[..., None] | None, arguments: tuple[Any, ...]) -> N
         os._exit(1)
 
     threading.Thread(target=end, daemon=True).start()
-    if prepare is not None:
-        prepare(*arguments)

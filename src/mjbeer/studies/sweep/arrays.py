@@ -172,7 +172,7 @@ def imported_xarray() -> Any:
     try:
         import xarray
     except ImportError as error:
-        raise MjbeerError("datasets and .nc files need xarray: pip install 'mjbeer[xarray]'") from error
+        raise MjbeerError("datasets and .nc files need xarray: pip install xarray") from error
     return xarray
 
 
