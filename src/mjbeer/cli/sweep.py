@@ -181,7 +181,7 @@ class Sweep:
             alike.setdefault(re.sub(r"\d[\d.e+-]*", "", failure.reason), []).append(failure)
         for first, *others in sorted(alike.values(), key=len, reverse=True):
             place = _in_degrees(result, first.index)
-            say(f"failed: {1 + len(others)} scenes, the first at {place}: {first.reason}", "yellow")
+            say(f"failed: {1 + len(others)} scene{'s' * bool(others)}, the first at {place}: {first.reason}", "yellow")
         say(f"wrote {self.output}")
         terminal.write(f"{result.counts}\n")
         return 0
