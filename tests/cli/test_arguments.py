@@ -9,7 +9,7 @@ from typing import get_args
 import pytest
 
 from mjbeer import Can, Scene, build, frozen, hoop, liquid, pendulum, render, simulate, sliding
-from mjbeer.cli.app import COMMANDS, main, parse
+from mjbeer.cli.app import Command, main, parse
 from mjbeer.cli.arguments import Common, Frozen, Hoop, Integrator, Liquid, Motion, Pendulum, Rolling, Sliding, radians
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.exceptions import ParameterError
@@ -43,7 +43,7 @@ def test_help_states_the_unit_of_every_number(
         assert f"[{UNITS[name]}]" in numbers[name], name
 
 
-@pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])
+@pytest.mark.parametrize("command", [[], *([each.__name__.lower()] for each in get_args(Command))])
 def test_every_command_has_help(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main([*command, "--help"])

@@ -31,6 +31,20 @@ def test_the_text_says_what_a_run_says_about_itself() -> None:
     assert text["lift, lowest and highest"] == f"{run.lift.min() / 0.033:.2e}, {run.lift.max() / 0.033:.2e} radii"
     assert text["normal force needed"] == f"{run.forces.normal.min():.4g} to {run.forces.normal.max():.4g} N"
     assert text["estimated error of phi and u/a"] == f"{run.error_estimate:.2e} rad"
+    assert text["trusted"] == "yes"
+    assert lines(simulate(frozen(), SHORT, START, timestep=0.02))["trusted"] == "no"
+
+
+def test_the_drift_of_a_full_can_is_a_share_of_what_gravity_gives() -> None:
+    """Its load neither swings nor turns. From rest m g u sin(alpha) is all the kinetic energy that it has."""
+    run = simulate(sliding(fill=1.0), 2.0, 1.0)
+    gained = run.scene.mass * run.scene.gravity * np.sin(run.scene.incline) * (run.u - run.u[0]).max()
+    drift = json.loads(Figures(run).json())["energy drift"]
+    assert run.energy_drift > 1e-4  # of the rounding of nothing
+    # 2,000 steps add up as many roundings, in the velocity and so twice in its square.
+    assert drift == pytest.approx(np.abs(run.energy - run.energy[0]).max() / gained, rel=1e-9)
+    assert drift < 2 * 2000 * np.finfo(float).eps
+    assert lines(run)["energy drift"] == f"{drift:.2e} of the largest kinetic energy"
 
 
 def test_the_text_fits_in_80_columns() -> None:
@@ -51,7 +65,7 @@ def test_a_damped_run_has_its_steady_rolling_and_its_modes() -> None:
     scene = sliding(damping=1e-3)
     run = simulate(scene, 0.1, 1.0)
     text, content = lines(run), json.loads(Figures(run).json())
-    assert text["torque at the slip rate w"] == "0.001 N m s w"
+    assert text["damping torque over slip rate"] == "0.001 N m s"
     tilt = math.degrees(scene.terminal_tilt())
     assert text["steady rolling"] == f"{scene.terminal_speed():.6g} m/s, the load at phi = {tilt:.6g} degrees"
     assert text["its modes exp(s t), s"] == "-4.76, -2.2 +- 17.96i 1/s"

@@ -54,7 +54,7 @@ def test_each_scene_of_a_sweep_has_the_damping_of_its_incline(tmp_path: pathlib.
         ("simulate sliding --damping -1", "damping must be 0 or greater [N m s], got -1.0"),
         ("simulate sliding --damping inf", "damping must be a finite number [N m s], got inf"),
         ("simulate sliding --drag -1", "drag must be 0 or greater [kg/m], got -1.0"),
-        ("simulate frozen --damping 1", "`mjbeer simulate frozen` has no option --damping; sliding has it"),
+        ("simulate frozen --damping 1", "misplaced options: --damping (applied to mjbeer simulate frozen)"),
         ("sweep sliding --damping 0,-1", "damping[1]: damping must be 0 or greater [N m s], got -1.0"),
         ("view liquid --liquid hony", "'glycerol', 'honey'; got 'hony': did you mean 'honey'?"),
         ("simulate liquid --viscosity -1", "viscosity must be greater than 0 [m^2/s], got -1.0"),

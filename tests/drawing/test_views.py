@@ -12,7 +12,7 @@ import mjbeer
 from mjbeer import MjbeerError, exact, frozen, simulate, sliding
 from mjbeer.drawing.overlay.charts import charts
 from mjbeer.drawing.overlay.look import Look
-from mjbeer.exceptions import OutputError
+from mjbeer.exceptions import OutputError, ParameterError
 
 
 def test_a_plot_shows_the_motion_over_theory() -> None:
@@ -69,14 +69,33 @@ def test_what_cannot_happen_is_dotted() -> None:
     plt.close(above.figure)
 
 
+def test_a_plot_shows_what_is_asked_for() -> None:
+    run = simulate(frozen(), 0.2, 1.0)
+    (only,) = run.plot("phi")
+    assert (only.get_ylabel(), only.get_xlabel()) == ("φ [°]", "time [s]")
+    rate, energy = run.plot("phi_dot", "energy", theory=True)
+    assert np.array_equal(rate.get_lines()[1].get_ydata(), np.degrees(run.phi_dot))
+    assert np.array_equal(energy.get_lines()[1].get_ydata(), run.energy)
+    plt.close("all")
+    with pytest.raises(ParameterError, match=r"quantity must be one of 'phi', 'u', .*'energy'; got 'ph': did you mean"):
+        run.plot("ph")
+    with pytest.raises(ParameterError, match="quantity must be one of 'phi', 'u'"):
+        run.plot(True)
+
+
 @pytest.mark.draws
 @pytest.mark.slow
-def test_a_video_is_shown_and_saved(tmp_path: pathlib.Path) -> None:
-    video = simulate(frozen(), 0.2, 1.0).video(progress=False, width=320, height=180)
+def test_a_video_is_shown_and_written(tmp_path: pathlib.Path) -> None:
+    run = simulate(frozen(), 0.2, 1.0)
+    video = run.video(progress=False, width=320, height=180)
     assert video.data[4:8] == b"ftyp"
     assert 'width="320"' in video._repr_html_()
-    video.save(tmp_path / "run.mp4")
-    assert (tmp_path / "run.mp4").read_bytes() == video.data
+    assert run.video(tmp_path / "run.mp4", 320, 180, progress=False).data == (tmp_path / "run.mp4").read_bytes()
+
+
+def test_a_video_is_no_file_of_another_kind(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(ParameterError, match=r"the file's name must end in \.mp4, got"):
+        simulate(frozen(), 0.2, 1.0).video(tmp_path / "run.gif")
 
 
 def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,7 +119,7 @@ def test_a_notebook_shows_whether_a_run_is_trusted() -> None:
 
 def test_a_notebook_shows_what_brakes_a_scene() -> None:
     shown = sliding(damping=1e-3, drag=2e-4)._repr_html_()
-    assert "<th>torque of the damping</th><td>0.001 N m s w</td>" in shown
+    assert "<th>damping torque over slip rate</th><td>0.001 N m s</td>" in shown
     assert "<th>drag of the air</th><td>0.0002 kg/m</td>" in shown
     assert "damping" not in sliding()._repr_html_()
 

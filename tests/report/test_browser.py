@@ -128,6 +128,27 @@ def test_a_map_tells_its_outcome(visit: Visit) -> None:
     )
 
 
+def test_a_plot_is_drawn_once(visit: Visit) -> None:
+    visit.show("[data-plot=precision]")
+    visit.page.evaluate(
+        "window.changes = 0; new MutationObserver(all => { changes += all.length; }).observe("
+        "document.querySelector('[data-plot=precision]'), {subtree: true, childList: true, attributes: true})"
+    )
+    visit.show("[data-plot=stability-solref-0]")
+    visit.page.wait_for_timeout(300)  # what Vega draws, it draws at the next frames
+    assert visit.page.evaluate("changes") == 0
+
+
+def test_without_javascript_no_heading_stands_over_nothing(chromium: Browser, address: str) -> None:
+    context = chromium.new_context(java_script_enabled=False)
+    read = context.new_page()
+    read.goto(address)
+    assert not [heading for heading in read.locator("h4").all() if heading.is_visible()]
+    assert not read.locator(".controls").is_visible()
+    assert read.locator("#stability .absent").is_visible()
+    context.close()
+
+
 def test_the_keyboard_reaches_the_content_and_the_controls(visit: Visit) -> None:
     visit.page.keyboard.press("Tab")
     assert visit.page.evaluate("document.activeElement.className") == "skip"

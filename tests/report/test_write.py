@@ -28,7 +28,7 @@ def test_the_exit_status_of_validate(
     error: float, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
-    assert main(["validate"]) == status
+    assert main(["validate", "--table"]) == status
     out, err = capsys.readouterr()
     heading, *lines = (line.split("\t") for line in out.splitlines())
     rows = [dict(zip(heading, line, strict=True)) for line in lines]
@@ -41,7 +41,7 @@ def test_the_exit_status_of_validate(
     assert re.fullmatch(re.escape(failure) + SENTENCE.format(2 - status, 2, 0, 0), err)
 
 
-@pytest.mark.parametrize("options", [[], ["--verbose"], ["--json"]])
+@pytest.mark.parametrize("options", [[], ["--table"], ["--json"]])
 @pytest.mark.parametrize("eye", [True, False])
 def test_a_failure_is_told_whatever_is_asked_for(
     options: list[str], eye: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -57,14 +57,13 @@ def test_a_failure_is_told_whatever_is_asked_for(
         "FAILED: other a stub (none): error nan, at most 1.0e-03",
     ]
     assert re.fullmatch(SENTENCE.format(1, 2, 1, 2), last + "\n")
-    assert ("│ first" in out) == (eye and options == ["--verbose"])
-    assert (out == "") == (eye and not options)
-    assert ("\tfirst\t" in out) == (not eye and options != ["--json"])
+    assert ("│ first" in out) == (eye and options == ["--table"])
+    assert (out == "") == (not options)
+    assert ("\tfirst\t" in out) == (not eye and options == ["--table"])
 
 
-def test_a_terminal_has_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_passes_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=1e-5)
-    monkeypatch.setattr(terminal, "is_read_by_eye", lambda: True)
     assert main(["validate"]) == 0
     out, err = capsys.readouterr()
     assert out == ""
@@ -92,7 +91,7 @@ def test_an_equation_that_fails_is_in_the_exit_status(
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5)
     stubs.audited(monkeypatch, good=1e-6, other=error)
-    assert main(["validate"]) == status
+    assert main(["validate", "--table"]) == status
     out, err = capsys.readouterr()
     (other,) = (line for line in out.splitlines() if "other" in line)
     assert ("\tFAIL\t" in other) == ("FAILED: other" in err) == (status == 1)
@@ -193,7 +192,7 @@ def test_a_failed_check_is_in_the_report_and_in_its_exit_status(
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=2e-3)
     stubs.draw(monkeypatch)
-    assert main(["report", "--output", str(tmp_path), "--verbose"]) == 1
+    assert main(["report", "--output", str(tmp_path), "--table"]) == 1
     read = Page.of((tmp_path / "index.html").read_text())
     assert "1 of 2 checks and 0 of 0 rows of the audit passed." in [element.text for element in read.all("p")]
     assert "2.0e-03 FAIL" in [element.text for element in read.all("td")]

@@ -3,19 +3,18 @@
 import contextlib
 import functools
 import io
+import re
 import signal
 import sys
 import warnings
 from collections.abc import Callable, Sequence
-from itertools import dropwhile, takewhile
 from types import FrameType
-from typing import Any, NoReturn, cast, get_args
+from typing import Any, NoReturn, cast
 
 import tyro
 from rich.text import Text
 
 import mjbeer
-from mjbeer.cli import spelling
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.cli.scenes import Scenes
 from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Validate
@@ -30,8 +29,6 @@ _ERROR = 2
 Command = (
     Simulate | Render | View | Export | Scenes | Sweep | Validate | Benchmark | Advise | Stability | Report | Paper
 )
-COMMANDS: dict[str, type[Any]] = {command.__name__.lower(): command for command in get_args(Command)}
-"""The classes of the commands, by the names that they have on the command line."""
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options, `mjbeer --version` the version."""
 _STYLE = (
@@ -99,7 +96,6 @@ def parse(words: Sequence[str]) -> Command:
       ParameterError: if the words are not understood.
       SystemExit: after --help.
     """
-    spelling.check(words, COMMANDS)
     told = io.StringIO()
     try:
         with contextlib.redirect_stderr(told):
@@ -108,13 +104,22 @@ def parse(words: Sequence[str]) -> Command:
         if ended.code:
             raise ParameterError(_sentence(told.getvalue())) from None
         raise
+    except ImportError:  # tyro completes for any other shell with a package that is not there
+        raise ParameterError("words are completed in bash, zsh and fish") from None
 
 
 def _sentence(box: str) -> str:
-    """Return the first part of an error that tyro drew: the rows between the title and the next ruled or empty line."""
+    """Return in one line an error that tyro drew: a title, and parts between ruled lines.
+
+    The first part says what is wrong. The second may have what was meant: commands, or options with where they are.
+    """
     _, *rows = (row.strip("│ ") for row in Text.from_ansi(box).plain.splitlines())
-    return " ".join(takewhile(_has_words, dropwhile(lambda row: not _has_words(row), rows)))
-
-
-def _has_words(row: str) -> bool:
-    return bool(row.strip("─-╰╯"))
+    what, meant, *_ = [*filter(None, map(str.strip, re.split(r"(?m)^[─╰╯-]+$", "\n".join(rows)))), ""]
+    told, meant_in_line = " ".join(what.split("\n\n")[0].split()), " ".join(meant.split())
+    options = dict.fromkeys(re.findall(r"(?m)^--(?!help)\S+", meant))
+    if meant.startswith("Available"):
+        return f"{told}; {meant_in_line.lower()}"
+    if options and next(iter(options)) not in told.replace("=", " ").split():
+        return f"{told}; did you mean {' or '.join(options)}?"
+    owners = dict.fromkeys(re.findall(r" in (mjbeer[ \w]+?)(?: \(other subcommands\))? --help", meant_in_line))
+    return f"{told}; it belongs to {' or '.join(owners)}" if options else told

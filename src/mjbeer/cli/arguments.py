@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import Field, dataclass
+from dataclasses import KW_ONLY, Field, dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
 
 import tyro
@@ -44,6 +44,20 @@ def one_of(name: str, allowed: Iterable[str]) -> object:
         is_instance=lambda value: isinstance(value, str),
         str_from_instance=lambda value: [value],
     )
+
+
+_SHARES = (1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2)
+"""Shares of pi at which an angle looks like radians."""
+
+
+def degrees(name: str, value: float) -> float:
+    """Convert an angle from degrees to radians as `radians` does, and say so if it looks like radians, as 3.14159."""
+    _, _, decimals = str(abs(value)).partition(".")
+    if len(decimals) >= 3 and any(abs(abs(value) - share * math.pi) < 1e-3 for share in _SHARES):
+        say(
+            f"note: {name} = {value:g} is taken as degrees; in degrees, that many radians are {math.degrees(value):.6g}"
+        )
+    return radians(name, value)
 
 
 def radians(name: str, value: float, unit: str = "degrees") -> float:
@@ -229,14 +243,30 @@ SCENES: dict[str, type[Common]] = {scene.__name__.lower(): scene for scene in ge
 
 
 @dataclass(frozen=True)
-class Motion:
-    """The options of a simulation: the scene, the start of its motion, and how it is integrated."""
+class Start:
+    """The options of a motion's start: the scene and its initial state."""
 
     scene: AnyScene
+    _: KW_ONLY
     phi0: float = 60.0
-    """Initial phi: the angle of the beer's surface to the incline, as in the paper's Fig. 3 [degrees]."""
+    """Initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline, 180 where it
+    is farthest, and growing as the load turns with a can that rolls downhill."""
     phi_dot0: float = 0.0
     """Initial rate of change of phi [degrees/s]."""
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """The initial phi0 [rad] and phi_dot0 [rad/s]."""
+        return {
+            "phi0": degrees("phi0", self.phi0),
+            "phi_dot0": radians("phi_dot0", self.phi_dot0, "degrees/s"),
+        }
+
+
+@dataclass(frozen=True)
+class Motion(Start):
+    """The options of a simulation: the scene, the start of its motion, and how it is integrated."""
+
     duration: float = 2.0
     """Duration of the motion [s]."""
     rolling: Rolling = "reduced"
@@ -261,8 +291,7 @@ class Motion:
         return simulate(
             self.scene.told_scene(),
             self.duration,
-            phi0=radians("phi0", self.phi0),
-            phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),
+            **self.state,
             rolling=self.rolling,
             integrator=self.integrator,
             timestep=self.timestep,

@@ -11,10 +11,14 @@ import numpy as np
 
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
+from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import damping_in_words
+
+_BALANCED = 1e-6
+"""Share of the kinetic energy up to which the swing's may be rounding: a million times that of a double or more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +62,7 @@ class Figures:
             "samples": f"{len(trajectory.time)} to t = {trajectory.time[-1]:.6g} s",
             "phi at the end": f"{math.degrees(trajectory.phi[-1]):.9g} degrees",
             "u at the end": f"{trajectory.u[-1]:.9g} m",
-            "energy drift": f"{trajectory.energy_drift:.2e} of the swing's largest kinetic energy",
+            "energy drift": "{:.2e} of the {}".format(*_drift(trajectory)),
             "slip, largest and final": f"{np.abs(slip).max():.2e}, {slip[-1]:.2e} radii",
             "lift, lowest and highest": f"{lift.min():.2e}, {lift.max():.2e} radii",
             "normal force needed": f"{normal.min():.4g} to {normal.max():.4g} N",
@@ -71,6 +75,7 @@ class Figures:
             facts |= _in_the_end(trajectory.scene)
         if trajectory.error_estimate is not None:
             facts["estimated error of phi and u/a"] = f"{trajectory.error_estimate:.2e} rad"
+        facts["trusted"] = "yes" if trajectory.trusted else "no"
         return "".join(f"{name:<30}  {value}\n" for name, value in facts.items())
 
     def json(self) -> str:
@@ -83,7 +88,7 @@ class Figures:
             "end [s]": trajectory.time[-1],
             "phi at the end [degrees]": math.degrees(trajectory.phi[-1]),
             "u at the end [m]": trajectory.u[-1],
-            "energy drift": trajectory.energy_drift,
+            "energy drift": _drift(trajectory)[0],
             "largest slip [radii]": np.abs(slip).max(),
             "final slip [radii]": slip[-1],
             "lowest lift [radii]": lift.min(),
@@ -109,9 +114,23 @@ class Figures:
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
+def _drift(trajectory: Trajectory) -> tuple[float, str]:
+    """Return the largest change of energy over another energy, and what that is.
+
+    A balanced load, as in a full can, does not swing by itself, and its swing's energy may be nothing but rounding. The
+    scale is then the largest kinetic energy of the whole motion: from rest, what gravity has given, m g u sin(alpha).
+    """
+    scene, record = trajectory.scene, trajectory.record
+    kinetic = float(kinetic_energy(scene, trajectory).max())
+    if scene.dissipates or scene.load.offset or record.swing > _BALANCED * kinetic:
+        return trajectory.energy_drift, "swing's largest kinetic energy"
+    change = float(np.abs(trajectory.energy - trajectory.energy[0]).max())
+    return change / kinetic if kinetic else 0.0, "largest kinetic energy"
+
+
 def _in_the_end(scene: Scene) -> dict[str, str]:
     """Return by name what takes energy from a motion, and the steady rolling to which it may come."""
-    facts = {"torque at the slip rate w": damping_in_words(scene)}
+    facts = {"damping torque over slip rate": damping_in_words(scene)}
     if scene.drag:
         facts["drag of the air"] = f"{scene.drag:.4g} kg/m"
     try:

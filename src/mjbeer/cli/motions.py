@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from mjbeer.cli.arguments import AnyScene, Motion, if_given, radians
+from mjbeer.cli.arguments import Motion, Start, if_given
 from mjbeer.drawing.world.cameras import Camera
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import MujocoIntegrator, Rolling
@@ -95,16 +95,11 @@ class Render(Motion):
 
 
 @dataclass(frozen=True)
-class Export:
+class Export(Start):
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
 
-    scene: AnyScene
     output: pathlib.Path
     """MJCF file to write, whose name ends in .xml; its keyframe "start" is the initial state."""
-    phi0: float = 60.0
-    """Initial phi: the angle of the beer's surface to the incline, as in the paper's Fig. 3 [degrees]."""
-    phi_dot0: float = 0.0
-    """Initial rate of change of phi [degrees/s]."""
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction. The reduced model of a
     frozen load has phi as its only coordinate, so MuJoCo shows it turning in place."""
@@ -126,15 +121,15 @@ class Export:
         export(
             self.scene.told_scene(),
             self.output,
-            phi0=radians("phi0", self.phi0),
-            phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),
+            **self.state,
             rolling=self.rolling,
             integrator=self.integrator,
             timestep=self.timestep,
             friction=self.friction,
             portable=self.portable,
         )
-        say(f"wrote {self.output}")
+        start = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
+        say(f"wrote {self.output}; {start}")
         return 0
 
 
@@ -143,9 +138,12 @@ def _warn_of_turns(trajectory: "Trajectory", speed: float) -> None:
     fastest = max(float(np.abs(rate).max()) for rate in (trajectory.roll_dot, trajectory.phi_dot))
     turn = fastest * speed / _FPS
     if turn > _TURN:
+        slower = speed * _TURN / turn
+        digit = 10.0 ** math.floor(math.log10(slower))
+        advice = math.floor(slower / digit) * digit  # never rounded up to the speed itself
         say(
             f"note: can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture, which deceives "
-            f"the eye; --speed {speed * _TURN / turn:.1g} shows it better",
+            f"the eye; --speed {advice:.1g} shows it better",
             "yellow",
         )
 

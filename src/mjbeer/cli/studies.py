@@ -24,8 +24,8 @@ _FAILED = 1
 class Validate:
     """Check models and paper against exact theory; exit status 1 if a check fails."""
 
-    verbose: bool = False
-    """Print a table of every row, not only a line for each that failed."""
+    table: bool = False
+    """Print every row, not only those that failed."""
     json: bool = False
     """Print the results as JSON."""
 
@@ -38,10 +38,10 @@ class Validate:
         validation = validate(STDERR)
         if self.json:
             terminal.write(tables.to_json(validation))
-        elif not terminal.is_read_by_eye():
-            show(tables.rows(validation))
-        elif self.verbose:
+        elif self.table and terminal.is_read_by_eye():
             show(tables.validation(validation.results), tables.audit(validation.findings))
+        elif self.table:
+            show(tables.rows(validation))
         return _conclude(validation, began)
 
 
@@ -56,7 +56,7 @@ class Report:
     """Folder to write to."""
     quick: bool = False
     """Draw smaller videos with fewer frames, and no films for the paper's scenarios."""
-    verbose: bool = False
+    table: bool = False
     """Also print the tables of the validation, which are on the page."""
 
     def run(self) -> int:
@@ -66,7 +66,7 @@ class Report:
 
         began = time.perf_counter()
         validation, not_drawn = write(self.output, self.quick, STDERR)
-        if self.verbose:
+        if self.table:
             show(tables.validation(validation.results), tables.audit(validation.findings))
         if not_drawn:
             say(not_drawn, "yellow")

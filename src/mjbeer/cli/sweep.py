@@ -5,6 +5,7 @@ import dataclasses
 import functools
 import operator
 import pathlib
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, cast
 
@@ -12,7 +13,7 @@ import numpy as np
 import tyro
 
 from mjbeer import require
-from mjbeer.cli.arguments import SCENES, if_given, otherwise
+from mjbeer.cli.arguments import SCENES, degrees, if_given, otherwise
 from mjbeer.cli.scenes import documented
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Integrator, Rolling
@@ -29,8 +30,6 @@ _MOST = 100_000_000
 """Largest number of values of an option: they take a gigabyte."""
 PLOTS = (".png", ".svg")
 ENDINGS = (*PLOTS, ".csv", ".npz", ".nc")
-_SHOWN = 10
-"""Number of failed scenes that are named."""
 Name = Literal[
     "phi", "u", "phi_dot", "u_dot", "error", "lowest_normal", "friction_needed", "parting_time", "energy_drift",
     "trusted", "status", "period",
@@ -107,7 +106,7 @@ class Sweep:
 
     scene: SweptScene
     phi0: _NUMBERS = (60.0,)
-    """Initial phi: the angle of the beer's surface to the incline, as in the paper's Fig. 3 [degrees]."""
+    """Initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline."""
     phi_dot0: _NUMBERS = (0.0,)
     """Initial rate of change of phi [degrees/s]."""
     duration: float = 2.0
@@ -147,7 +146,8 @@ class Sweep:
                 raise ParameterError(
                     f"incline{_place(index, inclines)} must be between -90 and 90 [degrees], got {incline!r}"
                 )
-        angles = {"incline": _radians(inclines), "phi0": _radians(self.phi0), "phi_dot0": _radians(self.phi_dot0)}
+        phi0 = degrees("phi0", self.phi0[0]) if len(self.phi0) == 1 else _radians(self.phi0)
+        angles: dict[str, Any] = {"incline": _radians(inclines), "phi0": phi0, "phi_dot0": _radians(self.phi_dot0)}
         others = {option: _one_or_more(value) for option, value in chosen.items()}
         varied = [each for each in (*angles.values(), *others.values()) if isinstance(each, np.ndarray)]
         if self.output.suffix in PLOTS and len(varied) not in (1, 2):
@@ -176,10 +176,12 @@ class Sweep:
                 cast("Figure", result.plot(self.quantity).figure).savefig(temporary, facecolor="white", dpi=150)
             elif temporary:
                 result.save(temporary)
-        for failure in result.failed[:_SHOWN]:
-            say(f"failed: {_in_degrees(result, failure.index)}: {failure.reason}", "yellow")
-        if len(result.failed) > _SHOWN:
-            say(f"failed: {len(result.failed) - _SHOWN} more", "yellow")
+        alike: dict[str, list[Any]] = {}
+        for failure in result.failed:  # reasons that differ in nothing but numbers are one
+            alike.setdefault(re.sub(r"\d[\d.e+-]*", "", failure.reason), []).append(failure)
+        for first, *others in sorted(alike.values(), key=len, reverse=True):
+            place = _in_degrees(result, first.index)
+            say(f"failed: {1 + len(others)} scene{'s' * bool(others)}, the first at {place}: {first.reason}", "yellow")
         say(f"wrote {self.output}")
         terminal.write(f"{result.counts}\n")
         return 0

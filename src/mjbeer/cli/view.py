@@ -2,22 +2,17 @@
 
 from dataclasses import dataclass
 
-from mjbeer.cli.arguments import AnyScene, radians
+from mjbeer.cli.arguments import Start
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 
 
 @dataclass(frozen=True)
-class View:
+class View(Start):
     """Open a scene in MuJoCo's viewer, paused at its start.
 
     The space bar runs and pauses it, backspace goes back to the start, and F4 plots u, phi and the other sensors.
     """
 
-    scene: AnyScene
-    phi0: float = 60.0
-    """Initial phi: the angle of the beer's surface to the incline, as in the paper's Fig. 3 [degrees]."""
-    phi_dot0: float = 0.0
-    """Initial rate of change of phi [degrees/s]."""
     rolling: Rolling | None = None
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction. If not given, it is a
     joint equality, or reduced coordinates for a massless can with a sliding load. The reduced model of a frozen load
@@ -37,8 +32,7 @@ class View:
 
         view(
             self.scene.told_scene(),
-            phi0=radians("phi0", self.phi0),
-            phi_dot0=radians("phi_dot0", self.phi_dot0, "degrees/s"),
+            **self.state,
             rolling=self.rolling,
             integrator=self.integrator,
             timestep=self.timestep,

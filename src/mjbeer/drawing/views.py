@@ -29,6 +29,11 @@ if TYPE_CHECKING:
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
+_LABELS = {
+    "phi": "φ [°]", "u": "u [m]", "phi_dot": "dφ/dt [°/s]", "u_dot": "du/dt [m/s]", "roll": "roll [°]",
+    "lift": "lift [m]", "slip": "slip [m]", "energy": "energy [J]",
+}  # fmt: skip
+"""Labels of the quantities that a plot can show, by their names in a trajectory."""
 
 
 def columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
@@ -80,42 +85,55 @@ def dataframe(trajectory: Trajectory) -> Any:
     return pd.DataFrame(columns(trajectory))
 
 
-def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
-    """Return the axes of a new figure that shows φ [degrees] above and u [m] below, over time [s].
+def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> "tuple[Axes, ...]":
+    """Return the axes of a new figure that shows quantities over time [s], one below the other: phi and u by default.
 
     With `theory`, the exact motion from the same start is drawn beneath as a wide grey line. A motion that rolls on
     where a can would leave the incline is dotted from there on.
+
+    Raises:
+      ParameterError: if there is no quantity of a name; the message lists the names.
     """
     import matplotlib as mpl
     from matplotlib import pyplot as plt
 
     from mjbeer.output.plots import SIMULATED, STYLE, THEORY, UNPHYSICAL
 
+    names = names or ("phi", "u")
+    for name in names:
+        require.choice("quantity", name, _LABELS)
     require.boolean("theory", theory)
     scene, time = trajectory.scene, trajectory.time
     # A notebook makes matplotlib interactive with the first figure, which the context would undo at its end.
-    figure = plt.figure(figsize=(8, 5), layout="constrained")
+    figure = plt.figure(figsize=(8, max(3.5, 2.5 * len(names))), layout="constrained")
     with mpl.rc_context(STYLE):
-        above, below = figure.subplots(2, 1, sharex=True)
+        panels = tuple(figure.subplots(len(names), 1, sharex=True, squeeze=False).flat)
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
             start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
             truth = exact(scene, dense, **start, many_turns=True)
-            above.plot(dense, np.degrees(truth.phi), label="exact theory", **THEORY)
-            below.plot(dense, truth.u, **THEORY)
-        name = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
+            for axes, name in zip(panels, names, strict=True):
+                axes.plot(dense, _values(truth, name), label="exact theory", **THEORY)
+        source = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
         parts = math.inf if trajectory.rolling == "contact" else trajectory.rolls_until()
         rolls, pulled = time <= parts, time >= parts
-        for axes, values in ((above, np.degrees(trajectory.phi)), (below, trajectory.u)):
-            axes.plot(time[rolls], values[rolls], label=name, **SIMULATED)
+        for axes, name in zip(panels, names, strict=True):
+            values = _values(trajectory, name)
+            axes.plot(time[rolls], values[rolls], label=source, **SIMULATED)
             if pulled.any():
                 axes.plot(time[pulled], values[pulled], label="if the incline could pull the can", **UNPHYSICAL)
-        above.set_ylabel("φ [°]")
-        below.set(xlabel="time [s]", ylabel="u [m]")
-        if len(above.get_lines()) > 1:
-            above.legend()
+            axes.set_ylabel(_LABELS[name])
+        panels[-1].set_xlabel("time [s]")
+        if len(panels[0].get_lines()) > 1:
+            panels[0].legend()
         figure.suptitle(in_words(scene), fontsize=STYLE["axes.titlesize"])
-    return above, below
+    return panels
+
+
+def _values(trajectory: Trajectory, name: str) -> np.ndarray:
+    """Return a quantity of a trajectory at each sample, in the unit of its label."""
+    values = getattr(trajectory, name)
+    return np.degrees(values) if "°" in _LABELS[name] else values
 
 
 @dataclass(frozen=True)
@@ -129,15 +147,6 @@ class Video:
     height: int
     """Height [pixels]."""
 
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the video as a file.
-
-        Raises:
-          OutputError: if the file cannot be written.
-        """
-        with files.whole(require.path(path)) as temporary:
-            temporary.write_bytes(self.data)
-
     def _repr_html_(self) -> str:
         """Return the video as HTML, with nothing that has to be fetched."""
         import mediapy
@@ -146,22 +155,30 @@ class Video:
 
 
 def video(
-    trajectory: Trajectory, width: int, height: int, fps: float, speed: float, camera: "Camera", progress: bool
+    trajectory: Trajectory,
+    path: str | os.PathLike[str] | None,
+    width: int,
+    height: int,
+    fps: float,
+    speed: float,
+    camera: "Camera",
+    progress: bool,
 ) -> Video:
-    """Return a video of a trajectory; the arguments are those of `mjbeer.render`.
+    """Return a video of a trajectory, and write it to `path` if there is one, as `mjbeer.render` does.
 
     Raises:
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
+      OutputError: if the file cannot be written.
     """
     import tempfile
 
     from mjbeer.drawing.video import render
 
     with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder) / "trajectory.mp4"
-        render(trajectory, path, width, height, fps=fps, speed=speed, camera=camera, progress=progress)
-        return Video(path.read_bytes(), int(width), int(height))
+        target = pathlib.Path(folder) / "trajectory.mp4" if path is None else require.path(path)
+        render(trajectory, target, width, height, fps=fps, speed=speed, camera=camera, progress=progress)
+        return Video(target.read_bytes(), int(width), int(height))
 
 
 def trajectory_html(trajectory: Trajectory) -> str:
@@ -194,7 +211,7 @@ def scene_html(scene: Scene) -> str:
         "gravity": f"{scene.gravity:.6g} m/s²",
     }
     if scene.dissipates:
-        rows["torque of the damping"] = damping_in_words(scene)
+        rows["damping torque over slip rate"] = damping_in_words(scene)
         rows["drag of the air"] = f"{scene.drag:.6g} kg/m"
     return _html(rows)
 

@@ -10,7 +10,7 @@ from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import portable as portability
 from mjbeer.model import same, setting
 from mjbeer.model.engine import library
-from mjbeer.model.present import present
+from mjbeer.model.present import START, present
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 
@@ -62,7 +62,8 @@ def export(
         softness = portability.softness(scene, rolling)
     made = setting.Setting(rolling, integrator, timestep, friction=friction, softness=softness)
     spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
-    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r} "  # replaces the template's
+    # It replaces the template's.
+    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
     folder = pathlib.Path(spec.modelfiledir).resolve()
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""

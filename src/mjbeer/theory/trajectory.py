@@ -114,12 +114,15 @@ class Trajectory(Coordinates):
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
         return tuple(doubts(self.record, can_part=self.rolling == "contact"))
 
-    def plot(self, theory: bool = False) -> Any:
-        """Plot phi [degrees] and u [m] over time in a new figure, and return its two matplotlib axes.
+    def plot(self, *names: str, theory: bool = False) -> Any:
+        """Plot quantities, as "phi", "u" and "energy", in a new figure, and return the matplotlib axes of each.
 
-        With `theory`, the exact motion from the same start is drawn beneath.
+        Without names they are phi [degrees] and u [m]. With `theory`, the exact motion from the same start is beneath.
+
+        Raises:
+          ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        return _views().plot(self, theory)
+        return _views().plot(self, *names, theory=theory)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
@@ -139,6 +142,7 @@ class Trajectory(Coordinates):
 
     def video(
         self,
+        path: str | os.PathLike[str] | None = None,
         width: int = 640,
         height: int = 360,
         fps: float = 30,
@@ -146,13 +150,16 @@ class Trajectory(Coordinates):
         camera: str = "auto",
         progress: bool = True,
     ) -> Any:
-        """Return a video of the motion, which a notebook shows; the arguments are those of `mjbeer.render`.
+        """Return a video of the motion, which a notebook shows, and write it to `path` (.mp4) if there is one.
+
+        The other arguments are those of `mjbeer.render`.
 
         Raises:
           ParameterError: if an argument is not allowed.
           RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
+          OutputError: if the file cannot be written.
         """
-        return _views().video(self, width, height, fps, speed, camera, progress)
+        return _views().video(self, path, width, height, fps, speed, camera, progress)
 
     def __repr__(self) -> str:
         """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""

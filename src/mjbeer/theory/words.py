@@ -31,8 +31,8 @@ def in_degrees(angle: float) -> str:
 
 
 def damping_in_words(scene: Scene) -> str:
-    """Return the torque between can and load, w being their slip rate, as "0.001 N m s w"; "0" if there is none."""
-    units = ("N m s w", "N m s^2 w|w|", "N m s^3 w^3")
+    """Return the torque between can and load over their slip rate w, as "0.001 N m s"; "0" if there is none."""
+    units = ("N m s", "N m s^2 |w|", "N m s^3 w^2")
     shares = zip(scene.damping_law.coefficients, units, strict=True)
     return " + ".join(f"{share:.4g} {unit}" for share, unit in shares if share) or "0"
 

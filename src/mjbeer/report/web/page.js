@@ -11,9 +11,7 @@ async function draw(place) {
   const options = { renderer: "svg", actions: false, config, tooltip: { theme: "page" } };
   views[name] = (await vegaEmbed(place, plots[name], options)).view;
   place.dataset.drawn = "";
-  if (name === "precision") addEventListener("resize", reach);
-reach();
-choose();
+  if (name === "precision") choose();
 }
 
 function choose() {

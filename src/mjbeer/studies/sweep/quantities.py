@@ -5,7 +5,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from mjbeer.exceptions import MjbeerError
 from mjbeer.simulation.run import Run
+
+_TURNS = 1.5
+"""Number of swings from rest in which there are three turning points behind the start."""
 
 
 @dataclass(frozen=True)
@@ -26,8 +30,20 @@ def _error(run: Run) -> float:
 
 
 def _period(run: Run) -> float:
-    run.scene.equilibrium()  # says it if there is none to swing about, where too few turning points would be named
-    return 2 * math.pi / run.frequency()
+    scene = run.scene
+    rest = scene.equilibrium()  # says it if there is none to swing about, where too few turning points would be named
+    try:
+        return 2 * math.pi / run.frequency()
+    except MjbeerError as error:
+        if scene.dissipates or run.phi_dot0:
+            raise
+        period = scene.period(math.remainder(run.phi0 - rest, 2 * math.pi))  # says it if it rolls on and does not swing
+        if run.time[-1] > _TURNS * period:
+            raise
+        raise MjbeerError(
+            f"only a longer duration has it: the swing takes {period:.4g} s, and {_TURNS:g} swings must end within "
+            f"{run.time[-1]:.6g} s"
+        ) from error
 
 
 ALWAYS: Mapping[str, Quantity] = MappingProxyType(
