@@ -168,10 +168,12 @@ def test_an_interrupted_study_goes_on(short: None, tmp_path: pathlib.Path, monke
 
         return stopping
 
+    (tmp_path / "summary.md").write_text("of another study")
     monkeypatch.setattr(run, "_climb", stop(3, climb))
     with pytest.raises(KeyboardInterrupt):
         run.conduct(["frozen"], tmp_path, False, quiet())
     monkeypatch.setattr(run, "_climb", climb)
+    assert not (tmp_path / "summary.md").exists()
     first = Benchmark.load(tmp_path / "study.json").points
     assert len({each.curve for each in first}) == 3
     monkeypatch.setattr(Rung, "seconds", stop(70, seconds))
