@@ -57,10 +57,12 @@ def start(
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
 
-        watch = threading.Timer(PATIENCE, end)
+        hung = threading.Event()
+        watch = threading.Timer(PATIENCE, lambda: (hung.set(), end()))
         watch.start()
         try:
             yield process
+            assert not hung.is_set(), "it hung, or left a process behind that held its standard streams open"
         finally:
             watch.cancel()
             end()
