@@ -3,16 +3,12 @@
 import os
 import pathlib
 import stat
-import subprocess
 import sys
-import time
 
 import pytest
 
 from mjbeer.cli.app import main
-from mjbeer.paper.stories.report import stories
-from mjbeer.studies.benchmark.points import Benchmark
-from tests.support.processes import SHORT, little_disk, run
+from tests.support.processes import run, run_with_little_disk
 
 pytestmark = pytest.mark.slow
 
@@ -29,32 +25,15 @@ linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's
     ],
 )
 def test_a_full_disk_leaves_the_old_file(words: tuple[str, ...], name: str, tmp_path: pathlib.Path) -> None:
+    """Once before with room enough, for Numba and matplotlib write caches the first time."""
     target = tmp_path / name
+    words = (*words, "--output", str(target))
+    assert main(words) == 0
     target.write_text("old")
-    status, _, err = run([*words, "--output", str(target)], preexec_fn=little_disk)
+    status, _, err = run_with_little_disk(words)
     assert (status, err) == (2, f"mjbeer: cannot write {target}: File too large\n")
     assert target.read_text() == "old"
     assert os.listdir(tmp_path) == [name]
-
-
-def test_a_full_disk_ends_the_stories_at_the_first_plot(tmp_path: pathlib.Path) -> None:
-    """Drawn once before, for matplotlib and numba write caches the first time."""
-    stories()[0].draw(tmp_path / "before" / "trivial")
-    folder = tmp_path / "paper"
-    folder.mkdir()
-    (folder / "stories.md").write_text("old")
-    status, _, err = run(["paper", "--output", str(folder)], preexec_fn=little_disk)
-    assert (status, err) == (2, f"mjbeer: cannot write {folder / 'letters.svg'}: File too large\n")
-    assert not os.listdir(folder)  # nor a summary of plots that are not there
-
-
-def test_a_study_that_cannot_be_saved_again_stays_as_it_was(tmp_path: pathlib.Path) -> None:
-    """The first ladders have been saved when the disk is full."""
-    status, _, err = run(["benchmark", "frozen", "--output", str(tmp_path)], SHORT, preexec_fn=little_disk)
-    assert status == 2
-    assert err.endswith(f"mjbeer: cannot write {tmp_path / 'study.json'}: File too large\n")
-    assert len({each.curve for each in Benchmark.load(tmp_path / "study.json").points}) >= 1
-    assert set(os.listdir(tmp_path)) == {".lock", "study.json"}
 
 
 @pytest.mark.parametrize("words", [("simulate", *FROZEN), ("export", "frozen"), ("render", *VIDEO)])
@@ -114,23 +93,3 @@ def test_a_reader_that_goes_away(words: tuple[str, ...]) -> None:
     finally:
         os.close(writer)
     assert (status, err) == (2, "mjbeer: cannot write to standard output: Broken pipe\n")
-
-
-def test_two_commands_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
-    """Each appears whole: what is there at the end is the one or the other."""
-    alone = []
-    for angle in ("20", "50"):
-        assert main(["simulate", *FROZEN, "--phi0", angle, "--output", str(tmp_path / "alone.csv")]) == 0
-        alone.append((tmp_path / "alone.csv").read_text())
-    (tmp_path / "alone.csv").unlink()
-    code = "import sys; from mjbeer.cli.app import main; [main() for _ in range(3)]"
-    words = ("simulate", *FROZEN, "--output", str(tmp_path / "same.csv"), "--phi0")
-    both = [subprocess.Popen([sys.executable, "-c", code, *words, angle], stdout=subprocess.DEVNULL,
-                             stderr=subprocess.DEVNULL) for angle in ("20", "50")]  # fmt: skip
-    seen = set()
-    while any(each.poll() is None for each in both):
-        if (tmp_path / "same.csv").exists():
-            seen.add((tmp_path / "same.csv").read_text())
-        time.sleep(1e-3)  # and leaves the processor to them
-    assert seen == set(alone)
-    assert os.listdir(tmp_path) == ["same.csv"]

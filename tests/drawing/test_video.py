@@ -7,7 +7,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import time
 import weakref
 from collections.abc import Iterator
 
@@ -189,11 +188,12 @@ def test_a_broken_ffmpeg_leaves_nothing_and_says_why(
 
 def test_what_ffmpeg_says_is_told_even_if_it_is_gone_at_the_end(ffmpeg, tmp_path: pathlib.Path) -> None:
     """So little is written that it waits in a buffer, and the pipe is found broken only when all is closed."""
-    ffmpeg("#!/bin/sh\necho out of tune >&2\nexit 3\n")
+    os.mkfifo(tmp_path / "pipe")
+    ffmpeg(f"#!/bin/sh\nexec 9> {tmp_path / 'pipe'}\necho out of tune >&2\nexit 3\n")
 
     def frames() -> Iterator[np.ndarray]:
         yield np.zeros((16, 16, 3), np.uint8)
-        time.sleep(0.5)
+        (tmp_path / "pipe").read_bytes()  # which ends when ffmpeg does
 
     with pytest.raises(RenderingError, match="out of tune"):
         encoder.encode(frames(), tmp_path / "can.mp4", 16, 16, 10)

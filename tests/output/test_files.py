@@ -12,14 +12,14 @@ from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
 from mjbeer.output import files
 from tests.support import stubs
-from tests.support.processes import interrupt, start
+from tests.support.processes import hear, interrupt, start
 
 HOLD = """
 import pathlib, sys, time
 from mjbeer.output import files
 with files.locked(pathlib.Path(sys.argv[1])):
     print("locked", flush=True)
-    time.sleep(60)
+    time.sleep(3600)
 """
 
 
@@ -38,6 +38,18 @@ def test_the_temporary_file_is_a_neighbour_with_the_same_suffix(tmp_path: pathli
         assert not (tmp_path / "film.mp4").exists()
         temporary.write_text("new")
     assert os.listdir(tmp_path) == ["film.mp4"]
+
+
+def test_two_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
+    """It is whole whenever it is looked at: the one, and then the other."""
+    target = tmp_path / "motion.csv"
+    with files.whole(target) as one:
+        with files.whole(target) as other:
+            one.write_text("one")
+            other.write_text("other")
+        assert target.read_text() == "other"
+    assert target.read_text() == "one"
+    assert os.listdir(tmp_path) == ["motion.csv"]
 
 
 @pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
@@ -142,13 +154,12 @@ def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
     stubs.benchmark(monkeypatch)
     monkeypatch.setattr("mjbeer.studies.stability.run.tasks", lambda quick: [])
     folder = tmp_path / "a" / "new"
-    holder = start([str(folder)], HOLD)
-    assert holder.stdout is not None
-    holder.stdout.readline()
-    assert main([command, "--output", str(folder)]) == 2
-    assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
-    assert os.listdir(folder) == [".lock"]
-    interrupt(holder, lambda: True, signal.SIGKILL)
+    with start([str(folder)], HOLD) as holder:
+        hear(holder, "locked")
+        assert main([command, "--output", str(folder)]) == 2
+        assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
+        assert os.listdir(folder) == [".lock"]
+        interrupt(holder, signal.SIGKILL)
     with files.locked(folder):
         pass
     with files.locked(folder):

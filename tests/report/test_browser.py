@@ -61,6 +61,7 @@ def visit(chromium: Browser, address: str, request: pytest.FixtureRequest) -> Ge
     context = chromium.new_context(
         viewport={"width": width, "height": 900}, color_scheme=colours, reduced_motion="reduce"
     )
+    context.set_default_timeout(600_000)  # only a guard: how long the machine takes is not tested
     visit = Visit(context.new_page())
     visit.page.on("request", lambda asked: visit.asked.append(asked.url))
     visit.page.on("console", lambda message: visit.said.append(message.text))
@@ -80,7 +81,7 @@ def test_every_film_plays(visit: Visit) -> None:
         film.scroll_into_view_if_needed()
         assert film.evaluate("film => film.paused")
         film.evaluate("film => { film.muted = true; film.play().catch(() => {}); }")  # it may never say that it cannot
-        visit.page.wait_for_function("film => film.currentTime > 0.2", arg=film.element_handle(), timeout=5000)
+        visit.page.wait_for_function("film => film.currentTime > 0.2", arg=film.element_handle())
         assert film.evaluate("film => [film.videoWidth, film.duration]") == [pages.SIZE[0], pytest.approx(1, abs=0.1)]
 
 

@@ -12,7 +12,7 @@ from nbclient import NotebookClient
 def execute(notebook: nbformat.NotebookNode, folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
     """Run the cells in a folder, to the first error, and return the outputs of the cells of code."""
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
-    client = NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(folder)}})
+    client = NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(folder)}})
     kernel = client.create_kernel_manager().kernel_spec
     assert kernel is not None
     kernel.argv[0] = sys.executable

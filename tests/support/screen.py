@@ -13,7 +13,7 @@ import numpy as np
 
 INSTALL = "apt-get install -y xvfb xdotool libgl1 libgl1-mesa-dri"
 _SIZE = 1280, 800
-_PATIENCE = 60
+_PATIENCE = 600
 
 
 def problem() -> str | None:

@@ -9,7 +9,7 @@ from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import milliseconds, setting
 from mjbeer.studies.cases import CASES, DURATION
 
-TOOLS = ("mjbeer", "MuJoCo", "MuJoCo as usually written", "SciPy", "heyoka", "EXUDYN")
+TOOLS = ("mjbeer", "MuJoCo", "MuJoCo as usually written", "SciPy", "heyoka")
 """The tools that have a colour each; every point belongs to one of them."""
 _BY_HAND = "equations by hand"
 _ROLLINGS = (*ROLLINGS, _BY_HAND)

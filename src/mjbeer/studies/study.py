@@ -14,7 +14,7 @@ from rich.console import Console
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 
-_PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka", "exudyn")
+_PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
 def machine() -> dict[str, Any]:

@@ -148,7 +148,7 @@ def test_other_kinds_of_numbers(scene: Scene) -> None:
 
 
 def test_equations_import_no_simulator_and_no_solver() -> None:
-    names = {"mujoco", "scipy", "numba", "heyoka", "exudyn"}
+    names = {"mujoco", "scipy", "numba", "heyoka"}
     code = f"import sys, mjbeer.studies.benchmark.peers.equations; print(sorted({names} & set(sys.modules)))"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (ran.stdout.strip(), ran.stderr) == ("[]", "")

@@ -256,25 +256,35 @@ def test_an_output_that_cannot_be_written_is_refused_before_anything_runs(
     assert not ran
 
 
+class Busy(Interrupting):
+    """Does some chunks at once; those after them wait for a worker."""
+
+    def __init__(self, free: int) -> None:
+        super().__init__(free)
+        self.waiting: list[Future[Any]] = []
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        if self.left:
+            return super().submit(function, *arguments, **named)
+        self.waiting.append(Future())
+        return self.waiting[-1]
+
+
 def test_an_interruption_between_two_chunks_leaves_no_work_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Chunks that wait for a thread are given up, and what was measured is not lost."""
+    """Chunks that wait for a worker are given up."""
     monkeypatch.setattr(chunks, "_FIRST", 2)
     monkeypatch.setattr(chunks, "_CHUNK", 1e-9)  # then of one scene each, all of which are handed out
-    started, measure, percent = [], chunks.measure, iter(range(100))
-
-    def counting(*arguments: Any) -> work.Measured:
-        started.append(arguments)
-        return measure(*arguments)
+    executor, percent = Busy(10), iter(range(100))
 
     def interrupt(_: str) -> None:
         if next(percent) == 5:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(chunks, "measure", counting)
     monkeypatch.setattr(run, "progress_bar", lambda *_: contextlib.nullcontext(interrupt))
     with pytest.raises(KeyboardInterrupt):
-        mjbeer.sweep(sliding, 0.5, 1.0, tolerance=1e-6, fill=np.linspace(0.1, 0.9, 90))
-    assert len(started) < 45
+        mjbeer.sweep(sliding, 0.5, 1.0, tolerance=1e-6, fill=np.linspace(0.1, 0.9, 90), executor=executor)
+    assert len(executor.waiting) > 50
+    assert all(each.cancelled() for each in executor.waiting)
 
 
 def test_what_goes_wrong_inside_of_a_run_is_listed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,13 +1,14 @@
 """Lines, arrows and texts drawn over a picture, with smooth edges."""
 
 import math
+import pathlib
 from collections.abc import Sequence
 from functools import cache, lru_cache
 
 import numpy as np
+from matplotlib import get_data_path
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_rgb
-from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 from PIL import Image, ImageDraw, ImageFont
@@ -174,5 +175,7 @@ def _letters(words: str, size: int, bold: bool, edge: int) -> np.ndarray:
 
 @cache
 def _font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
-    """Return matplotlib's own font, which is the same everywhere and has the Greek letters."""
-    return ImageFont.truetype(findfont(FontProperties(weight="bold" if bold else "normal")), size)
+    """Return the font that comes with matplotlib, by its path: of fonts of that name a system may have another."""
+    path = pathlib.Path(get_data_path()) / "fonts" / "ttf" / ("DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")
+    # Pillow's other layout needs the system's FriBiDi, and sets letters elsewhere; where that is absent, it falls back.
+    return ImageFont.truetype(path, size, layout_engine=ImageFont.Layout.BASIC)

@@ -22,6 +22,7 @@ _STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.right": False,
     "axes.spines.top": False,
+    "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "grid.alpha": 0.35,
     "legend.frameon": False,
 }

@@ -45,7 +45,9 @@ class Rung:
         """A function that integrates the motion from its start at every call; only these calls are timed."""
         case = self.case
         if self.peer is not None:
-            return self.peer.prepare(case.scene, phi0=case.phi0, phi_dot0=0.0, times=case.times, knob=self.point.value)
+            return self.peer.prepare(
+                case.scene, phi0=case.phi0, phi_dot0=0.0, times=case.times, tolerance=self.point.value
+            )
         return partial(self.prepared.solve, self.prepared.start(case.phi0, 0.0), case.times)
 
     def measure(self, truth: Trajectory) -> None:

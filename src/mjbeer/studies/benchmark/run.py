@@ -11,7 +11,7 @@ from mjbeer.exceptions import MjbeerError
 from mjbeer.output.terminal import progress_bar
 from mjbeer.studies.benchmark import curves
 from mjbeer.studies.benchmark.ablation import ablate
-from mjbeer.studies.benchmark.curves import TIMESTEP, Curve, aligned
+from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve, aligned
 from mjbeer.studies.benchmark.measure import Rung
 from mjbeer.studies.benchmark.peers import with_scipy
 from mjbeer.studies.benchmark.peers.installed import absent, installed
@@ -74,8 +74,7 @@ def _curves(case: Case, peers: dict[str, Peer], quick: bool) -> dict[Curve, tupl
     for peer in peers.values():
         if peer in with_scipy.STIFF and not case.scene.dissipates:
             continue
-        knobs = peer.knobs[:6] if peer.knob == TIMESTEP else peer.knobs[::2]
-        ladders[Curve(peer.name, "", peer.knob)] = knobs if quick else peer.knobs
+        ladders[Curve(peer.name, "", TOLERANCE)] = peer.tolerances[:: 2 if quick else 1]
     return ladders
 
 

@@ -53,7 +53,7 @@ def cheapest(study: Benchmark, case: str) -> Table:
 
 def others(study: Benchmark) -> Table:
     """Return run times of RK4 and of other tools over that of the best reduced setting, at equal error."""
-    names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka", "EXUDYN"]
+    names = ["MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka"]
     rows = []
     for case in study.cases:
         points = study.of(case)

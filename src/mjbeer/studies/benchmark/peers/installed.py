@@ -2,13 +2,13 @@
 
 import importlib
 
-from mjbeer.studies.benchmark.peers import whole_call, with_exudyn, with_heyoka, with_scipy
+from mjbeer.studies.benchmark.peers import whole_call, with_heyoka, with_scipy
 from mjbeer.studies.benchmark.peers.peer import Peer
 
-PEERS = (with_scipy.DOP853, with_scipy.LSODA, with_scipy.ODEINT, with_heyoka.PEER, with_exudyn.PEER, whole_call.PEER)
+PEERS = (with_scipy.DOP853, with_scipy.LSODA, with_scipy.ODEINT, with_heyoka.PEER, whole_call.PEER)
 """All peers, whether they can be imported here or not."""
-_OPTIONAL = {with_heyoka.PEER.name: "heyoka", with_exudyn.PEER.name: "exudyn"}
-"""The packages of the peers that are optional; in a checkout `pip install ".[peers]"` installs both."""
+_OPTIONAL = {with_heyoka.PEER.name: "heyoka"}
+"""The packages of the peers that are optional; in a checkout `pip install ".[peers]"` installs them."""
 
 
 def installed() -> list[Peer]:

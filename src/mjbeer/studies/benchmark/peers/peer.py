@@ -1,6 +1,6 @@
 """Peer: another tool that computes the motion of a scene, to be timed beside MuJoCo.
 
-SciPy and heyoka integrate equations of motion derived by hand; EXUDYN assembles its own from bodies and joints.
+SciPy and heyoka integrate equations of motion derived by hand.
 """
 
 import math
@@ -25,29 +25,25 @@ class Peer:
     """A tool that computes the motion of a scene, with the ladder of its accuracies."""
 
     name: str
-    knob: str
-    """What sets the accuracy: "tolerance" or "timestep"."""
-    unit: str
-    """Unit of the knob; a tolerance has none."""
-    knobs: tuple[float, ...]
-    """The ladder of tolerances or timesteps, finest last."""
+    tolerances: tuple[float, ...]
+    """Its ladder, finest last."""
     set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate] = field(repr=False)
     """The function that `prepare` calls with the arguments that it has checked."""
 
-    def prepare(self, scene: Scene, phi0: float, phi_dot0: float, times: ArrayLike, knob: float) -> Integrate:
+    def prepare(self, scene: Scene, phi0: float, phi_dot0: float, times: ArrayLike, tolerance: float) -> Integrate:
         """Set up a motion, and return a function that integrates it from its start at every call.
 
-        `phi0` [rad] and `phi_dot0` [rad/s] are the start, `times` [s] the samples, the first at 0, and `knob` is a
-        tolerance or a timestep, of `knobs` or any other. Equations, models and compilation are done here, so that only
-        calls of the function need be timed. It raises DivergenceError, with the tool's message, if the tool fails.
+        `phi0` [rad] and `phi_dot0` [rad/s] are the start, `times` [s] the samples, the first at 0, and `tolerance` is
+        one of `tolerances` or any other. Equations, models and compilation are done here, so that only calls of the
+        function need be timed. It raises DivergenceError, with the tool's message, if the tool fails.
 
         Raises:
-          ParameterError: if the start, the times or `knob` are not allowed, or are not possible with the tool.
+          ParameterError: if the start, the times or the tolerance are not allowed.
           UnsupportedError: if the tool has no model of the scene.
         """
         phi0, phi_dot0 = require.start(phi0, phi_dot0)
         times = _samples(times)
-        solve = self.set_up(scene, phi0, phi_dot0, times, require.positive(self.knob, knob, self.unit))
+        solve = self.set_up(scene, phi0, phi_dot0, times, require.positive("tolerance", tolerance))
 
         def integrate() -> Motion:
             phi, u = solve()

@@ -18,4 +18,4 @@ def _set_up(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, knob:
     return integrate
 
 
-PEER = Peer(name=NAME, knob="tolerance", unit="rad", knobs=decades(3, 12), set_up=_set_up)
+PEER = Peer(name=NAME, tolerances=decades(3, 12), set_up=_set_up)

@@ -55,4 +55,4 @@ def _uncached() -> Generator[None]:
         llvm_state.set_diskcache_enabled(before)
 
 
-PEER = Peer(name="heyoka", knob="tolerance", unit="", knobs=decades(3, 16), set_up=_set_up)
+PEER = Peer(name="heyoka", tolerances=decades(3, 16), set_up=_set_up)

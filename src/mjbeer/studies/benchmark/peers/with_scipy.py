@@ -1,4 +1,4 @@
-"""SciPy's integrators DOP853, LSODA, odeint, BDF and Radau, on equations of motion written by hand."""
+"""SciPy's integrators DOP853, LSODA, odeint and Radau, on equations of motion written by hand."""
 
 import warnings
 from collections.abc import Callable, Generator
@@ -82,12 +82,9 @@ def _warnings_as_errors() -> Generator[None]:
 
 
 _LADDER = decades(3, 13)
-DOP853 = Peer(name="SciPy DOP853", knob="tolerance", unit="", knobs=_LADDER, set_up=_solve_ivp("DOP853"))
-LSODA = Peer(name="SciPy LSODA", knob="tolerance", unit="", knobs=_LADDER, set_up=_solve_ivp("LSODA"))
-ODEINT = Peer(name="SciPy odeint", knob="tolerance", unit="", knobs=_LADDER, set_up=_odeint)
+DOP853 = Peer(name="SciPy DOP853", tolerances=_LADDER, set_up=_solve_ivp("DOP853"))
+LSODA = Peer(name="SciPy LSODA", tolerances=_LADDER, set_up=_solve_ivp("LSODA"))
+ODEINT = Peer(name="SciPy odeint", tolerances=_LADDER, set_up=_odeint)
 """The method of LSODA, in a compiled loop."""
-STIFF = (
-    Peer(name="SciPy BDF", knob="tolerance", unit="", knobs=decades(3, 11), set_up=_solve_ivp("BDF")),
-    Peer(name="SciPy Radau", knob="tolerance", unit="", knobs=decades(3, 12), set_up=_solve_ivp("Radau")),
-)
+STIFF = (Peer(name="SciPy Radau", tolerances=decades(3, 12), set_up=_solve_ivp("Radau")),)
 """Implicit methods, which only stiff cases need."""
