@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory import motion, viscous
+from mjbeer.theory import damped, motion
 from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -37,7 +37,7 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, man
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
-                phi, phi_dot, u, u_dot = viscous.solve(scene, time, phi0=phi0, phi_dot0=phi_dot0)
+                phi, phi_dot, u, u_dot = damped.solve(scene, time, phi0=phi0, phi_dot0=phi_dot0)
             else:
                 phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
                 u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))

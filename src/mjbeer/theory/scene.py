@@ -9,7 +9,7 @@ import numpy as np
 
 from mjbeer import messages, require
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
-from mjbeer.theory import motion, steady_rolling, viscous_modes
+from mjbeer.theory import motion, steady
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
@@ -139,7 +139,7 @@ class Scene:
         a frozen load, which drag makes larger: beyond it there is no steady rolling.
         """
         if self.dissipates:
-            return steady_rolling.largest_incline(self)
+            return steady.largest_incline(self)
         if self.attachment == "sliding":
             return math.pi / 2
         return math.asin(self.load.mass * self.load.offset / (self.mass * self.can.radius))
@@ -173,7 +173,7 @@ class Scene:
           DissipationError: if the scene has damping or drag, so that no swing is like the one before.
         """
         amplitude = require.number("amplitude", amplitude, "rad")
-        steady_rolling.require_no_dissipation(self, "no period")
+        steady.require_no_dissipation(self, "no period")
         self.equilibrium()
         return motion.period(self.oscillator, amplitude)
 
@@ -184,7 +184,7 @@ class Scene:
           NoEquilibriumError: if there is no equilibrium.
           DissipationError: if the scene has damping or drag, so that no swing lasts.
         """
-        steady_rolling.require_no_dissipation(self, "no largest swing")
+        steady.require_no_dissipation(self, "no largest swing")
         self.equilibrium()
         return self.oscillator.separatrix()
 
@@ -197,7 +197,7 @@ class Scene:
           DissipationError: if the scene has neither damping nor drag.
           NoEquilibriumError: if there is no steady rolling; above the largest incline the message names that.
         """
-        return steady_rolling.steady_rolling(self).speed
+        return steady.steady_rolling(self).speed
 
     def terminal_tilt(self) -> float:
         """Return the angle phi [rad] at which the load of a can with damping or drag stands still, once it does.
@@ -208,7 +208,7 @@ class Scene:
           DissipationError: if the scene has neither damping nor drag.
           NoEquilibriumError: if there is no steady rolling; above the largest incline the message names that.
         """
-        return steady_rolling.steady_rolling(self).tilt
+        return steady.steady_rolling(self).tilt
 
     def modes(self) -> np.ndarray:
         """Return the roots s [1/s] of the three modes exp(s t) of small motions about steady rolling.
@@ -221,7 +221,7 @@ class Scene:
           NoEquilibriumError: if there is no steady rolling.
           ParameterError: if the roots are beyond double precision.
         """
-        return viscous_modes.modes(self)
+        return steady.modes(self)
 
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
@@ -232,7 +232,7 @@ class Scene:
         Raises:
           DissipationError: if the damping is not linear, or there is none, or there is drag.
         """
-        return steady_rolling.slip_rate(self)
+        return steady.slip_rate(self)
 
     def start(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
         """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
