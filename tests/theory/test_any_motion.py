@@ -7,7 +7,7 @@ import pytest
 
 from mjbeer import Can, Load, Scene, frozen
 from mjbeer.exceptions import NoLibrationError, ParameterError
-from mjbeer.theory.certainty import UNCERTAIN
+from mjbeer.theory.motion import UNCERTAIN
 from mjbeer.theory.motion import solve
 from tests.support import taylor
 

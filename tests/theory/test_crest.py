@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mpmath import MPContext
 
-from mjbeer.theory.crest import Crest, past_pi, past_zero, sinc, sinc_gap
+from mjbeer.theory.oscillator import Crest, reduced, sinc, sinc_gap
 from mjbeer.theory.place import Place
 
 mp = MPContext()

@@ -8,7 +8,7 @@ import pytest
 
 from mjbeer import Scene, exact, frozen, sliding
 from mjbeer.exceptions import ParameterError, ToleranceError
-from mjbeer.theory.certainty import UNCERTAIN
+from mjbeer.theory.motion import UNCERTAIN
 
 
 def test_all_turns_on_the_level_and_all_swings_are_alike() -> None:

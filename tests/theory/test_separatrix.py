@@ -11,7 +11,7 @@ from mpmath import MPContext
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, sliding
 from mjbeer.exceptions import NoLibrationError, ToleranceError
-from mjbeer.theory.certainty import UNCERTAIN
+from mjbeer.theory.motion import UNCERTAIN
 from tests.support.scenes import METAL
 from tests.support.taylor import coefficients
 

@@ -34,6 +34,8 @@ _LARGEST_TOP = 2000 * math.pi
 """Largest angle [rad] an eps of which puts a start at rest on the top. Farther out no double is meant as the top."""
 _HARMONIC = 1e-12
 """Amplitude [rad] up to which a swing is harmonic to rounding."""
+_BESIDE = 0.1
+"""Distance from a turning point below which the energy tells more of it than the angle, over the angle."""
 MOST_TURNS = 10_000
 """Most turns of a motion that passes crests."""
 MOST_PERIODS = 1_000_000
@@ -244,10 +246,11 @@ class Arc:
 
     def time(self, start: Start) -> float:
         """Return the time [s] from the turning point to a start on the path."""
-        # s comes from the energy, because beside a turning point the distance from there may have no digits.
         z = -start.from_rest if self._upside_down else start.past + (TURN if start.past < 0 < self._turn else 0.0)
-        torque = float(self._crest.mean_torque(self._turn, z - self._turn))
-        return self.clock.time(math.sqrt(start.kinetic / abs(torque)))
+        length = abs(z - self._turn)
+        if length < _BESIDE * abs(self._turn):  # the difference has lost digits, and the energy has not
+            length = start.kinetic / abs(float(self._crest.mean_torque(self._turn, z - self._turn)))
+        return self.clock.time(math.sqrt(length))
 
     def state(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the distance from the turning point [rad] and |phi_dot| [rad/s] at times [s] since then."""
@@ -368,14 +371,15 @@ def _paths(start: Start) -> Iterator[tuple[int, Bounce | Turns, float]]:
     """
     form, step, rise = start.form, start.form.crest.step, start.form.crest.rise
     level, turn, left = start.level, 0, MOST_TURNS
+    ahead = start.level_ahead if start.past > 0 else level + step  # at the crest after this turn's, to all digits
     while start.phi_dot < 0 and level > rise and left:
         levels = level - step * np.arange(min(_BATCH, left))
         levels = levels[levels > rise]
         yield turn, Turns(form, levels[::-1], uphill=True), levels[-1]
-        level, turn, left = levels[-1] - step, turn - len(levels), left - len(levels)
+        level, ahead, turn, left = levels[-1] - step, levels[-1], turn - len(levels), left - len(levels)
     if level <= rise:
-        yield turn, Bounce(start, level), min(abs(level), level + step)
-        level, turn = level + step, turn + 1
+        yield turn, Bounce(start, level), min(abs(level), ahead)
+        level, turn = ahead, turn + 1
     while left:
         levels = level + step * np.arange(min(_BATCH, left))
         yield turn, Turns(form, levels), level

@@ -60,7 +60,7 @@ class Crest:
         """Return the crest of V."""
         ramp = min(slope, depth)
         curvature = math.sqrt(depth - ramp) * math.sqrt(depth + ramp)
-        lean = math.atan2(slope, curvature)
+        lean = math.atan2(slope, curvature) if curvature > 0 else math.pi / 2
         return cls(slope - ramp, ramp, curvature, offset=bottom - lean, rest=bottom + lean)
 
     @property
