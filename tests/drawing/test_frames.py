@@ -18,7 +18,7 @@ from mjbeer.drawing.world.canvas import Canvas
 from mjbeer.drawing.world.display import Display, on_incline, scale
 from mjbeer.drawing.world.positions import coordinates
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.segment import segment
+from mjbeer.theory.load import segment
 
 pytestmark = pytest.mark.slow
 

@@ -26,7 +26,7 @@ from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.run import Run
 from mjbeer.theory.exact import phi_error
-from mjbeer.theory.measure import distance
+from mjbeer.theory.trajectory import distance
 from tests.support.scenes import SCENES
 
 HUGE = Scene(Can(radius=1e20), Load(1.0, 1e20, 1.0), attachment="frozen")

@@ -13,9 +13,8 @@ from scipy.linalg import expm
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import AngleWarning, ToleranceError
 from mjbeer.theory import viscous_walk
-from mjbeer.theory.conserved import energy
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.forces import slip_rate
+from mjbeer.theory.equations import energy, slip_rate
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.place import ROUNDINGS
 from mjbeer.theory.viscous_equations import ViscousEquations
 from mjbeer.theory.viscous_walk import Walk

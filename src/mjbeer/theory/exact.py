@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory import motion, viscous
-from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, angle_distance
 
 
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:

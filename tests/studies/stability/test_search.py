@@ -26,7 +26,7 @@ from mjbeer.studies.stability.search.pick import Pick
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.search.regions import REGIONS, random_run
 from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.load import Load
 
 pytestmark = pytest.mark.slow

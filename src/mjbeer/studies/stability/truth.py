@@ -8,8 +8,7 @@ import numpy as np
 
 from mjbeer.exceptions import NoLibrationError, ParameterError, ToleranceError
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
-from mjbeer.theory.conserved import kinetic_energy
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates, kinetic_energy
 from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import Scene
 

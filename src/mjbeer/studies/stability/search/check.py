@@ -10,7 +10,7 @@ from mjbeer.studies.stability.outcome import ACCURATE, REFUSALS, Outcome, judge
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import ERROR, LIFT, SLIP
