@@ -61,13 +61,12 @@ class Equations:
     @classmethod
     def of(cls, scene: Scene) -> "Equations":
         """Return the equations of a scene with a sliding load."""
-        radius, oscillator = scene.can.radius, scene.oscillator
-        mass = scene.mass + scene.can.inertia / radius**2
+        radius, oscillator, mass = scene.can.radius, scene.oscillator, scene.effective_mass
         unit = mass * radius**2
         linear, quadratic, cubic = (each / unit for each in scene.damping_law.coefficients)
         return cls(
-            drive=scene.mass / mass * scene.gravity * math.sin(scene.incline) / radius,
-            beta=scene.load.mass / mass * scene.load.offset / radius,
+            drive=scene.drive / mass / radius,
+            beta=scene.load.moment / mass / radius,
             base=oscillator.base / unit,
             depth=oscillator.depth / unit,
             bottom=oscillator.bottom,

@@ -142,18 +142,16 @@ class Oscillator:
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
         """Return the oscillator of a load that slides without friction about the axis (section 3 of the paper)."""
-        effective_can_mass = can.mass + can.inertia / can.radius**2
-        total = load.mass + effective_can_mass
-        moment = load.mass * load.offset
+        total = load.mass + can.effective_mass
         # g sin(alpha) - A, with A the steady acceleration of footnote 4
         lag = gravity * math.sin(incline) * (can.inertia / can.radius**2) / total
         normal = gravity * math.cos(incline)
         return cls(
-            base=load.inertia + moment * load.offset * effective_can_mass / total,
+            base=load.inertia + load.moment * load.offset * can.effective_mass / total,
             chord=0.0,
-            swing=moment * load.offset * load.mass / total,
+            swing=load.moment * load.offset * load.mass / total,
             slope=0.0,
-            depth=moment * math.hypot(normal, lag),
+            depth=load.moment * math.hypot(normal, lag),
             bottom=math.atan2(-lag, normal),
         )
 
@@ -167,7 +165,7 @@ class Oscillator:
             chord=4 * load.mass * radius * offset,
             swing=0.0,
             slope=(load.mass + can.mass) * gravity * radius * math.sin(incline),
-            depth=load.mass * gravity * offset,
+            depth=load.moment * gravity,
             bottom=-incline,
         )
 

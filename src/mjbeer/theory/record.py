@@ -5,9 +5,7 @@ import math
 import numpy as np
 
 from mjbeer.theory.balance import Balance
-from mjbeer.theory.conserved import kinetic_energy, potential_energy
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import rolling_forces
+from mjbeer.theory.equations import Coordinates, kinetic_energy, potential_energy, rolling_forces
 from mjbeer.theory.losses import followed
 from mjbeer.theory.motion import energy_to_barrier
 from mjbeer.theory.scene import Scene

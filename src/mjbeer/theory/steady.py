@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, ParameterError
-from mjbeer.theory import damping
+from mjbeer.theory import liquid
 from mjbeer.theory.oscillator import Oscillator, root
 
 if TYPE_CHECKING:
@@ -53,10 +53,10 @@ def steady_rolling(scene: "Scene") -> SteadyRolling:
     """
     require_dissipation(scene, "no steady rolling")
     scene.oscillator.equilibrium()  # whether anything restores the load
-    radius, weight = scene.can.radius, scene.load.mass * scene.gravity * scene.load.offset
-    torque = scene.mass * scene.gravity * radius * math.sin(scene.incline)
+    radius, weight = scene.can.radius, scene.load.moment * scene.gravity
+    torque = scene.drive * radius
     linear, quadratic, cubic = scene.damping_law.coefficients
-    slip = damping.root((linear, quadratic + scene.drag * radius**3, cubic), torque)
+    slip = liquid.root((linear, quadratic + scene.drag * radius**3, cubic), torque)
     if scene.drag > 0:
         torque = float(scene.damping_law.torque(slip))
     if abs(torque) > weight:
@@ -70,10 +70,10 @@ def steady_rolling(scene: "Scene") -> SteadyRolling:
 
 def largest_incline(scene: "Scene") -> float:
     """Return the largest incline on which a dissipating scene rolls steadily [rad]; pi/2 if it does on every one."""
-    radius, weight = scene.can.radius, scene.load.mass * scene.gravity * scene.load.offset
-    sine = scene.load.mass * scene.load.offset / (scene.mass * radius)
+    radius, weight = scene.can.radius, scene.load.moment * scene.gravity
+    sine = scene.centre_of_mass / radius
     if scene.drag > 0 and scene.gravity > 0:
-        slip = damping.root(scene.damping_law.coefficients, weight)
+        slip = liquid.root(scene.damping_law.coefficients, weight)
         sine += scene.drag * (radius * slip) ** 2 / (scene.mass * scene.gravity)
     return math.asin(min(sine, 1.0))
 
@@ -90,7 +90,7 @@ def slip_rate(scene: "Scene") -> float:
             "no mean slip rate follows from the scene alone: it does from linear damping without drag, got "
             f"damping={scene.damping!r} and drag={scene.drag!r}"
         )
-    return scene.mass * scene.gravity * scene.can.radius * math.sin(scene.incline) / law.linear
+    return scene.drive * scene.can.radius / law.linear
 
 
 def require_dissipation(scene: "Scene", what: str) -> None:
@@ -127,8 +127,8 @@ def modes(scene: "Scene") -> np.ndarray:
       ParameterError: if the roots are beyond double precision.
     """
     steady, can, load = steady_rolling(scene), scene.can, scene.load
-    mass, moment = scene.mass + can.inertia / can.radius**2, load.mass * load.offset * math.cos(steady.tilt)
-    inertia, k = load.inertia + load.mass * load.offset**2, steady.stiffness
+    mass, moment = scene.effective_mass, load.moment * math.cos(steady.tilt)
+    inertia, k = load.axis_inertia, steady.stiffness
     rub = float(scene.damping_law.slope(steady.slip))
     drag = 2 * scene.drag * abs(steady.speed)
     swinging = mass * float(scene.oscillator.inertia(steady.tilt))  # N, without a difference
