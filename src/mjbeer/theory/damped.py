@@ -304,7 +304,9 @@ def _corner(equations: Equations, step: Step, sides: Sides) -> tuple[float, int]
     """Return where in the step, from -1 to 1, w (0) or roll_dot (1) gets another sign than its own, if it has one."""
     found = []
     rates = step.series[:, 2:]
-    for which, (strength, rate) in enumerate([(equations.torques[1], rates[:, 1]), (equations.drag, rates.sum(axis=1))]):
+    for which, (strength, rate) in enumerate(
+        [(equations.torques[1], rates[:, 1]), (equations.drag, rates.sum(axis=1))]
+    ):
         if strength == 0:
             continue
         values = _GRID_VALUES @ rate * sides[which]

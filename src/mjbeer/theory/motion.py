@@ -157,8 +157,7 @@ class Start:
         """
         crest = self.form.crest
         steep = crest.ramp / crest.curvature if crest.curvature > 0 else 0.0
-        lean = math.pi / 2 - crest.well / 2
-        return ROUNDINGS * (abs(self.form.bottom) + lean + steep) + EPS * abs(self.past)
+        return ROUNDINGS * (abs(self.form.bottom) + crest.lean + steep) + EPS * abs(self.past)
 
     def nudged(self, sign: int) -> "Start":
         """Return this start, changed by rounding: nearer to passing the crest if `sign` is 1, farther from it if -1."""

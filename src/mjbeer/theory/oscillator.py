@@ -50,6 +50,8 @@ class Crest:
     """Coefficient of 2 sin^2(x/2) in the torque [N m]; slope = excess + ramp."""
     curvature: float
     """-V'' at the crest, and V'' at the equilibrium [N m/rad]; 0 if there is no barrier."""
+    lean: float
+    """Angle of the equilibrium past that at which the cosine has its minimum [rad]; pi/2 if there is none."""
     offset: float
     """Angle of the crest, less pi [rad]."""
     rest: float
@@ -61,7 +63,7 @@ class Crest:
         ramp = min(slope, depth)
         curvature = math.sqrt(depth - ramp) * math.sqrt(depth + ramp)
         lean = math.atan2(slope, curvature) if curvature > 0 else math.pi / 2
-        return cls(slope - ramp, ramp, curvature, offset=bottom - lean, rest=bottom + lean)
+        return cls(slope - ramp, ramp, curvature, lean, offset=bottom - lean, rest=bottom + lean)
 
     @property
     def step(self) -> float:
@@ -102,9 +104,10 @@ class Crest:
 
         The second is counted from the well between that crest and the next one if phi is past the crest.
         """
-        past = math.remainder(math.atan2(-math.sin(phi), -math.cos(phi)) - self.offset, TURN)
+        past = math.remainder(_past_pi(phi) - self.offset, TURN)
         from_rest = math.remainder(reduced(phi) - self.rest, TURN)
-        return self.place_by_rest(from_rest) if abs(from_rest) < abs(past) else self.place_by_crest(past)
+        by_rest = self.well > 0 and abs(from_rest) < abs(past)
+        return self.place_by_rest(from_rest) if by_rest else self.place_by_crest(past)
 
     def place_by_crest(self, past: float) -> tuple[float, float]:
         """Return a place by its distance [rad] past a crest, up to a turn beside its own."""
@@ -113,8 +116,8 @@ class Crest:
 
     def place_by_rest(self, from_rest: float) -> tuple[float, float]:
         """Return a place by its distance [rad] past the equilibrium of its well."""
-        past = from_rest - self.well
-        return (past if past >= self.begins else from_rest + (TURN - self.well)), from_rest
+        past = _past_pi(from_rest) + 2 * self.lean
+        return past - (TURN if past >= self.begins + TURN else 0.0), from_rest
 
     def below_ahead(self, past: float, from_rest: float) -> float:
         """Return by how much V at a place is below the next crest downhill [J]."""
@@ -265,6 +268,11 @@ class Oscillator:
                 f"amplitude {phi - rest:.6g} rad is not inside the separatrix: released from rest, the load "
                 f"swings about its equilibrium only for amplitudes between {low - rest:.6g} and {high - rest:.6g} rad"
             )
+
+
+def _past_pi(angle: float) -> float:
+    """Return how far `angle` [rad] is past the nearest odd multiple of pi, to full relative precision."""
+    return math.atan2(-math.sin(angle), -math.cos(angle))
 
 
 def reduced(angle: float) -> float:
