@@ -179,8 +179,7 @@ def test_small_swings(scene: Scene) -> None:
     rest, omega, time = scene.equilibrium(), scene.frequency(), np.linspace(0, 1, 9)
     for amplitude in (0.0, 1e-9, -1e-9, 1e-13, 1e-200):
         assert scene.period(amplitude) == pytest.approx(2 * math.pi / omega, rel=PERIOD)
-    for turn in (0.0, 1e-120, 1e-17, -1e-15, 1e-10):
-        turn = rest + turn - rest
+    for turn in ((rest + each) - rest for each in (0.0, 1e-17, -1e-15, 1e-10)):
         for phi_dot0 in (0.0, 1e-160, 1e-129, -1e-14, 1e-11, 1e-9):
             motion = exact(scene, time, rest + turn, phi_dot0)
             sway = turn * np.cos(omega * time) + phi_dot0 / omega * np.sin(omega * time)

@@ -251,7 +251,7 @@ def test_period_beside_the_separatrix_of_a_slope(gap: float) -> None:
 @pytest.mark.parametrize("turns", [-1001, -3, 1, 7, 101])
 @pytest.mark.filterwarnings("ignore::mjbeer.AngleWarning")
 def test_on_the_top(scene: Scene, turns: int) -> None:
-    """For all that a double can tell, an odd multiple of pi is the unstable equilibrium, and three ulps off it is not."""
+    """As far as a double tells, an odd multiple of pi is the unstable equilibrium, and three ulps off it is not."""
     motion, top = exact(scene, np.linspace(0, 9, 4), turns * math.pi), turns * math.pi
     assert (motion.phi == top).all()
     assert exact(scene, 1e-3, top + 3 * math.ulp(top)).phi_dot[0] != 0
