@@ -7,8 +7,8 @@ where the damping is strong and w small. Divided by M a^2, with M = m + m_can + 
     inertia(phi) phi_ddot = -depth sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
                             + (1 - beta cos(phi)) torque(w) - beta cos(phi) drag roll_dot |roll_dot|.
 
-Each step is a collocation polynomial whose last terms are below rounding. |w| and |roll_dot| have a corner at zero: they
-are taken as w and roll_dot times a sign that a step keeps, so that it is smooth, and a step ends where that is wrong.
+Each step is a collocation polynomial whose last terms are below rounding. |w| and |roll_dot| have a corner at zero:
+they are taken as w and roll_dot times a sign that a step keeps, so that it is smooth, and ends where that is wrong.
 """
 
 import math

@@ -21,10 +21,10 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
 
     Raises:
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e4 and 1e4
-        rad or -1e6 and 1e6 rad/s, or the motion is too extreme for double precision.
+        rad or -1e6 and 1e6 rad/s, the motion has more than 1e4 turns or 1e6 periods, or is beyond double precision.
       NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
-      ToleranceError: if the times are so late that the rounding of the scene changes phi by more than 1e-4 rad; with
-        damping or drag, also if the start is so near an unstable balance, or the motion takes too many steps.
+      ToleranceError: with damping or drag, if the start is so near an unstable balance that its rounding changes phi by
+        more than 1e-4 rad, or the motion takes too many steps.
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
@@ -42,6 +42,8 @@ def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Tr
                 phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
                 u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
             roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
+    except ParameterError:
+        raise
     except (ArithmeticError, ValueError) as error:
         raise ParameterError(
             f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
