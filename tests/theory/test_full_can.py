@@ -8,8 +8,8 @@ import pytest
 
 from mjbeer import Can
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.full_can import FullCan, _terms
-from mjbeer.theory.liquids import LIQUIDS
+from mjbeer.theory.liquid import LIQUIDS
+from tests.support.full_can import FullCan, _terms
 
 FULL = FullCan(Can.sheet_metal())
 OIL = FullCan(Can.massless(), LIQUIDS["olive oil"].density, LIQUIDS["olive oil"].viscosity)

@@ -1,4 +1,4 @@
-"""J, V and what follows from them, against the Lagrangian of the whole system, reduced by SymPy."""
+"""J, V and what follows from them, against the Lagrangian of the whole system, and V's differences in 40 digits."""
 
 import math
 from collections.abc import Callable
@@ -14,12 +14,16 @@ from mpmath import MPContext
 
 from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import NoEquilibriumError
+from mjbeer.theory.oscillator import TURN, Crest, reduced, sinc, sinc_gap
 from tests.support.scenes import METAL, SCENES, scenes
 
 # J is a sum of positive terms and V' a difference of two, each of a few roundings; measured: 1e-15.
 ROUNDING = 3e-15
 # Angles are good to a few eps, and an equilibrium near the steepest incline to the root of that.
 ANGLE = 5e-15
+
+# Sums of three terms of which one may be half of another, of a few roundings each. Measured: 2e-15.
+DIFFERENCE = 5e-15
 
 mp = MPContext()
 mp.dps = 30
@@ -32,7 +36,7 @@ PHI, RATE = sp.symbols("phi phi_dot")
 
 
 @cache
-def reduced(attachment: str) -> tuple[sp.Expr, sp.Expr]:
+def reduced_form(attachment: str) -> tuple[sp.Expr, sp.Expr]:
     """J and V' of the paper's coordinates (Fig. 3), the axis eliminated by its own equation or by rolling (50)."""
     t = sp.Symbol("t")
     phi, u = (each(t) for each in sp.symbols("phi u", cls=sp.Function))
@@ -60,7 +64,7 @@ def reduced(attachment: str) -> tuple[sp.Expr, sp.Expr]:
 
 @cache
 def compiled(attachment: str) -> tuple[Callable[..., mpf], ...]:
-    inertia, pull = reduced(attachment)
+    inertia, pull = reduced_form(attachment)
     names = {"sin": mp.sin, "cos": mp.cos}
     forms = (inertia, inertia.diff(PHI), pull, sp.integrate(pull, PHI))
     return tuple(sp.lambdify([*PARAMETERS, PHI], form, modules=[names]) for form in forms)
@@ -169,3 +173,67 @@ def test_separatrix_and_mirror(scene: Scene) -> None:
     behind = replace(scene, incline=-scene.incline)
     assert behind.separatrix() == (-high, -low)
     assert (behind.equilibrium(), behind.frequency()) == (-scene.equilibrium(), scene.frequency())
+
+
+slopes = st.one_of(st.just(0.0), st.floats(-300, 0).map(lambda power: 10**power), st.floats(0, 3))
+sizes = st.floats(-30, 0).map(lambda power: 10**power)
+
+
+def below(crest: Crest, x: Any) -> Any:
+    """V(crest) - V(crest + x), from the torque that defines the crest, integrated by hand."""
+    x = mp.mpf(x)
+    return (crest.excess + crest.ramp) * x - crest.ramp * mp.sin(x) + mp.mpf(crest.curvature) * (1 - mp.cos(x))
+
+
+@settings(max_examples=200, deadline=None, derandomize=True)
+@given(slopes, sizes, st.sampled_from([-1, 1]), st.floats(0, 1))
+def test_heights_and_mean_torque(slope: float, size: float, sign: int, share: float) -> None:
+    """Every term of the mean torque is positive as long as the torque is downhill: up to the next equilibrium."""
+    crest, x = Crest.of(slope, 1.0, -0.2), sign * 3 * size
+    turn, length = size * (math.pi - crest.well / 2), share * (math.pi - crest.well / 2)
+    with mp.workdps(400):  # 1e-300 of a slope beside 1e-60 of a cosine
+        scale = (crest.excess + crest.ramp * x**2) * abs(x) + crest.curvature * x**2
+        assert abs(crest.below(x) - below(crest, x)) <= DIFFERENCE * scale
+        torque = crest.excess + crest.ramp * (1 - mp.cos(mp.mpf(x))) + crest.curvature * mp.sin(mp.mpf(x))
+        scale = crest.excess + crest.ramp * x**2 + crest.curvature * abs(x)
+        assert abs(crest.torque(x) - torque) <= DIFFERENCE * scale
+        mean = (below(crest, mp.mpf(turn) + length) - below(crest, turn)) / length if length else crest.torque(turn)
+        assert abs(crest.mean_torque(turn, length) - mean) <= 2 * DIFFERENCE * mean
+
+
+@pytest.mark.parametrize("slope", [0.0, 1e-20, 0.3, 1 - 1e-9, 1.0, 1.5])
+def test_crest_and_rest_are_where_v_is_level(slope: float) -> None:
+    crest, bottom = Crest.of(slope, 1.0, -0.2), mp.mpf(-0.2)
+    lean = mp.asin(mp.mpf(slope)) if slope < 1 else mp.pi / 2
+    # asin(slope) changes by eps / curvature with the rounding of 1 - slope.
+    tolerance = DIFFERENCE + 2e-16 / max(crest.curvature, 1e-8)
+    assert abs(crest.offset - (bottom - lean)) < tolerance
+    assert abs(crest.rest - (bottom + lean)) < tolerance
+    assert abs(crest.well - (mp.pi - 2 * lean)) < 2 * tolerance
+    assert crest.step == 2 * math.pi * slope
+
+
+@pytest.mark.parametrize("slope", [0.0, 1e-12, 0.3, 0.99, 2.0])
+@pytest.mark.parametrize("angle", [0.3, -0.3, math.pi, -3.0, 2.9, -1.0, 40.0, -1e4, 12345 * math.pi])
+def test_place(slope: float, angle: float) -> None:
+    """Both distances are those of the angle, and lie in the well and in the turn that belong together."""
+    crest = Crest.of(slope, 1.0, -0.1)
+    past, from_rest = crest.place(angle)
+    with mp.workdps(60):
+        assert abs(mp.sin(mp.mpf(angle)) - mp.sin(reduced(angle))) <= 4e-16 * abs(reduced(angle))
+        for distance, origin in ((past, mp.pi + crest.offset), (from_rest, mp.mpf(crest.rest))):
+            turns = (mp.mpf(angle) - origin - distance) / (2 * mp.pi)
+            assert abs(turns - mp.nint(turns)) < DIFFERENCE
+        ahead = below(crest, past if past < 0 else mp.mpf(from_rest) - crest.well)
+    if slope < 1:
+        assert abs(crest.below_ahead(past, from_rest) - ahead) < 4 * DIFFERENCE
+    assert crest.begins <= past <= crest.begins + TURN
+    assert from_rest == pytest.approx(past + crest.well - (TURN if past >= 0 else 0), abs=1e-15)
+
+
+@pytest.mark.parametrize("x", [0.0, 1e-100, 1e-8, 0.5, 0.999, 1.0, 1.001, 3.0, 6.0])
+def test_sinc(x: float) -> None:
+    with mp.workdps(700):
+        exact = mp.sin(mp.mpf(x)) / x if x else mp.mpf(1)
+        assert abs(sinc(x) - exact) <= 3e-16
+        assert abs(sinc_gap(x) - (1 - exact)) <= 1e-15 * (1 - exact)

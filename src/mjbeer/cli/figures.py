@@ -13,9 +13,8 @@ from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
 from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.record import Record
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import Scene, damping_in_words
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import damping_in_words
 
 _BALANCED = 1e-6
 """Share of the kinetic energy up to which the swing's may be rounding: a million times that of a double or more."""

@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.state import read
-from mjbeer.theory.measure import angle_distance
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import angle_distance
 
 _SAFETY = 1.5
 """Error estimate over the distance of two runs."""

@@ -17,7 +17,7 @@ from mjbeer.simulation.recorder import Recorder
 from mjbeer.simulation.solution import Solution
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import Solver, tuning
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 _GREATER = (math.sqrt(5) - 1) / 2

@@ -13,11 +13,10 @@ from mjbeer.model.setting import TUNED, Setting
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.measure import distance
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, distance
 from mjbeer.theory.trust import ERROR, doubts
 
 _SAFETY = 3.2

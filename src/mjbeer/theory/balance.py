@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from mjbeer.theory import conserved
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory import equations
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.losses import forgetting, losses
 from mjbeer.theory.scene import Scene
 
@@ -32,7 +32,7 @@ class Balance:
             **{name: np.append(getattr(last, name), values) for name, values in vars(motion).items() if name in _NAMES}
         )
         lost = losses(scene, joined)
-        energy = np.diff(conserved.energy(scene, joined)) + lost.work
+        energy = np.diff(equations.energy(scene, joined)) + lost.work
         energies = self._energy + np.cumsum(energy)
         self._energy, self.energy_change = float(energies[-1]), _largest(self.energy_change, energies)
         # Of a motion that can and load make as one the energy tells as much, and no sum of large torques has to cancel.
@@ -44,8 +44,8 @@ class Balance:
     def _add_axis(self, joined: Coordinates, lost_speed: np.ndarray, lost_way: np.ndarray) -> None:
         """Add how far the axis is from where the forces of theory along the motion itself would have it."""
         scene, step = self._scene, np.diff(joined.time)
-        way, speed = conserved.axis_without_swing(scene, joined)
-        steady = conserved.steady_acceleration(scene)
+        way, speed = equations.axis_without_swing(scene, joined)
+        steady = equations.steady_acceleration(scene)
         too_fast = np.diff(speed) - steady * step + lost_speed
         too_far = np.diff(way) - step * speed[:-1] - steady * step**2 / 2 + lost_way
         rate = forgetting(scene, joined.phi_dot[:-1], joined.u_dot[:-1])

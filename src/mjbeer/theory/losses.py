@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import accelerations, dissipation, slip_rate
+from mjbeer.theory.equations import Coordinates, accelerations, dissipation, slip_rate
 from mjbeer.theory.scene import Scene
 
 _RELAXED = 3.0

@@ -7,14 +7,15 @@ With the rolling constraint and the conserved momentum eliminated, each scene ob
     V = -slope phi - depth cos(phi - bottom).
 
 V is a cosine on a ramp: `slope` is the steepness of the ramp, a torque, `depth` the amplitude of the cosine, and
-`bottom` the angle of its minimum. If |slope| < depth, V has in every turn a minimum (the equilibrium) and a maximum
-(the barrier). A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope (eq. 16,
-and eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
+`bottom` the angle of its minimum. If |slope| < depth, V has in every turn a minimum (the equilibrium, or rest) and a
+maximum (the barrier). A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope
+(eq. 16, and eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
 
-V is needed only as differences: `drop`, and those that `crest` has in forms in which nothing cancels.
+V is needed only as differences, from where nothing cancels: see `Crest`.
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -22,8 +23,106 @@ import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
 from mjbeer.theory.can import Can
-from mjbeer.theory.crest import Crest, root
 from mjbeer.theory.load import Load
+
+TURN = 2 * math.pi
+_SHALLOW = 0.5
+"""Width of a well [rad] below which a turn is reckoned from the steepest place of V, and not from the equilibrium."""
+
+
+@dataclass(frozen=True)
+class Crest:
+    """The shape of V = -slope phi - depth cos(phi - bottom) about its crest, for slope >= 0.
+
+    V falls with growing phi. If slope < depth, its crest is the barrier, with the equilibrium at a distance `well`
+    before it. On a steeper incline V only falls, and its crest is where it falls least; there the well has no width. In
+    both cases the torque downhill at a distance x past the crest is
+
+        -V'(crest + x) = excess + 2 ramp sin^2(x/2) + curvature sin(x).
+
+    Every turn is the same, but lower by `step`. V looks the same upside down: the torque at a distance y past the
+    equilibrium is that at -y past the crest.
+    """
+
+    excess: float
+    """Torque at the crest [N m]: 0 if there is a barrier."""
+    ramp: float
+    """Coefficient of 2 sin^2(x/2) in the torque [N m]; slope = excess + ramp."""
+    curvature: float
+    """-V'' at the crest, and V'' at the equilibrium [N m/rad]; 0 if there is no barrier."""
+    lean: float
+    """Angle of the equilibrium past that at which the cosine has its minimum [rad]; pi/2 if there is none."""
+    offset: float
+    """Angle of the crest, less pi [rad]."""
+    rest: float
+    """Angle of the equilibrium [rad]."""
+
+    @classmethod
+    def of(cls, slope: float, depth: float, bottom: float) -> "Crest":
+        """Return the crest of V."""
+        ramp = min(slope, depth)
+        curvature = math.sqrt(depth - ramp) * math.sqrt(depth + ramp)
+        lean = math.atan2(slope, curvature) if curvature > 0 else math.pi / 2
+        return cls(slope - ramp, ramp, curvature, lean, offset=bottom - lean, rest=bottom + lean)
+
+    @property
+    def step(self) -> float:
+        """Return by how much V falls in a turn [J]."""
+        return TURN * (self.excess + self.ramp)
+
+    @cached_property
+    def well(self) -> float:
+        """Return the angle from the equilibrium to the crest [rad]; 0 if there is no equilibrium."""
+        return 2 * math.atan2(self.curvature, self.ramp) if self.curvature > 0 else 0.0
+
+    @property
+    def begins(self) -> float:
+        """Return where a turn begins, past its crest [rad]: not where a load may be slow."""
+        return -math.pi if self.well < _SHALLOW else -self.well
+
+    @property
+    def rise(self) -> float:
+        """Return how much more than to be at the crest it takes to come from where the turn begins [J]."""
+        return max(0.0, -float(self.below(self.begins)))
+
+    def below(self, x: np.ndarray | float) -> np.ndarray:
+        """Return the height V(crest) - V(crest + x) [J], for any `x` [rad]; V(rest + y) - V(rest) is below(-y)."""
+        return self.excess * x + self.ramp * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
+
+    def torque(self, x: np.ndarray | float) -> np.ndarray:
+        """Return -V' [N m] at a distance `x` [rad] past the crest."""
+        return self.excess + 2 * self.ramp * np.sin(x / 2) ** 2 + self.curvature * np.sin(x)
+
+    def mean_torque(self, x: float, length: np.ndarray | float) -> np.ndarray:
+        """Return (V(crest + x) - V(crest + x + length)) / length [N m], which is smooth through length 0."""
+        middle, half = x + length / 2, length / 2
+        flattened = 2 * np.sin(middle / 2) ** 2 + np.cos(middle) * sinc_gap(half)
+        return self.excess + self.ramp * flattened + self.curvature * np.sin(middle) * sinc(half)
+
+    def place(self, phi: float) -> tuple[float, float]:
+        """Return how far `phi` [rad], of any size, is past the crest of its turn and past the rest of its well [rad].
+
+        The second is counted from the well between that crest and the next one if phi is past the crest.
+        """
+        past = math.remainder(_past_pi(phi) - self.offset, TURN)
+        from_rest = math.remainder(reduced(phi) - self.rest, TURN)
+        by_rest = self.well > 0 and abs(from_rest) < abs(past)
+        return self.place_by_rest(from_rest) if by_rest else self.place_by_crest(past)
+
+    def place_by_crest(self, past: float) -> tuple[float, float]:
+        """Return a place by its distance [rad] past a crest, up to a turn beside its own."""
+        past += 0.0 if past >= self.begins else TURN
+        return past, past + self.well if past < 0 else past + (self.well - TURN)
+
+    def place_by_rest(self, from_rest: float) -> tuple[float, float]:
+        """Return a place by its distance [rad] past the equilibrium of its well."""
+        past = _past_pi(from_rest) + 2 * self.lean
+        return past - (TURN if past >= self.begins + TURN else 0.0), from_rest
+
+    def below_ahead(self, past: float, from_rest: float) -> float:
+        """Return by how much V at a place is below the next crest downhill [J]."""
+        ahead = past if past < 0 else from_rest - self.well
+        return float(self.below(ahead)) if abs(ahead) <= abs(past) else float(self.below(past)) - self.step
 
 
 @dataclass(frozen=True)
@@ -46,18 +145,16 @@ class Oscillator:
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
         """Return the oscillator of a load that slides without friction about the axis (section 3 of the paper)."""
-        effective_can_mass = can.mass + can.inertia / can.radius**2
-        total = load.mass + effective_can_mass
-        moment = load.mass * load.offset
+        total = load.mass + can.effective_mass
         # g sin(alpha) - A, with A the steady acceleration of footnote 4
         lag = gravity * math.sin(incline) * (can.inertia / can.radius**2) / total
         normal = gravity * math.cos(incline)
         return cls(
-            base=load.inertia + moment * load.offset * effective_can_mass / total,
+            base=load.inertia + load.moment * load.offset * can.effective_mass / total,
             chord=0.0,
-            swing=moment * load.offset * load.mass / total,
+            swing=load.moment * load.offset * load.mass / total,
             slope=0.0,
-            depth=moment * math.hypot(normal, lag),
+            depth=load.moment * math.hypot(normal, lag),
             bottom=math.atan2(-lag, normal),
         )
 
@@ -71,13 +168,18 @@ class Oscillator:
             chord=4 * load.mass * radius * offset,
             swing=0.0,
             slope=(load.mass + can.mass) * gravity * radius * math.sin(incline),
-            depth=load.mass * gravity * offset,
+            depth=load.moment * gravity,
             bottom=-incline,
         )
 
     def mirror(self) -> "Oscillator":
         """Return the oscillator of the same motion seen from behind, with the signs of phi and the incline changed."""
         return replace(self, slope=-self.slope, bottom=-self.bottom)
+
+    @cached_property
+    def crest(self) -> Crest:
+        """Return the shape of V about its crest, for slope >= 0."""
+        return Crest.of(slope=self.slope, depth=self.depth, bottom=self.bottom)
 
     def inertia(self, phi: np.ndarray | float) -> np.ndarray:
         """Return J [kg m^2] at `phi` [rad]."""
@@ -138,11 +240,6 @@ class Oscillator:
         """Return the angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
         return math.sqrt(self.stiffness() / float(self.inertia(self.equilibrium())))
 
-    @cached_property
-    def crest(self) -> Crest:
-        """Return the crest of V, for slope >= 0."""
-        return Crest.of(slope=self.slope, depth=self.depth, bottom=self.bottom)
-
     def barrier(self) -> float:
         """Return the unstable equilibrium that bounds libration on the downhill side [rad], for slope >= 0."""
         return math.pi + self.crest.offset
@@ -153,7 +250,7 @@ class Oscillator:
             low, high = self.mirror().separatrix()
             return -high, -low
         crest = self.crest
-        behind = 2 * math.pi - crest.well
+        behind = TURN - crest.well
         # As high as the barrier, on the downhill side of the one before it, which is a step higher.
         past = root(lambda x: float(crest.below(x)) - crest.step, 0, behind)
         return crest.rest - behind + past, self.barrier()
@@ -171,3 +268,42 @@ class Oscillator:
                 f"amplitude {phi - rest:.6g} rad is not inside the separatrix: released from rest, the load "
                 f"swings about its equilibrium only for amplitudes between {low - rest:.6g} and {high - rest:.6g} rad"
             )
+
+
+def _past_pi(angle: float) -> float:
+    """Return how far `angle` [rad] is past the nearest odd multiple of pi, to full relative precision."""
+    return math.atan2(-math.sin(angle), -math.cos(angle))
+
+
+def reduced(angle: float) -> float:
+    """Return how far `angle` [rad] is past the nearest even multiple of pi, to full relative precision.
+
+    The sine and cosine of the C library reduce angles of any size with as many digits of pi as that needs.
+    """
+    return angle if abs(angle) <= math.pi else math.atan2(math.sin(angle), math.cos(angle))
+
+
+def sinc(x: np.ndarray | float) -> np.ndarray:
+    """Return sin(x)/x to full relative precision, at its zeros too, unlike np.sinc."""
+    x = np.where(x == 0, 1e-300, x)
+    return np.sin(x) / x
+
+
+def sinc_gap(x: np.ndarray | float) -> np.ndarray:
+    """Return 1 - sin(x)/x, by its series where the difference would cancel."""
+    square, series = np.square(np.minimum(np.abs(x), 1)), np.ones_like(x)
+    for k in range(17, 1, -2):
+        series = 1 - square / ((k + 1) * (k + 2)) * series
+    return np.where(np.abs(x) < 1, square / 6 * series, 1 - sinc(x))
+
+
+def root(function: Callable[[float], float], lower: float, upper: float) -> float:
+    """Return where a function is 0 between `lower`, where it is not positive, and `upper`, to full relative precision.
+
+    If it is not positive at `upper` it should be 0 there, and is only rounded.
+    """
+    from scipy.optimize import brentq
+
+    if function(upper) <= 0:
+        return upper
+    return float(brentq(function, lower, upper, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))

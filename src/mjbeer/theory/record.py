@@ -5,12 +5,10 @@ import math
 import numpy as np
 
 from mjbeer.theory.balance import Balance
-from mjbeer.theory.conserved import kinetic_energy, potential_energy
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import rolling_forces
+from mjbeer.theory.equations import Coordinates, kinetic_energy, potential_energy, rolling_forces
 from mjbeer.theory.losses import followed
+from mjbeer.theory.motion import energy_to_barrier
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.start import Start
 
 _SMALL_SWING = 1e-2
 """Smallest energy with which a drift is compared, relative to the depth m g b of the potential well: that of a swing
@@ -174,11 +172,8 @@ class Record:
         if self.scene.dissipates:
             return math.inf
         assert self._first is not None, "a record without a motion"
-        oscillator, sign = self.scene.oscillator, 1
-        if oscillator.slope < 0:
-            oscillator, sign = oscillator.mirror(), -1
-        start = Start.at(oscillator, sign * float(self._first.phi[0]), sign * float(self._first.phi_dot[0]))
-        return abs(start.level_ahead) if oscillator.crest.well > 0 else math.inf
+        start = float(self._first.phi[0]), float(self._first.phi_dot[0])
+        return energy_to_barrier(self.scene.oscillator, *start)
 
     @property
     def axis_error(self) -> float:

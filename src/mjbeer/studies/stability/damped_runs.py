@@ -22,10 +22,9 @@ from mjbeer.simulation.run import Run, integrate
 from mjbeer.studies.stability.outcome import REFUSALS, explodes
 from mjbeer.studies.stability.truth import angles
 from mjbeer.theory.can import Can
-from mjbeer.theory.conserved import kinetic_energy
+from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.scene import Scene, sliding
 from mjbeer.theory.trust import ERROR
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)

@@ -12,13 +12,9 @@ from scipy.linalg import expm
 
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import AngleWarning, ToleranceError
-from mjbeer.theory import viscous_walk
-from mjbeer.theory.conserved import energy
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.forces import slip_rate
-from mjbeer.theory.place import ROUNDINGS
-from mjbeer.theory.viscous_equations import ViscousEquations
-from mjbeer.theory.viscous_walk import Walk
+from mjbeer.theory import damped
+from mjbeer.theory.equations import energy, slip_rate
+from mjbeer.theory.liquid import Damping
 from tests.support import damped_taylor, taylor
 from tests.support.scenes import METAL, scenes
 
@@ -38,7 +34,7 @@ def natural(scene: Scene) -> tuple[float, float]:
 
 def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> None:
     expected = damped_taylor.integrate(scene, time, phi0, phi_dot0)
-    found = exact(scene, time, phi0, phi_dot0, many_turns=True)
+    found = exact(scene, time, phi0, phi_dot0)
     radius, clock = scene.can.radius, natural(scene)[0]
     size = max(1.0, float(np.abs(expected[:, 0] - phi0).max()), float(np.ptp(expected[:, 1])) / radius)
     fastest = max(
@@ -221,15 +217,15 @@ def test_strong_damping_approaches_frozen(can: Can) -> None:
 
 def test_slip_at_the_start_is_gone_at_once_in_a_stiff_can() -> None:
     """The angular momentum about the line of contact stays: that of the rolling can and load before."""
-    scene = sliding(damping=1e9)
+    scene = sliding(damping=3e4)
     load, a = scene.load, scene.can.radius
     rate, phi0 = 5.0, 1.0
     axial, couple = load.inertia + load.mass * load.offset**2, load.mass * load.offset * math.cos(phi0)
     u_dot = load.offset * math.cos(phi0) * rate
     before = (a * load.mass - couple) * u_dot + (axial - a * couple) * rate
     common = before / (a**2 * load.mass + axial - 2 * a * couple)
-    motion = exact(scene, 1e-11, phi0, rate)  # 90 times the fast decay
-    assert motion.phi_dot[0] == pytest.approx(common, rel=1e-9)  # gravity adds 1e-11 s times 1e2 rad/s^2
+    motion = exact(scene, 1e-7, phi0, rate)  # 90 times the fast decay
+    assert motion.phi_dot[0] == pytest.approx(common, abs=2e-5)  # gravity adds 1e-7 s times 2e2 rad/s^2
 
 
 def test_motion_seen_from_behind() -> None:
@@ -273,7 +269,7 @@ def test_a_swing_dies_away_with_the_frequency_of_its_modes() -> None:
 def test_unstable_balance() -> None:
     """On level ground the top is an equilibrium; beside it rounding decides, and there is an error."""
     scene = sliding(0.0, damping=1e-3)
-    assert (exact(scene, [0.0, 9.0], 3 * math.pi, many_turns=True).phi == 3 * math.pi).all()
+    assert (exact(scene, [0.0, 9.0], 3 * math.pi).phi == 3 * math.pi).all()
     with pytest.raises(ToleranceError, match=r"phi is not known later than at \d.* s: rounding of start and scene"):
         exact(scene, 3.0, math.nextafter(math.pi, 0) - 1e-15)
     assert exact(scene, 0.5, math.pi - 1e-6).phi[0] < math.pi - 1e-6
@@ -296,52 +292,11 @@ def test_the_effect_of_rounding_is_that_of_a_nudge() -> None:
     assert 0.8 < known < 2.0
 
 
-def unsure(scene: Scene, time: float, phi0: float) -> tuple[float, float]:
-    walk = Walk(ViscousEquations.of(scene), np.array([time]), phi0, 0.0, 0.0)
-    walk.run()
-    return walk.unsure
-
-
-def response(scene: Scene, time: float, phi0: float, aside: float) -> tuple[float, float]:
-    """How much phi and roll change at a time per change of phi0, whose u stays what it is."""
-    ends = []
-    for side in (-aside, aside):
-        walk = Walk(ViscousEquations.of(scene), np.array([time]), phi0 + side, 0.0, 0.0)
-        walk.run()
-        ends.append(walk.samples[0, :2])
-    turned, rolled = (ends[1] - ends[0]) / (2 * aside)
-    return float(1 + turned), float(rolled)
-
-
-def test_the_effect_of_rounding_starts_with_that_of_the_scene() -> None:
-    """At phi = 0, which has no rounding, the incline's counts as one of a radian; later ones are yet small."""
-    scene, time = sliding(damping=1e-3), 0.05
-    found, expected = unsure(scene, time, 0.0), response(scene, time, 0.0, 1e-6)
-    assert found == pytest.approx([2 * ROUNDINGS * abs(each) for each in expected], rel=0.02, abs=0)
-
-
-def test_the_effect_of_rounding_grows_as_the_motion_s_own_response() -> None:
-    """Beside the top phi is rounded by pi at the start, with a radian for the incline, and by pi at each step."""
-    scene, start = sliding(0.0, damping=1e-3), math.pi - 1e-8
-    for time in (0.4, 0.8):
-        for found, expected in zip(unsure(scene, time, start), response(scene, time, start, 1e-9), strict=True):
-            by_start = 2 * ROUNDINGS * (math.pi + 1) * abs(expected)
-            assert 1.1 < found / by_start < 1.3  # what the steps add
-
-
-LIGHT = Scene(Can(0.033, 0.12), Load(3e-14, 0.0329999999511, 3.2525e-26), 0.121, damping=7.2e-14)
-
-
-def test_a_load_that_hardly_resists_is_followed() -> None:
-    """Its load turns 1e11 times as easily as the can rolls: covariances of that span have no digit left."""
-    motion = exact(LIGHT, [0.0, 0.5], 1.0)
-    assert np.isfinite(motion.u).all()
-
-
-def test_extremes(monkeypatch: pytest.MonkeyPatch) -> None:
-    for c in (1e-50, 1e50):
-        assert np.isfinite(exact(sliding(damping=c), [0.0, 0.5], 1.0, 5.0).u).all()
-    monkeypatch.setattr(viscous_walk, "_STEPS", 200)
-    for rate in (1e8, -1e50):
-        with pytest.raises(ToleranceError, match=r"the motion takes more than 200 steps, which end at .* too fast"):
-            exact(sliding(damping=1e-3, drag=1e-3), 1.0, 1.0, rate)
+def test_the_edges_of_the_domain(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Damping that decays at 1e-9/s and 1e9/s, and a start so fast that it takes too many steps."""
+    unit = sliding().oscillator.base
+    for rate in (1e-9, 3e8):
+        assert np.isfinite(exact(sliding(damping=rate * unit * 0.1), [0.0, 0.5], 1.0, 5.0).u).all()
+    monkeypatch.setattr(damped, "_STEPS", 200)
+    with pytest.raises(ToleranceError, match=r"the motion takes more than 200 steps, which end at .* too fast"):
+        exact(sliding(damping=1e-3, drag=1e-3), 1.0, 1.0, 1e6)
