@@ -13,9 +13,7 @@ from mjbeer.model.pattern import Editable, Plan
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.recorder import Recorder
-from mjbeer.simulation.solution import Solution
-from mjbeer.simulation.stepping import Stepper
+from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.simulation.tolerance import Solver, tuning
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.scene import Scene
@@ -106,7 +104,7 @@ class Prepared:
             return self._method.run(start, times, self.setting.tolerance, math.inf if friction is None else friction)
         recorder = None if friction is None else Recorder(self.model, self.scene, friction)
         if isinstance(self._method, Integrator | GaussJackson):
-            states = self._method.run(start, times, self._step, recorder=recorder)
+            states = self._method.run(start, times, self._step, watch=recorder)
         else:
             steps = np.rint(times / self.setting.timestep).astype(np.int64)
             states = self._method.run(start, steps, recorder)

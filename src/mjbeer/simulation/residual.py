@@ -14,8 +14,7 @@ import numpy as np
 from mjbeer.model.engine import quiet
 from mjbeer.model.state import places, read, write
 from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import accelerations
-from mjbeer.theory.losses import stiffness
+from mjbeer.theory.forces import accelerations, stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 

@@ -12,7 +12,6 @@ from mjbeer.exceptions import ParameterError, UntrustedWarning
 from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trust import doubts
 
 _ON_A_STEP = 1e-10
 """Largest distance of a requested time from a multiple of the timestep h, over the time itself: it allows for rounding.
@@ -77,7 +76,7 @@ def simulate(
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
-    if found := doubts(run.record, can_part=run.rolling == "contact"):
+    if found := run.doubts:
         warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
     return run
 

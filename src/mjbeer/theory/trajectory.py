@@ -13,9 +13,8 @@ from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import conserved, measure
 from mjbeer.theory.coordinates import Coordinates
 from mjbeer.theory.forces import Forces, rolling_forces
-from mjbeer.theory.record import Record
+from mjbeer.theory.record import Record, doubts
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trust import doubts
 
 
 def _views() -> Any:
@@ -112,7 +111,7 @@ class Trajectory(Coordinates):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
-        return tuple(doubts(self.record, can_part=self.rolling == "contact"))
+        return tuple(doubts(self.record, self.rolling))
 
     def plot(self, theory: bool = False) -> Any:
         """Plot phi [degrees] and u [m] over time in a new figure, and return its two matplotlib axes.

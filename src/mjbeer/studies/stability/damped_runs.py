@@ -24,9 +24,9 @@ from mjbeer.studies.stability.truth import angles
 from mjbeer.theory.can import Can
 from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.exact import exact
+from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import sliding
-from mjbeer.theory.trust import ERROR
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)
 """Outcomes of a run, as numbers for the cells of a map. It exploded, or was refused; its error is above `trust.ERROR`,
