@@ -17,7 +17,7 @@ import pytest
 
 from hatch_build import long_description
 from mjbeer import frozen, hoop, pendulum, simulate, sliding
-from mjbeer.drawing import views
+from mjbeer.theory.trajectory import csv
 
 pytestmark = pytest.mark.slow
 
@@ -164,7 +164,5 @@ def test_the_installed_wheel_builds_and_simulates(installed: pathlib.Path, tmp_p
 
 def test_the_installed_command_runs(installed: pathlib.Path, tmp_path: pathlib.Path) -> None:
     words = ("simulate", "frozen", "--phi0", "0", "--duration", "0.1", "--output", "-")
-    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == views.csv(
-        simulate(frozen(), 0.1, 0.0)
-    )
+    assert run(installed, tmp_path, str(installed / "bin" / "mjbeer"), *words) == csv(simulate(frozen(), 0.1, 0.0))
     assert not os.listdir(tmp_path)

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING
 
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
 from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import liquid
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, hoop, liquid, pendulum, register_views, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -57,6 +55,7 @@ _LAZY = {
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep.run",
 }
+register_views(lambda: import_module("mjbeer.drawing.views"))
 
 
 def __getattr__(name: str) -> object:

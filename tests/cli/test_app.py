@@ -18,9 +18,9 @@ import pytest
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import main
 from mjbeer.cli.figures import Figures
-from mjbeer.drawing import views
 from mjbeer.studies.benchmark import advice
 from mjbeer.studies.benchmark.points import Benchmark
+from mjbeer.theory.trajectory import csv
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow
@@ -42,7 +42,7 @@ def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsy
     target = tmp_path / "new" / "motion.csv"
     assert main(["simulate", name, "--phi0", "57", "--phi-dot0", "-20", "--duration", "0.1", f"--output={target}"]) == 0
     run = simulate(SCENES[name], 0.1, math.radians(57), math.radians(-20))
-    assert target.read_text() == views.csv(run)
+    assert target.read_text() == csv(run)
     out, err = capsys.readouterr()
     assert out == Figures(run).text()
     assert err == f"wrote {target}\n" + "".join(f"note: {note}\n" for note in Figures(run).notes)
@@ -55,7 +55,7 @@ def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsy
 def test_standard_output_has_the_csv_alone(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "--duration", "0.05", "--output", "-", "frozen"]) == 0
     out, err = capsys.readouterr()
-    assert out == views.csv(simulate(frozen(), 0.05, math.radians(60)))
+    assert out == csv(simulate(frozen(), 0.05, math.radians(60)))
     assert "phi at the end" in err
 
 
@@ -173,7 +173,7 @@ def test_standard_output_has_the_json_alone(tmp_path: pathlib.Path, capsys: pyte
     assert content == json.loads(Figures(run, 0.6).json())
     assert (content["trusted"], content["warnings"]) == (False, list(run.warnings))
     assert err.splitlines()[0] == f"wrote {target}"
-    assert target.read_text() == views.csv(run)
+    assert target.read_text() == csv(run)
 
 
 def test_a_tolerance_has_the_integrator_that_keeps_it(capsys: pytest.CaptureFixture[str]) -> None:

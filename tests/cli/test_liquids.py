@@ -8,7 +8,7 @@ import pytest
 
 import mjbeer
 from mjbeer.cli.app import main
-from mjbeer.theory.liquid import liquid_in
+from mjbeer.theory.scene import liquid_in
 
 
 def test_what_a_liquid_uses_is_told(capsys: pytest.CaptureFixture[str]) -> None:

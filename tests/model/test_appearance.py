@@ -13,7 +13,7 @@ from mjbeer.model import appearance, mesh, parts, templates
 from mjbeer.model.build import build, compose
 from mjbeer.model.setting import Setting
 from mjbeer.theory.can import LENGTH, RADIUS
-from mjbeer.theory.segment import segment
+from mjbeer.theory.load import segment
 from tests.support import assets
 from tests.support.scenes import METAL
 

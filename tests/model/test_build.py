@@ -13,7 +13,7 @@ from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model.build import compose
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, Setting
 from mjbeer.model.state import read, start
-from mjbeer.theory.forces import accelerations
+from mjbeer.theory.equations import accelerations
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
 
 # Sums of a few products each, some of which cancel in part on a random scene.

@@ -16,8 +16,8 @@ from mjbeer.model.build import compose
 from mjbeer.model.present import farthest
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
 from mjbeer.model.state import places, read
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.forces import accelerations
+from mjbeer.theory.equations import accelerations
+from mjbeer.theory.liquid import Damping
 from tests.support.scenes import METAL, SCENES, scenes
 
 DAMPER = int(mujoco.mjtDisableBit.mjDSBL_DAMPER)

@@ -18,7 +18,7 @@ from mjbeer.model.build import compose
 from mjbeer.model.engine import library
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, Setting
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.liquid import Damping
 from tests.support.scenes import METAL, SCENES
 
 pytestmark = pytest.mark.slow

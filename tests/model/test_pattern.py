@@ -17,7 +17,7 @@ from mjbeer.model import pattern
 from mjbeer.model.build import compile_model
 from mjbeer.model.pattern import Editable, Plan
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, USUAL, Rolling, Setting, supported
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.liquid import Damping
 from tests.support.scenes import METAL, SCENES, scenes
 
 OTHERS = [

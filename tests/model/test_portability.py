@@ -22,7 +22,7 @@ from mjbeer.model import portable, state
 from mjbeer.model.export import export
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.model.softness import effective_softness
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.liquid import Damping
 from tests.support import others
 from tests.support.others import BY_NAME, FRICTION, START
 from tests.support.scenes import METAL, SCENES

@@ -10,13 +10,13 @@ import pytest
 from rich.console import Console, RenderableType
 
 from mjbeer import Scene, simulate
-from mjbeer.drawing import views
 from mjbeer.output.table import Table
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
 from mjbeer.studies.check import Result
 from mjbeer.studies.validation import motions, tables
 from mjbeer.studies.validation.run import Validation
+from mjbeer.theory.trajectory import csv
 from tests.support.scenes import SCENES
 
 PASSED = Result("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
@@ -37,8 +37,8 @@ def shown(content: RenderableType) -> str:
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_csv_gives_every_number_back_to_the_last_bit(scene: Scene) -> None:
     run = simulate(scene, 0.05, 1.0, 2.0)
-    header, *_ = views.csv(run).splitlines()
-    rows = np.loadtxt(io.StringIO(views.csv(run)), delimiter=",", skiprows=1)
+    header, *_ = csv(run).splitlines()
+    rows = np.loadtxt(io.StringIO(csv(run)), delimiter=",", skiprows=1)
     columns = {
         "time [s]": run.time,
         "u [m]": run.u,

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from mjbeer import hoop, simulate
 from mjbeer.paper.equations import hopping
-from mjbeer.theory.forces import rolling_forces
+from mjbeer.theory.equations import rolling_forces
 
 MU, WEIGHT, HOOP = 0.2, 3.0, 1.0
 SCENE = hoop(hoop_mass=HOOP, load_mass=WEIGHT, radius=1.0, length=1.0, gravity=1.0)

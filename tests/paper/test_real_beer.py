@@ -15,10 +15,9 @@ from mjbeer.paper.stories import real_beer
 from mjbeer.paper.stories.real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.full_can import FullCan
-from mjbeer.theory.liquid import ENDS, FIT_ERROR, WALL, liquid_in
-from mjbeer.theory.liquids import LIQUIDS, NAMES
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.segment import segment
+from mjbeer.theory.liquid import ENDS, FIT_ERROR, LIQUIDS, NAMES, WALL
+from mjbeer.theory.load import segment
+from mjbeer.theory.scene import Scene, liquid_in
 
 pytestmark = pytest.mark.slow
 

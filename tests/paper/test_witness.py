@@ -7,7 +7,7 @@ import pytest
 
 from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.paper.audit.witness import Witness, examine, watch
-from mjbeer.theory.forces import accelerations, rolling_forces
+from mjbeer.theory.equations import accelerations, rolling_forces
 
 # MuJoCo takes the drift of its joint equality back: 3e-9 of the accelerations.
 DRIFT = 2e-8

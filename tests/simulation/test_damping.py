@@ -13,10 +13,10 @@ from mjbeer import Can, Load, Scene, build, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.forces import rolling_forces
+from mjbeer.theory.equations import rolling_forces
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.losses import stiffest
-from mjbeer.theory.measure import distance
+from mjbeer.theory.trajectory import distance
 from mjbeer.theory.trust import ERROR
 from tests.support import damped
 from tests.support.scenes import METAL, scenes

@@ -13,7 +13,7 @@ from mjbeer.model.build import build
 from mjbeer.model.state import read, start
 from mjbeer.simulation import dop853_kernel
 from mjbeer.simulation.dop853 import Integrator, integrate
-from mjbeer.theory.forces import accelerations
+from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
 

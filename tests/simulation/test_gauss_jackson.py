@@ -22,8 +22,8 @@ from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.recorder import Recorder
 from mjbeer.studies.convergence import observed_order
-from mjbeer.theory.measure import distance
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import distance
 from tests.support.scenes import SCENES
 
 # E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I: table III.1.1 (Adams-Bashforth),

@@ -3,8 +3,7 @@
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import accelerations
+from mjbeer.theory.equations import Coordinates, accelerations
 from mjbeer.theory.scene import Scene
 
 FINE = 1e-12

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import NoLibrationError, ParameterError
-from mjbeer.theory.conserved import kinetic_energy
+from mjbeer.theory.equations import kinetic_energy
 from tests.support.scenes import METAL, SCENES, scenes
 from tests.theory.test_motion import Witness, mp
 

@@ -13,7 +13,7 @@ from mjbeer.paper.equations.frozen import eq_52
 from mjbeer.paper.equations.pendulum import eq_57, eq_58, eq_60, eq_61, printed_61
 from mjbeer.paper.equations.sliding import eq_16
 from mjbeer.paper.letters import Quantities
-from mjbeer.theory.forces import accelerations, rolling_forces
+from mjbeer.theory.equations import accelerations, rolling_forces
 from tests.support.scenes import METAL, SCENES
 from tests.theory.test_motion import Motion, Witness, mp, mpf
 

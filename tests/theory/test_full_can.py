@@ -9,7 +9,7 @@ import pytest
 from mjbeer import Can
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.full_can import FullCan, _terms
-from mjbeer.theory.liquids import LIQUIDS
+from mjbeer.theory.liquid import LIQUIDS
 
 FULL = FullCan(Can.sheet_metal())
 OIL = FullCan(Can.massless(), LIQUIDS["olive oil"].density, LIQUIDS["olive oil"].viscosity)

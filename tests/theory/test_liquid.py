@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 
 from mjbeer import Can, LiquidWarning, liquid, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, liquid_in
-from mjbeer.theory.liquids import NAMES
-from mjbeer.theory.segment import segment
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL
+from mjbeer.theory.load import segment
+from mjbeer.theory.scene import liquid_in
 
 # The coefficients are rounded to four and five digits.
 DIGITS = 1e-4

@@ -8,9 +8,8 @@ import pytest
 from scipy.integrate import cumulative_simpson
 
 from mjbeer import Scene, pendulum, sliding
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.forces import accelerations, slip_rate
+from mjbeer.theory.equations import Coordinates, accelerations, slip_rate
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.losses import followed, losses, stiffest, stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.trust import doubts

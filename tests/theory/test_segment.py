@@ -7,7 +7,7 @@ import pytest
 from mpmath import MPContext
 
 from mjbeer import Can, Load, frozen
-from mjbeer.theory.segment import Segment, segment
+from mjbeer.theory.load import Segment, segment
 
 mp = MPContext()
 mp.dps = 60

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.forces import accelerations
+from mjbeer.theory.equations import accelerations
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.viscous_modes import _roots
 from tests.support.scenes import METAL, scenes
 

@@ -11,9 +11,9 @@ from scipy.optimize import brentq
 from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.measure import turning_times
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import Record, axis_drift
+from mjbeer.theory.trajectory import turning_times
 from mjbeer.theory.trust import ERROR, LIFT, SLIP, doubts
 from tests.support.scenes import METAL, SCENES
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from mjbeer import Can, Damping, Load, Scene, frozen, hoop, pendulum, sliding
-from mjbeer.theory.words import damping_in_words, in_degrees, in_words
+from mjbeer.theory.scene import damping_in_words, in_degrees, in_words
 
 
 @pytest.mark.parametrize(

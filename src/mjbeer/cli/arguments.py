@@ -12,11 +12,9 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
-from mjbeer.theory.liquid import liquid, liquid_in
-from mjbeer.theory.liquids import NAMES, Name
+from mjbeer.theory.liquid import NAMES, Name
 from mjbeer.theory.load import BEER
-from mjbeer.theory.scene import GRAVITY, Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, liquid, liquid_in, pendulum, sliding
 
 if TYPE_CHECKING:
     from mjbeer.theory.trajectory import Trajectory
@@ -268,5 +266,4 @@ class Motion:
             timestep=self.timestep,
             tolerance=self.tolerance,
             friction=self.friction,
-            many_turns=True,
         )

@@ -12,9 +12,8 @@ import numpy as np
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
 from mjbeer.theory.record import Record
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import Scene, damping_in_words
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import damping_in_words
 
 
 @dataclass(frozen=True, eq=False)

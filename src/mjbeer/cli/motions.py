@@ -37,7 +37,7 @@ class Simulate(Motion):
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
         from mjbeer.cli.figures import Figures
-        from mjbeer.drawing.views import csv
+        from mjbeer.theory.trajectory import csv
 
         to_output = str(self.output) == "-"
         if to_output and self.json:

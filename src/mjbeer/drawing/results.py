@@ -9,7 +9,7 @@ import numpy as np
 from mjbeer.drawing.overlay.sheet import Sheet
 from mjbeer.drawing.runner import Runner
 from mjbeer.drawing.world.view import circle
-from mjbeer.theory.segment import segment
+from mjbeer.theory.load import segment
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,26 +1,23 @@
-"""What a user sees of a trajectory or a scene besides numbers: a plot, a table, a file, a video, a notebook's cell.
+"""What a user sees of a trajectory or a scene besides numbers: a plot, a video, a notebook's cell.
 
-Trajectories and scenes belong to the theory, which knows neither plots nor files. Their methods load this module when
-they are called.
+Trajectories and scenes belong to the theory, which knows no pictures. Their methods load this module when they are
+called, as `mjbeer` registers it with them.
 """
 
 import html
-import io
 import math
 import os
 import pathlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import MjbeerError
 from mjbeer.output import files
-from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.exact import solution
+from mjbeer.theory.scene import Scene, damping_in_words, in_words
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import damping_in_words, in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,55 +26,6 @@ if TYPE_CHECKING:
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
-
-
-def columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
-    """Return the columns of a trajectory's table by their names, which end with the unit."""
-    return {
-        "time [s]": trajectory.time,
-        "u [m]": trajectory.u,
-        "phi [rad]": trajectory.phi,
-        "u_dot [m/s]": trajectory.u_dot,
-        "phi_dot [rad/s]": trajectory.phi_dot,
-        "roll [rad]": trajectory.roll,
-        "lift [m]": trajectory.lift,
-        "slip [m]": trajectory.slip,
-        "energy [J]": trajectory.energy,
-        "normal force needed [N]": trajectory.forces.normal,
-        "friction force needed [N]": trajectory.forces.friction,
-    }
-
-
-def csv(trajectory: Trajectory) -> str:
-    """Return a trajectory as CSV: one line per sample, units in the header, numbers with all their digits."""
-    table, text = columns(trajectory), io.StringIO()
-    np.savetxt(
-        text, np.column_stack(list(table.values())), fmt="%.17g", delimiter=",", header=",".join(table), comments=""
-    )
-    return text.getvalue()
-
-
-def write_csv(trajectory: Trajectory, path: str | os.PathLike[str]) -> None:
-    """Write a trajectory as CSV, as `csv` returns it.
-
-    Raises:
-      OutputError: if the file cannot be written; an older one of that name then stays as it was.
-    """
-    with files.whole(require.path(path)) as temporary:
-        temporary.write_text(csv(trajectory), encoding="utf-8")
-
-
-def dataframe(trajectory: Trajectory) -> Any:
-    """Return a trajectory as a pandas DataFrame: a row for each sample, columns with their units.
-
-    Raises:
-      MjbeerError: if pandas is not installed.
-    """
-    try:
-        import pandas as pd
-    except ImportError as error:
-        raise MjbeerError("to_dataframe needs pandas: pip install pandas") from error
-    return pd.DataFrame(columns(trajectory))
 
 
 def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
@@ -100,7 +48,7 @@ def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
             start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
-            truth = exact(scene, dense, **start, many_turns=True)
+            truth = solution(scene, dense, **start)
             above.plot(dense, np.degrees(truth.phi), label="exact theory", **THEORY)
             below.plot(dense, truth.u, **THEORY)
         name = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"

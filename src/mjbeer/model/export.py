@@ -5,7 +5,7 @@ import pathlib
 
 import mujoco
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import portable as portability
 from mjbeer.model import same, setting
@@ -48,7 +48,7 @@ def export(
     require.instance("scene", scene, Scene)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {messages.shown(target.name)}")
+        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
     wanted = setting.Setting(rolling, integrator, timestep, friction=friction)
     if wanted.integrator in setting.OWN:
         raise UnsupportedError(

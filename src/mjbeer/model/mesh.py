@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from mjbeer.theory.segment import segment
+from mjbeer.theory.load import segment
 
 Mesh = tuple[np.ndarray, np.ndarray]
 """Vertices and faces."""

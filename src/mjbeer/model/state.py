@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.engine import quiet
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 START_DEPTH = 1e-9

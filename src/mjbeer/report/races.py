@@ -10,11 +10,8 @@ from mjbeer.drawing.runner import Runner
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import liquid_in
-from mjbeer.theory.liquids import Name
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, sliding
-from mjbeer.theory.words import in_degrees
+from mjbeer.theory.liquid import Name
+from mjbeer.theory.scene import Scene, frozen, in_degrees, liquid_in, sliding
 
 METAL = Can.sheet_metal()
 LENGTH = 1.0

@@ -15,7 +15,7 @@ from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.simulation.tolerance import Solver, tuning
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 _GREATER = (math.sqrt(5) - 1) / 2

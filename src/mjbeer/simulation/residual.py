@@ -13,8 +13,7 @@ import numpy as np
 
 from mjbeer.model.engine import quiet
 from mjbeer.model.state import places, read, write
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import accelerations, stiffness
+from mjbeer.theory.equations import Coordinates, accelerations, stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 

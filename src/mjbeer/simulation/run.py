@@ -14,11 +14,10 @@ from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.stepping import Solution
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.measure import distance
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, doubts
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, distance
 
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so

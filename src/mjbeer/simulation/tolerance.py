@@ -16,10 +16,10 @@ from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.dop853_kernel import LARGEST
 from mjbeer.simulation.gauss_jackson import GaussJackson, plan
 from mjbeer.simulation.stepping import Recorder, Solution, Watcher
-from mjbeer.theory.forces import stiffness
-from mjbeer.theory.measure import angle_distance
+from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import angle_distance
 
 _SAFETY = 1.5
 """Error estimate over the distance of two runs."""

@@ -6,8 +6,7 @@ import numpy as np
 
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 SAMPLES = 65

@@ -21,8 +21,7 @@ class Can:
     """The properties of a can on which its rolling depends.
 
     Raises:
-      ParameterError: on a size that is not positive, a negative or non-finite mass or
-        inertia, or an inertia without mass.
+      ParameterError: if one of them is outside the domain, or a can without mass has inertia.
     """
 
     radius: float = RADIUS
@@ -37,15 +36,21 @@ class Can:
     def __post_init__(self) -> None:
         require.store(
             self,
-            radius=require.positive("can radius", self.radius, "m"),
-            length=require.positive("can length", self.length, "m"),
-            mass=require.non_negative("can mass", self.mass, "kg"),
+            radius=require.within("can radius", self.radius, *require.SIZE, "m"),
+            length=require.within("can length", self.length, *require.SIZE, "m"),
+            mass=require.within("can mass", self.mass, *require.MASS, "kg", zero=True),
             inertia=require.non_negative("can inertia", self.inertia, "kg m^2"),
         )
         if self.mass == 0 and self.inertia > 0:
             raise ParameterError(
                 f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"
             )
+        require.within("can inertia", self.inertia, 0, require.RATIO * self.mass * self.radius**2, "kg m^2")
+
+    @property
+    def effective_mass(self) -> float:
+        """Return the mass that the rolling can puts against a force along the incline, K = m_can + I_can/a^2 [kg]."""
+        return self.mass + self.inertia / self.radius**2
 
     @classmethod
     def massless(cls, radius: float = RADIUS, length: float = LENGTH) -> "Can":
@@ -61,10 +66,10 @@ class Can:
         `thickness` is the sheet's [m], `density` the metal's [kg/m^3].
 
         Raises:
-          ParameterError: if one of the numbers is not positive.
+          ParameterError: as `Can`.
         """
-        radius = require.positive("can radius", radius, "m")
-        length = require.positive("can length", length, "m")
+        radius = require.within("can radius", radius, *require.SIZE, "m")
+        length = require.within("can length", length, *require.SIZE, "m")
         thickness = require.positive("sheet thickness", thickness, "m")
         density = require.positive("sheet density", density, "kg/m^3")
         sheet = math.pi * radius * thickness * density
@@ -77,10 +82,8 @@ class Can:
         """Return a hoop, which has all of its `mass` [kg] at the rim: I_can = m_can a^2 (appendices A.4 and B).
 
         Raises:
-          ParameterError: if one of the numbers is not positive.
+          ParameterError: as `Can`.
         """
-        radius = require.positive("hoop radius", radius, "m")
-        length = require.positive("hoop length", length, "m")
-        mass = require.positive("hoop mass", mass, "kg")
-        with require.from_given(radius=radius, mass=mass):
-            return cls(radius, length, mass=mass, inertia=mass * radius**2)
+        radius = require.within("hoop radius", radius, *require.SIZE, "m")
+        mass = require.within("hoop mass", mass, *require.MASS, "kg")
+        return cls(radius, length, mass, inertia=mass * radius**2)

@@ -15,7 +15,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquids import LIQUIDS
+from mjbeer.theory.liquid import LIQUIDS
 from mjbeer.theory.scene import GRAVITY, INCLINE
 
 _TERMS = 1200

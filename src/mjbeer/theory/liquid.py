@@ -1,39 +1,79 @@
-"""The damping of a can by a real liquid, from its viscosity and the geometry, and the scene that it makes.
+"""The torque between can and load, which turn at different rates, and what it is for a real liquid.
 
-The liquid is one lump, as in the rest of the theory, that lies still in the rolling can. What drags it along is
+A real liquid is one lump here, as in the rest of the theory, that lies still in the rolling can. Three things drag it
+along, at a slip rate W:
 
-- a thin liquid's layer on the wall, which enters it at one edge and thickens to the other (Sakiadis, AIChE J. 7, 221,
-  1961), and the layers on both ends (von Karman, Z. angew. Math. Mech. 1, 233, 1921): with the slip rate W,
+- on the wall and the ends of a can that rolls on, a thin liquid's layers, which enter the liquid at one edge and
+  thicken to the other (Sakiadis, AIChE J. 7, 221, 1961; von Karman, Z. angew. Math. Mech. 1, 233, 1921):
   T = rho a^3 sqrt(nu) (0.8875 sqrt(2 beta) L + 1.2318 a I/(m a^2) A/a^2) W^1.5. The ends are as if each ring were wet
   all round, and count by their wetted share, I A/m being the second moment of the wetted area A;
 - a thick liquid's creep: the wall shear 4 mu W/(pi sin(theta)) of Stokes flow in a half disc, which the edges, of a
   length of `_EDGE`, cut off: c = (8/pi) mu a^2 L ln(2/_EDGE). For other fills than a half it is an estimate;
-- on level ground, where the can only swings, the oscillating layer of Stokes on wall and ends:
-  c = rho sqrt(nu omega/2) (2 beta a^3 L + 2 I A/m).
+- in a can that only swings, the oscillating layers of Stokes on wall and ends:
+  c = rho sqrt(nu omega/2) (2 beta a^3 L + 2 I A/m), omega being the frequency of small swings on level ground.
 
-The larger of the first two torques counts. A real liquid sloshes as well, 1.5 times faster than the lump swings.
+One law follows, continuous in the incline, the viscosity and all the rest. MuJoCo's damping is a polynomial in W,
+and so is the law. It has the larger of the first two torques at the slip rate of steady rolling; but where a swing of
+some two radians slips faster than that, it has the swing's torque at the rate at which the layers of rolling drag as
+much as those of swinging. Where steady rolling is slower than `DECADE` of that, the swing's layers take over, until on
+level ground they are all there is. A real liquid sloshes as well, 1.5 times faster than the lump swings.
 """
 
 import math
-import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+
+import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, ParameterError
-from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.liquids import LIQUIDS, NAMES
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
-from mjbeer.theory.scenes import sliding
-from mjbeer.theory.segment import segment
+from mjbeer.exceptions import ParameterError
+from mjbeer.theory.load import segment
+
+if TYPE_CHECKING:
+    from mjbeer.theory.scene import Scene
+
+Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
+NAMES: tuple[Name, ...] = get_args(Name)
+
+
+class Properties(NamedTuple):
+    """What a liquid's flow depends on."""
+
+    density: float
+    """Density [kg/m^3]."""
+    viscosity: float
+    """Kinematic viscosity [m^2/s]."""
+
+
+LIQUIDS: dict[Name, Properties] = {
+    # IAPWS (2008): 1.0016 mPa s.
+    "water": Properties(998.2, 1.0034e-6),
+    # A lager of 5 % alcohol without its gas. Zhang and Xu, Elements 4, 47 (2008): 1.44 times the viscosity of water.
+    # Liger-Belair and Cilindre, ACS Omega 6, 9672 (2021): 2.42 mPa s at 6 degrees, 1.65 times, and 1010 kg/m^3.
+    "beer": Properties(1010.0, 1.6e-6),
+    # CRC Handbook of Chemistry and Physics: 84 mPa s; oils differ by some 10 %.
+    "olive oil": Properties(911.0, 9.2e-5),
+    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water. By the fit of Cheng, Ind. Eng.
+    # Chem. Res. 47, 3285 (2008), to such tables a hundredth of water takes a fifth of it.
+    "glycerol": Properties(1261.0, 1.12e-3),
+    # Of 18 % water, some 10 Pa s. By tables after Munro, J. Econ. Entomol. 36, 769 (1943), clover honey of 16 % has 19
+    # Pa s, and a hundredth more of water does what 3.5 degrees do: it takes a third.
+    "honey": Properties(1420.0, 7e-3),
+}
+"""Handbook values at 20 degrees Celsius; where samples differ, by how much is said beside them."""
 
 WALL = 0.8875
 """Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L."""
 ENDS = 2 * 0.61592
 """Von Karman's torque on two discs, over rho sqrt(nu) W^1.5 and the second moment of the area."""
+DECADE = 0.139, 1.39
+"""Slip rates, over that of the fit, between which the polynomial is as near to W^1.5 as `FIT_ERROR`."""
 FIT_ERROR = 0.0785
-"""Largest relative error of the fitted polynomial from W^1.5 between 0.139 and 1.39 times the slip rate of steady
-rolling, where it has none. No polynomial with non-negative coefficients is better over a decade."""
+"""Largest relative error of the fitted polynomial from W^1.5 there, where it has none at the slip rate of the fit. No
+polynomial with non-negative coefficients is better over a decade."""
+_CURVED = (1 + math.sqrt(1 - 16 / (2 + 10**0.25 + 10**-0.25) ** 2)) / 2
+"""Share of the quadratic term in the torque at the slip rate of that fit. With x the slip rate over the decade's
+geometric mean it is x + x^2 times a factor: over x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and most at the ends."""
 _EDGE = 0.03
 """Length at the edges of the surface where the liquid slips or is carried along, over a: 1 mm in a 12-oz can. A third
 or three times of it changes c by a quarter."""
@@ -47,6 +87,75 @@ _CARRIED = 1 / 3
 
 
 @dataclass(frozen=True)
+class Damping:
+    """A torque c1 w + c2 w |w| + c3 w^3 against the slip rate w of can and load [rad/s].
+
+    The slip rate is roll_dot - phi_dot, by which the can turns faster than its load. The torque acts on the load with
+    the sign of w and on the can with the other one. MuJoCo's damping of a joint or a tendon is the same polynomial.
+
+    Raises:
+      ParameterError: if a coefficient is negative or not finite.
+    """
+
+    linear: float = 0.0
+    """c1 [N m s], of a torque that is proportional to the slip rate."""
+    quadratic: float = 0.0
+    """c2 [N m s^2]."""
+    cubic: float = 0.0
+    """c3 [N m s^3]."""
+    holds: tuple[float, float] | None = field(default=None, compare=False, repr=False, kw_only=True)
+    """Slip rates [rad/s] between which it is the damping of a real liquid; None if it is not one's."""
+
+    def __post_init__(self) -> None:
+        require.store(
+            self,
+            linear=require.non_negative("damping", self.linear, "N m s"),
+            quadratic=require.non_negative("quadratic damping", self.quadratic, "N m s^2"),
+            cubic=require.non_negative("cubic damping", self.cubic, "N m s^3"),
+        )
+
+    def __bool__(self) -> bool:
+        """Return whether there is any torque."""
+        return any(self.coefficients)
+
+    @property
+    def coefficients(self) -> tuple[float, float, float]:
+        """Return c1, c2 and c3."""
+        return self.linear, self.quadratic, self.cubic
+
+    def torque(self, rate: np.ndarray | float) -> np.ndarray | float:
+        """Return the torque [N m] at a slip rate [rad/s]."""
+        size = np.abs(rate)
+        return rate * (self.linear + size * (self.quadratic + size * self.cubic))
+
+    def slope(self, rate: np.ndarray | float) -> np.ndarray | float:
+        """Return the derivative of the torque by the slip rate [N m s] at a slip rate [rad/s]."""
+        size = np.abs(rate)
+        return self.linear + size * (2 * self.quadratic + size * 3 * self.cubic)
+
+    def rate(self, torque: float) -> float:
+        """Return the slip rate [rad/s] at which the torque is `torque` [N m]; it is infinite if there is no damping."""
+        return root(self.coefficients, torque)
+
+
+def root(coefficients: tuple[float, float, float], value: float) -> float:
+    """Return x with c1 x + c2 x |x| + c3 x^3 = `value`, where no coefficient is negative; infinite if all are zero."""
+    if value == 0:
+        return 0.0
+    size, (linear, quadratic, cubic) = abs(value), coefficients
+    # Each term alone would need a larger x. Newton's method falls from above, as the sum is convex.
+    terms = enumerate(coefficients, start=1)
+    x = min(((size / share) ** (1 / power) for power, share in terms if share > 0), default=math.inf)
+    while x < math.inf:
+        excess = x * (linear + x * (quadratic + x * cubic)) - size
+        lower = x - excess / (linear + x * (2 * quadratic + x * 3 * cubic))
+        if not lower < x:
+            break
+        x = lower
+    return math.copysign(x, value)
+
+
+@dataclass(frozen=True)
 class Liquid:
     """A liquid in a can, and the damping that follows."""
 
@@ -56,9 +165,9 @@ class Liquid:
     viscosity: float
     """Kinematic viscosity nu [m^2/s]."""
     law: str
-    """"thin layers", "creep" or "swing": which of the laws gave the damping."""
+    """"thin layers", "creep" or "swing": which of the laws has the most to say in the damping."""
     slip: float
-    """Slip rate of the steady rolling for which it is right [rad/s]; 0 on level ground."""
+    """Slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground."""
     film: float
     """Thickness of the film that the wall carries round there, sqrt(nu a slip/g) [m]."""
     carried: float
@@ -73,100 +182,103 @@ class Liquid:
         )
 
 
-def liquid(
-    name: str = "water",
-    incline: float = INCLINE,
-    fill: float = 0.5,
-    can: Can | None = None,
-    density: float | None = None,
-    viscosity: float | None = None,
-    gravity: float = GRAVITY,
-    drag: float = 0.0,
-) -> Scene:
-    """Return the scene of a can with a real liquid in it, whose damping follows from viscosity and geometry.
-
-    `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density` [kg/m^3] and
-    kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is h/2a of eq. (32), less than 1;
-    `drag` [kg/m] is that of the air. `liquid_in` tells what was used, and the module's docstring the laws.
-
-    A thin liquid's torque goes with the slip rate to 1.5, which a polynomial fits to `FIT_ERROR`. A `LiquidWarning`
-    says where the film on the wall can hold a third of the liquid: there the damping is an order of magnitude only.
+def liquid_law(name: str, viscosity: float, density: float, free: "Scene") -> Liquid:
+    """Return what a liquid does to a `free` scene, in which it slides without friction.
 
     Raises:
-      ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
+      ParameterError: if the can is full, there is no gravity, or the layers would be turbulent.
     """
-    used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
-    scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
-    if used.carried > _CARRIED:
-        share = f"{100 * used.carried:.0f} %" if used.carried < 1 else "all"
-        warnings.warn(
-            f"{used.name} coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold "
-            f"{share} of the liquid. The damping of one lump is an order of magnitude only",
-            LiquidWarning,
-            stacklevel=2,
-        )
-    return scene
-
-
-def liquid_in(
-    name: str = "water",
-    incline: float = INCLINE,
-    fill: float = 0.5,
-    can: Can | None = None,
-    density: float | None = None,
-    viscosity: float | None = None,
-    gravity: float = GRAVITY,
-) -> Liquid:
-    """Return what `liquid` uses for the same arguments: density, viscosity, law and damping.
-
-    Raises:
-      ParameterError: as `liquid`.
-    """
-    name = require.choice("liquid", name, NAMES)
-    own = LIQUIDS[name]
-    density = own.density if density is None else require.positive("density", density, "kg/m^3")
-    nu = own.viscosity if viscosity is None else require.positive("viscosity", viscosity, "m^2/s")
-    free = sliding(incline, fill, can, density, gravity)
-    if free.load.offset == 0 or free.gravity == 0:
+    can, load, nu = free.can, free.load, viscosity
+    if load.offset == 0 or free.gravity == 0 or load.fill is None:
         raise ParameterError(
             "a liquid's damping is that of a can which it fills in part, under gravity: fill must be less than 1 and "
-            f"gravity more than 0, got fill = {fill!r} and gravity = {gravity!r} m/s^2"
+            f"gravity more than 0, got fill = {load.fill!r} and gravity = {free.gravity!r} m/s^2"
         )
-    a, length, shape = free.can.radius, free.can.length, segment(fill)
+    a, length, shape = can.radius, can.length, segment(load.fill)
     moment = shape.area * (shape.inertia + shape.offset**2)  # second moment of the wetted area of an end, over a^4
     arc = 2 * shape.half_angle
-    if free.incline == 0:
-        layer = density * math.sqrt(nu * free.frequency() / 2)
-        swing = Damping(layer * a**3 * (arc * length + 2 * moment * a))
-        return Liquid(name, density, nu, "swing", 0.0, 0.0, 0.0, swing)
-    torque = free.mass * free.gravity * a * abs(math.sin(free.incline))
-    torque = min(torque, free.load.mass * free.gravity * free.load.offset)  # all that the load can hold
-    thin = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
-    thick = 8 / math.pi * density * nu * a**2 * length * math.log(2 / _EDGE)
-    slip = (torque / thin) ** (2 / 3)
-    creeps = thick * slip > torque
-    if creeps:
-        law, damping, slip = "creep", Damping(thick), torque / thick
-    else:
-        law, damping = "thin layers", _fitted(thin, slip)
-        if (reynolds := slip * a * arc * a / nu) > _TURBULENT:
-            raise ParameterError(
-                f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}), which no law "
-                f"here knows: the viscosity is too small or the can too fast, got {nu:.4g} m^2/s, "
-                f"incline = {incline!r} rad, fill = {fill!r}, gravity = {gravity!r} m/s^2, "
-                f"density = {density!r} kg/m^3 in {free.can!r}"
-            )
-    film = math.sqrt(nu * a * slip / free.gravity)
-    return Liquid(name, density, nu, law, slip, film, FILM_LOAD * film / (shape.area * a), damping)
+    layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
+    creep = 8 / math.pi * density * nu * a**2 * length * math.log(2 / _EDGE)
+    omega = math.sqrt(load.moment * free.gravity / free.oscillator.base)
+    swing = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
+
+    torque = min(abs(free.drive) * a, load.moment * free.gravity)  # the latter is all that the load can hold
+    steady = min((torque / layers) ** (2 / 3), torque / creep)
+    wide = (swing / layers) ** 2 if swing > creep else 0.0
+    slip = max(steady, wide)
+    drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
+    rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0
+    bent = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
+    if bent > 0 and (reynolds := slip * a * arc * a / nu) > _TURBULENT:
+        raise ParameterError(
+            f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}), which no law here knows: the "
+            f"viscosity is too small or the can too fast, got {nu:.4g} m^2/s in {free!r}"
+        )
+    holds = DECADE[0] * slip * bent / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
+    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds)
+    law = "swing" if rolled < 1 else "thin layers" if drag > creep else "creep"
+    film = math.sqrt(nu * a * steady / free.gravity)
+    return Liquid(name, density, nu, law, steady, film, FILM_LOAD * film / (shape.area * a), damping)
 
 
-def _fitted(factor: float, slip: float) -> Damping:
-    """Return the polynomial nearest to `factor` W^1.5 in a decade, exact at the `slip` rate [rad/s] of steady rolling.
+def about_scene(liquid: Liquid, speed: float, scene: "Scene") -> str | None:
+    """Return what speaks against one lump of a liquid at a terminal `speed` [m/s]; None if nothing does."""
+    reasons = []
+    if liquid.carried > _CARRIED:
+        share = f"{100 * liquid.carried:.0f} %" if liquid.carried < 1 else "all"
+        reasons.append(
+            f"it coats the can: the wall carries round a film of {1e3 * liquid.film:.2g} mm, which can hold {share} of "
+            "the liquid"
+        )
+    if (ratio := float(centrifugal(scene, speed))) > 1:
+        reasons.append(
+            f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times "
+            "g cos(alpha), which spreads it round the can"
+        )
+    if outside := _outside(scene, abs(speed) / scene.can.radius):
+        reasons.append(f"steady rolling is not what {outside}")
+    return _order_of_magnitude(liquid.name, reasons)
 
-    With x = W/W0 it is x + x^2 times a factor: over x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and most at the ends.
+
+def about_run(scene: "Scene", fastest: float, lost_at: float) -> str | None:
+    """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
+
+    `fastest` is the largest slip rate of the run [rad/s], and `lost_at` when it is no lump any more, as `lost_at` has
+    it [s].
     """
-    most = 10**0.25 + 10**-0.25
-    share = 2 / (2 + most)
-    root = (1 / share + math.sqrt(1 / share**2 - 4)) / 2
-    middle = slip / root**2
-    return Damping(share * factor * math.sqrt(middle), share * factor / math.sqrt(middle))
+    if scene.damping_law.holds is None:
+        return None
+    reasons = []
+    if lost_at < math.inf:
+        reasons.append(
+            f"from t = {lost_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which spreads "
+            "it round the can"
+        )
+    if outside := _outside(scene, fastest):
+        reasons.append(f"the run is not what {outside}")
+    return _order_of_magnitude("the liquid", reasons)
+
+
+def centrifugal(scene: "Scene", u_dot: np.ndarray | float) -> np.ndarray | float:
+    """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
+    return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
+
+
+def lost_at(scene: "Scene", time: np.ndarray, u_dot: np.ndarray) -> float:
+    """Return the first of the times [s] at which `centrifugal` is more than 1; infinite if there is none."""
+    fast = np.flatnonzero(np.square(u_dot) > scene.can.radius * scene.gravity * math.cos(scene.incline))
+    return float(time[fast[0]]) if len(fast) else math.inf
+
+
+def _outside(scene: "Scene", slip: float) -> str:
+    """Return for what the damping of a liquid is meant, if that is not a largest slip rate [rad/s]; empty if it is."""
+    lowest, highest = scene.damping_law.holds or (0.0, math.inf)
+    if lowest * (1 - 1e-9) <= slip <= highest:
+        return ""
+    return f"the damping is for, {lowest:.3g} to {highest:.3g} rad/s between can and liquid, but {slip:.3g}"
+
+
+def _order_of_magnitude(name: str, reasons: list[str]) -> str | None:
+    """Return the reasons in one sentence."""
+    said = "; ".join(reasons)
+    return f"{name} as one lump is an order of magnitude only: {said}" if reasons else None

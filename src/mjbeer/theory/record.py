@@ -4,9 +4,17 @@ import math
 
 import numpy as np
 
-from mjbeer.theory.conserved import axis_without_swing, kinetic_energy, potential_energy, steady_acceleration
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.forces import accelerations, dissipation, rolling_forces, slip_rate
+from mjbeer.theory.equations import (
+    Coordinates,
+    accelerations,
+    axis_without_swing,
+    dissipation,
+    kinetic_energy,
+    potential_energy,
+    rolling_forces,
+    slip_rate,
+    steady_acceleration,
+)  # fmt: skip
 from mjbeer.theory.scene import Scene
 
 ERROR = 1e-2

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from mjbeer.exceptions import DissipationError, NoEquilibriumError
-from mjbeer.theory.damping import root
+from mjbeer.theory.liquid import root
 
 if TYPE_CHECKING:
     from mjbeer.theory.scene import Scene

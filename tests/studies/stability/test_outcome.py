@@ -21,7 +21,7 @@ from mjbeer.studies.stability.outcome import (
     UNSTABLE,
     judge,
 )
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 
 TIME = np.linspace(0, 1, 201)
 

@@ -9,7 +9,7 @@ from mjbeer import Can, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.studies.benchmark.peers import with_heyoka
 from mjbeer.studies.stability.reference import lagrangian
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
-from mjbeer.theory.conserved import energy
+from mjbeer.theory.equations import energy
 from mjbeer.theory.load import Load
 from tests.support import lagrange
 

@@ -14,7 +14,7 @@ from mjbeer.studies import convergence
 from mjbeer.studies.check import Check, Result
 from mjbeer.studies.validation import models, motions
 from mjbeer.theory import exact as theory
-from mjbeer.theory import measure
+from mjbeer.theory import trajectory
 
 CHECKS = motions.checks()
 
@@ -49,7 +49,7 @@ def test_a_wrong_motion_is_found_out() -> None:
     assert theory.phi_error(wrong) > 1e-7
     assert abs(2 * math.pi / wrong.frequency() / sliding().period(1.0) - 1) > 1e-9
     steady = simulate(sliding(gravity=9.81 * (1 + 1e-6)), 2, 0.0)
-    assert abs(measure.mean_acceleration(steady) / sliding().acceleration() - 1) > 1e-10
+    assert abs(trajectory.mean_acceleration(steady) / sliding().acceleration() - 1) > 1e-10
 
 
 def test_an_order_is_the_slope() -> None:

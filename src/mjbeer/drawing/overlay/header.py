@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from mjbeer.drawing.overlay.look import Look
 from mjbeer.drawing.overlay.marks import LEGENDS
 from mjbeer.drawing.overlay.sheet import Sheet
+from mjbeer.theory.scene import in_words
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import in_words
 
 HEIGHT = 4.1
 """Height of the first two lines, in units of the picture."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
 _EARTH = 9.81

@@ -15,8 +15,7 @@ from mjbeer.paper.letters import Letters, Terms
 from mjbeer.paper.looping import Looping, cosines, loop
 from mjbeer.paper.scenarios import DECADE
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.scene import Scene, sliding
 
 FAST = 350.0
 """phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop."""

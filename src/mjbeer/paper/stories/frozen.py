@@ -28,10 +28,8 @@ from mjbeer.output.plots import (
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import INCLINE, Scene
-from mjbeer.theory.scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import INCLINE, Scene, frozen, in_degrees, in_words, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import in_degrees, in_words
 
 _MARGIN = 0.02
 """Relative difference of footnote 7's two friction coefficients from tan(alpha)."""

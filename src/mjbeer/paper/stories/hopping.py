@@ -17,9 +17,8 @@ from mjbeer.paper.scenarios import GRIP, MU, RATIO, fall_from_top
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scenes import hoop
+from mjbeer.theory.scene import hoop, in_degrees, in_words
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import in_degrees, in_words
 
 _SCENE = f"{in_words(hoop(), {'load'})}; M: mass of the hoop, m: mass of the weight"
 _JUMP = 3.0

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Arc
 
 from mjbeer.output.plots import COLOURS, chart
-from mjbeer.theory.segment import segment
+from mjbeer.theory.load import segment
 
 _INCLINE, _PHI = math.radians(18), math.radians(35)
 """Angles of the sketch [rad]: steep enough to be seen."""

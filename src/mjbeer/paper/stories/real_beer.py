@@ -15,12 +15,9 @@ from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import FILM_LOAD, liquid_in
-from mjbeer.theory.liquids import LIQUIDS, NAMES
-from mjbeer.theory.scene import INCLINE, Scene
-from mjbeer.theory.scenes import frozen, sliding
+from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS, NAMES
+from mjbeer.theory.scene import INCLINE, Scene, frozen, in_degrees, in_words, liquid_in, sliding
 from mjbeer.theory.trajectory import Trajectory
-from mjbeer.theory.words import in_degrees, in_words
 
 CAN = Can.sheet_metal(thickness=THICKNESS * 0.013 / Can.sheet_metal().mass)
 """A 12-oz can of 13 g, as they are sold: one of a sheet of 0.1 mm would have 8.6 g, but real ends are thicker."""

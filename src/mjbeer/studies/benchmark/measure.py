@@ -14,9 +14,8 @@ from mjbeer.simulation.tolerance import scales
 from mjbeer.studies.benchmark.peers.peer import Motion, Peer
 from mjbeer.studies.benchmark.points import Point
 from mjbeer.studies.cases import Case
-from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.measure import distance
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.equations import Coordinates
+from mjbeer.theory.trajectory import Trajectory, distance
 
 _FINE = 1e-13
 """Local tolerance of the run that separates a model's error from its integrator's."""

@@ -14,8 +14,7 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.cases import CASES, Case
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,10 @@ from mjbeer.simulation.run import Run, integrate
 from mjbeer.studies.stability.outcome import REFUSALS, explodes
 from mjbeer.studies.stability.truth import angles
 from mjbeer.theory.can import Can
-from mjbeer.theory.conserved import kinetic_energy
+from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.exact import exact
 from mjbeer.theory.record import ERROR
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.scene import Scene, sliding
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)
 """Outcomes of a run, as numbers for the cells of a map. It exploded, or was refused; its error is above `trust.ERROR`,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from mjbeer.exceptions import DivergenceError, ParameterError, ToleranceError, UnsupportedError
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability.truth import Truth, truth
-from mjbeer.theory.conserved import kinetic_energy
+from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.record import ERROR
 
 ACCURATE = "stable and accurate"

@@ -19,8 +19,7 @@ from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
 from mjbeer.predictions.soft_constraint import SoftRow, diagonal_excess
 from mjbeer.simulation import dop853
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen
+from mjbeer.theory.scene import Scene, frozen
 
 FREE = ("gravity", "spring")
 """Families without a constraint."""

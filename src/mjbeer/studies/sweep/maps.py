@@ -21,8 +21,7 @@ from mjbeer.studies.sweep import damped_map
 from mjbeer.studies.sweep.arrays import Sweep
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen
+from mjbeer.theory.scene import Scene, frozen
 
 DURATION = 2.0
 """Time after the release in which a can of the map of outcomes may slip, part or roll down [s]."""

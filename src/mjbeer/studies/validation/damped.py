@@ -14,9 +14,7 @@ from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.validation import loops, modes
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
-from mjbeer.theory.liquid import liquid
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, sliding
+from mjbeer.theory.scene import Scene, frozen, liquid, sliding
 
 CANS = {"massless can": Can(), "metal can": Can.sheet_metal()}
 """The cans of the paper's sections 2 and 3."""

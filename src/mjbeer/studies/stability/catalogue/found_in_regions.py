@@ -12,8 +12,7 @@ from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen
+from mjbeer.theory.scene import Scene, frozen
 
 
 def cases() -> Iterator[CatalogueCase]:

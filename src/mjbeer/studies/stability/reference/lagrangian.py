@@ -27,7 +27,7 @@ import math
 import numpy as np
 
 from mjbeer.studies.stability.reference.taylor import integrate
-from mjbeer.theory.coordinates import Coordinates
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.steady_rolling import require_no_dissipation
 

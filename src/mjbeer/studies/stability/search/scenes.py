@@ -5,10 +5,9 @@ from dataclasses import replace
 
 from mjbeer.studies.stability.search.pick import Pick
 from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.liquid import Damping
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendulum, sliding
 
 
 def slow(scene: Scene) -> float:

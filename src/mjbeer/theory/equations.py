@@ -1,0 +1,164 @@
+"""The equations of motion of a can that rolls without slipping: accelerations, forces, energy and momentum.
+
+The accelerations are those of eqs. (46) and (47), with the damping between can and load and the drag of the air added.
+The normal force N and the friction force F, with which the incline keeps the can rolling, follow from Newton's second
+law for the centre of mass. N < 0 means that the incline would have to pull; |F| > mu N means that the can would slip.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mjbeer.theory.scene import Scene
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Coordinates:
+    """A motion in the coordinates of the paper's Fig. 3; every array has shape (samples,)."""
+
+    time: np.ndarray
+    """Time [s]."""
+    u: np.ndarray
+    """Place of the axis along the incline [m], positive downhill; see `Trajectory` for its origin."""
+    phi: np.ndarray
+    """Angle of the load's flat surface to the incline [rad]."""
+    u_dot: np.ndarray
+    """Velocity of the axis down the incline [m/s]."""
+    phi_dot: np.ndarray
+    """Rate of phi [rad/s]."""
+    roll: np.ndarray
+    """Angle by which the can has rolled [rad]; u/a where it does not slip."""
+    roll_dot: np.ndarray
+    """Rate of roll [rad/s]."""
+    lift: np.ndarray
+    """Height of the can above the incline [m]; slightly negative in a soft contact."""
+    lift_dot: np.ndarray
+    """Velocity of the can away from the incline [m/s]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """Forces of the incline on the can along a motion; both arrays have shape (samples,)."""
+
+    normal: np.ndarray
+    """N [N], positive away from the incline."""
+    friction: np.ndarray
+    """F [N], positive up the incline."""
+
+    @property
+    def needed(self) -> np.ndarray:
+        """Return the friction coefficient |F|/N that rolling needs; infinite where the incline would have to pull."""
+        ratio = np.full_like(self.normal, np.inf)
+        return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
+
+
+def accelerations(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping.
+
+    The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to damping and drag alone.
+    """
+    u_ddot, phi_ddot, _, _ = _accelerations(scene, phi, phi_dot, u_dot)
+    return u_ddot, phi_ddot
+
+
+def _accelerations(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return u_ddot [m/s^2], phi_ddot [rad/s^2], and how the load's centre of mass accelerates relative to the axis.
+
+    The latter are over b [1/s^2]: away from the incline, and uphill.
+    """
+    sin, cos, square, moment = np.sin(phi), np.cos(phi), phi_dot**2, scene.load.moment
+    phi_ddot, along = scene.oscillator.acceleration(phi, phi_dot), 0.0
+    if scene.dissipates:
+        # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
+        # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
+        torque, along = dissipation(scene, phi_dot, u_dot)
+        phi_ddot = phi_ddot + (torque + moment * cos / scene.effective_mass * along) / scene.oscillator.inertia(phi)
+    across, uphill = sin * phi_ddot + cos * square, cos * phi_ddot - sin * square
+    if scene.attachment == "frozen":
+        return scene.can.radius * phi_ddot, phi_ddot, across, uphill
+    u_ddot = (scene.drive + moment * uphill + along) / scene.effective_mass  # eq. (46)
+    return u_ddot, phi_ddot, across, uphill
+
+
+def dissipation(
+    scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> tuple[np.ndarray | float, np.ndarray | float]:
+    """Return the torque on the load [N m], and the force down the incline on the axis [N], of damping and drag."""
+    torque = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot))
+    return torque, -torque / scene.can.radius - scene.drag * u_dot * np.abs(u_dot)
+
+
+def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
+    """Return by how much the rolling can turns faster than its load, w = u_dot/a - phi_dot [rad/s]."""
+    return u_dot / scene.can.radius - phi_dot
+
+
+def stiffness(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> np.ndarray:
+    """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J).
+
+    J_f is the inertia against which can and load turn as one.
+    """
+    radius, moment = scene.can.radius, scene.load.mass * scene.load.offset
+    mass = scene.mass + scene.can.inertia / radius**2
+    frozen = mass * radius**2 + scene.load.inertia + moment * (scene.load.offset - 2 * radius * np.cos(phi))
+    slope = scene.damping_law.slope(slip_rate(scene, phi_dot, u_dot))
+    return slope * frozen / (radius**2 * mass * scene.oscillator.inertia(phi)) + 2 * scene.drag * np.abs(u_dot) / mass
+
+
+def rolling_forces(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> Forces:
+    """Return N and F [N] that rolling without slipping needs in a state, as `accelerations` takes it."""
+    u_ddot, _, across, uphill = _accelerations(scene, phi, phi_dot, u_dot)
+    moment = scene.load.moment
+    normal = scene.mass * scene.gravity * math.cos(scene.incline) + moment * across
+    if scene.attachment == "sliding":  # friction and the damping turn the can: F a - T = I_can u_ddot / a
+        friction = scene.can.inertia / scene.can.radius**2 * u_ddot
+        if scene.damping_law:
+            friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
+        return Forces(normal, friction)
+    return Forces(normal, scene.drive - (scene.mass * u_ddot - moment * uphill))
+
+
+def energy(scene: Scene, motion: Coordinates) -> np.ndarray:
+    """Return the kinetic and potential energy [J] of can and load at each sample, whether they roll or not."""
+    return kinetic_energy(scene, motion) + potential_energy(scene, motion)
+
+
+def potential_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
+    """Return the potential energy [J] of can and load at each sample, 0 with all mass at u = 0 on the axis."""
+    return -scene.gravity * (
+        scene.mass * (motion.u * math.sin(scene.incline) - motion.lift * math.cos(scene.incline))
+        + scene.load.moment * np.cos(scene.incline + motion.phi)
+    )
+
+
+def kinetic_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
+    """Return the kinetic energy [J] of can and load at each sample: eqs. (39) and (44), with slip and lift added."""
+    can, load = scene.can, scene.load
+    along = motion.u_dot - load.offset * np.cos(motion.phi) * motion.phi_dot
+    across = motion.lift_dot + load.offset * np.sin(motion.phi) * motion.phi_dot
+    return (
+        can.mass * (motion.u_dot**2 + motion.lift_dot**2)
+        + can.inertia * motion.roll_dot**2
+        + load.mass * (along**2 + across**2)
+        + load.inertia * motion.phi_dot**2
+    ) / 2
+
+
+def axis_without_swing(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
+    """Return u - (m b / M) sin(phi) [m] and its rate [m/s], which the swing of a sliding load leaves alone."""
+    arm = scene.load.moment / scene.effective_mass
+    return motion.u - arm * np.sin(motion.phi), motion.u_dot - arm * np.cos(motion.phi) * motion.phi_dot
+
+
+def steady_acceleration(scene: Scene) -> float:
+    """Return the derivative of that rate [m/s^2]: eq. (46)."""
+    return scene.drive / scene.effective_mass
