@@ -6,8 +6,9 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
+from mjbeer.model import check
 from mjbeer.model.setting import DOP853
-from mjbeer.simulation import radau, residual
+from mjbeer.simulation import radau
 from mjbeer.simulation.comparison import NUDGE, ROUNDING_OVER_NUDGE, SAFETY_BY_CHANCE, Comparison, few, safety
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson_pair import GaussJacksonPair
@@ -173,8 +174,8 @@ class Solver:
         """
         if not self._model.neq:
             return 0.0
-        chosen = np.linspace(0, len(fine) - 1, min(residual.STATES, len(fine))).astype(int)
-        _, loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
+        chosen = np.linspace(0, len(fine) - 1, min(check.STATES, len(fine))).astype(int)
+        _, loss = check.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
         if loss <= _NO_LOSS * tolerance:
             return 0.0
         chosen = few(len(times))
