@@ -21,10 +21,10 @@ import mjbeer
 from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, exact, frozen, require, simulate
 from mjbeer.drawing import encoder, frames, video
 from mjbeer.exceptions import ParameterError
-from mjbeer.messages import shown
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Integrator, Rolling, Setting, Softness
 from mjbeer.paper.looping import loop
+from mjbeer.require import shown
 from mjbeer.theory.scene import ATTACHMENTS
 
 VALUES: dict[str, Callable[[], object]] = {

@@ -1,135 +1,128 @@
-"""Checks of arguments: each returns the valid value, or raises an error that names the value and what is allowed."""
+"""The domain of mjbeer, and checks of arguments, which refuse what lies outside.
 
+Each check returns the valid value, or raises a `ParameterError` that names what came and what is allowed.
+"""
+
+import difflib
 import math
 import numbers
 import os
 import pathlib
+import reprlib
 import warnings
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from decimal import Decimal
 from typing import Any, TypeVar
 
 import numpy as np
 
 from mjbeer.exceptions import AngleWarning, ParameterError
-from mjbeer.messages import in_unit, shown, spelled_alike
 
 T = TypeVar("T")
 Name = TypeVar("Name", bound=str)
 
-SMALLEST, LARGEST = 1e-50, 1e50
-"""Smallest and largest magnitude of a number that is not 0. Nothing that rolls comes near them, and a product or
-quotient of six such numbers is between 1e-300 and 1e300, which a double can hold."""
-_FARTHEST = 1e10
-"""Largest magnitude of a start angle [rad]: there doubles are 2e-6 rad apart. MuJoCo has the same limit (mjMAXVAL)."""
+SIZE = 1e-4, 1e2
+"""Smallest and largest radius and length of a can [m]."""
+MASS = 1e-9, 1e9
+"""Smallest and largest mass that is not 0 [kg]."""
+RATIO = 1e6
+"""Largest ratio of two masses, or of inertias compared with masses at the radius, either way."""
+GRAVITY = 1e-3, 1e3
+"""Smallest and largest gravity that is not 0 [m/s^2]."""
+ANGLE = 1e4
+"""Largest start angle, either way [rad]."""
+RATE = 1e6
+"""Largest start rate, either way [rad/s]."""
+DAMPING_RATE = 1e9
+"""Largest rate at which damping may decay [1/s]."""
+TIMESTEP = 1e-7, 10.0
+"""Smallest and largest timestep [s]."""
 
 
-def number(name: str, value: float, unit: str = "") -> float:
-    """Return `value` as a finite float.
-
-    Python's and NumPy's real numbers, fractions, decimals and arrays without dimensions are numbers.
-
-    Raises:
-      ParameterError: if `value` is not a number, is NaN, or is infinite.
-    """
+def number(name: str, value: Any, unit: str = "") -> float:
+    """Return a real number of Python's or NumPy's as a finite float."""
     result = _float(value)
     if not math.isfinite(result):
-        raise ParameterError(f"{name} must be a finite number{in_unit(unit)}, got {shown(value)}")
+        raise ParameterError(f"{name} must be a finite number{_in_unit(unit)}, got {shown(value)}")
     return result
 
 
-def positive(name: str, value: float, unit: str = "") -> float:
-    """Return `value` as a float greater than zero.
-
-    Raises:
-      ParameterError: if `value` is not greater than zero, or not between `SMALLEST` and `LARGEST`.
-    """
+def within(name: str, value: Any, lowest: float, highest: float, unit: str = "", zero: bool = False) -> float:
+    """Return `value` as a float from `lowest` to `highest`, or 0 if `zero` is allowed as well."""
     result = number(name, value, unit)
-    if result <= 0:
-        raise ParameterError(f"{name} must be greater than 0{in_unit(unit)}, got {shown(value)}")
-    if not SMALLEST <= result <= LARGEST:
-        raise ParameterError(f"{name} must be between {SMALLEST:g} and {LARGEST:g}{in_unit(unit)}, got {shown(value)}")
-    return result
-
-
-def non_negative(name: str, value: float, unit: str = "") -> float:
-    """Return `value` as a float of zero or more.
-
-    Raises:
-      ParameterError: if `value` is negative, or neither zero nor between `SMALLEST` and `LARGEST`.
-    """
-    result = number(name, value, unit)
-    if result < 0:
-        raise ParameterError(f"{name} must be 0 or greater{in_unit(unit)}, got {shown(value)}")
-    if result != 0 and not SMALLEST <= result <= LARGEST:
+    if not (lowest <= result <= highest or (zero and result == 0)):
+        either = "0, or " if zero and lowest > 0 else ""
         raise ParameterError(
-            f"{name} must be 0, or between {SMALLEST:g} and {LARGEST:g}{in_unit(unit)}, got {shown(value)}"
+            f"{name} must be {either}between {lowest:.6g} and {highest:.6g}{_in_unit(unit)}, got {shown(value)}"
         )
     return result
 
 
-def friction(value: float) -> float:
-    """Return a coefficient of friction as a float of zero or more, or infinity.
+def positive(name: str, value: Any, unit: str = "") -> float:
+    """Return `value` as a finite float greater than 0."""
+    result = number(name, value, unit)
+    if result <= 0:
+        raise ParameterError(f"{name} must be greater than 0{_in_unit(unit)}, got {shown(value)}")
+    return result
 
-    Raises:
-      ParameterError: if `value` is neither.
-    """
+
+def non_negative(name: str, value: Any, unit: str = "") -> float:
+    """Return `value` as a finite float of 0 or more."""
+    result = number(name, value, unit)
+    if result < 0:
+        raise ParameterError(f"{name} must be 0 or greater{_in_unit(unit)}, got {shown(value)}")
+    return result
+
+
+def friction(value: Any) -> float:
+    """Return a coefficient of friction as a float of 0 or more, infinity included."""
     result = _float(value)
     if not result >= 0:
         raise ParameterError(f"friction must be 0 or greater (infinity is allowed), got {shown(value)}")
-    return result if result == math.inf else non_negative("friction", result)
+    return result
 
 
-def start(phi0: float, phi_dot0: float) -> tuple[float, float]:
-    """Return the start angle [rad] and rate [rad/s] as floats.
+def start(phi0: Any, phi_dot0: Any) -> tuple[float, float]:
+    """Return the start angle [rad] and rate [rad/s] as floats."""
+    return within("phi0", phi0, -ANGLE, ANGLE, "rad"), within("phi_dot0", phi_dot0, -RATE, RATE, "rad/s")
 
-    Raises:
-      ParameterError: if either is not finite, or is beyond `_FARTHEST` or `LARGEST`.
-    """
-    values = []
-    for name, value, unit, limit in (("phi0", phi0, "rad", _FARTHEST), ("phi_dot0", phi_dot0, "rad/s", LARGEST)):
-        values.append(number(name, value, unit))
-        if abs(values[-1]) > limit:
-            raise ParameterError(f"{name} must be between {-limit:g} and {limit:g} [{unit}], got {shown(value)}")
-    return values[0], values[1]
+
+def radians(phi0: float) -> None:
+    """Warn, where the calling function is called, of a start angle [rad] beyond a whole turn, as one in degrees is."""
+    if abs(phi0) > 2 * math.pi:
+        warnings.warn(
+            f"phi0 = {phi0:.6g} is taken as radians, {phi0 / (2 * math.pi):.4g} turns: if degrees are meant, write "
+            f"math.radians({phi0:.6g})",
+            AngleWarning,
+            stacklevel=3,
+        )
 
 
 def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
-    """Return at least one finite number as an array of shape (samples,).
-
-    `value` is a list, a tuple, a range or a one-dimensional array; an array of doubles is returned as it is.
-
-    Raises:
-      ParameterError: if `value` is none of these, is empty, or has an entry that is no finite number; the message names
-        the entry.
-    """
-    entries = _entries(value)
-    if entries is None or not len(entries):
+    """Return a list, a tuple, a range or a one-dimensional array of finite numbers as doubles, of shape (samples,)."""
+    array = None
+    if isinstance(value, (list, tuple, range)) or (hasattr(value, "__array__") and not isinstance(value, type)):
+        try:
+            array = np.asarray(value)
+        except (TypeError, ValueError):
+            array = None  # lists of different lengths
+    masked = isinstance(value, np.ma.MaskedArray)
+    if array is None or masked or array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
         raise ParameterError(
-            f"{name} must be a list or a one-dimensional array of one or more numbers{in_unit(unit)}, "
+            f"{name} must be a list or a one-dimensional array of one or more numbers{_in_unit(unit)}, "
             f"got {shown(value)}"
         )
-    if isinstance(entries, np.ndarray) and entries.dtype != object and not np.ma.is_masked(entries):
-        with np.errstate(over="ignore"):  # a long double may become infinite
-            array = entries.astype(float, copy=False)
-        if np.isfinite(array).all():
-            return array
-    return np.array([number(f"{name}[{index}]", each, unit) for index, each in enumerate(entries)])
+    array = array.astype(float, copy=False)
+    for index in np.flatnonzero(~np.isfinite(array)):
+        number(f"{name}[{index}]", array[index], unit)
+    return array
 
 
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
-    """Return times [s] as a new array of shape (samples,).
-
-    `value` is what `samples` takes, with no time before 0. Unless the times have to be `increasing`, a single number
-    will do as well.
-
-    Raises:
-      ParameterError: if `value` is nothing of that; the message names the first entry that is wrong.
-    """
-    single = not increasing and _is_number(value)
-    array = np.array([number(name, value, "s")]) if single else samples(name, value, "s").copy()
-    for index in np.flatnonzero(~((array == 0) | ((array >= SMALLEST) & (array <= LARGEST)))):
+    """Return times [s], none before 0, as a new array of shape (samples,); a single number will do as well."""
+    single = not increasing and math.isfinite(_float(value))
+    array = np.array([_float(value)]) if single else samples(name, value, "s").copy()
+    for index in np.flatnonzero(array < 0):
         non_negative(name if single else f"{name}[{index}]", array[index], "s")
     back = np.flatnonzero(np.diff(array) <= 0) + 1
     if increasing and len(back):
@@ -138,85 +131,48 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     return array
 
 
-def choice(name: str, value: str, allowed: Iterable[Name]) -> Name:
-    """Return `value` if it is one of the `allowed` names.
-
-    Raises:
-      ParameterError: if it is none of them; the message lists the names, and asks after one that is spelled alike.
-    """
-    names = {str(name): name for name in allowed}
-    if not isinstance(value, str) or value not in names:
-        listed = ", ".join(repr(name) for name in names)
-        alike = " or ".join(repr(name) for name in spelled_alike(value, names)) if isinstance(value, str) else ""
-        question = f": did you mean {alike}?" if alike else ""
-        raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}{question}")
-    return names[value]
+def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
+    """Return `value` if it is one of the `allowed` names."""
+    names = {str(each): each for each in allowed}
+    if isinstance(value, str) and value in names:
+        return names[value]
+    listed = ", ".join(map(repr, names))
+    alike = " or ".join(map(repr, spelled_alike(value, names))) if isinstance(value, str) else ""
+    question = f": did you mean {alike}?" if alike else ""
+    raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}{question}")
 
 
-def path(value: str | os.PathLike[str]) -> pathlib.Path:
-    """Return the path of a file to be written.
-
-    Raises:
-      ParameterError: if `value` is no text and no path, or has a null character, which no system allows.
-    """
+def path(value: Any) -> pathlib.Path:
+    """Return the path of a file to be written."""
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
     if not isinstance(name, str) or not name or "\0" in name:
         raise ParameterError(f"path must be the name of a file, got {shown(value)}")
     return pathlib.Path(name)
 
 
-def radians(phi0: float, many_turns: bool) -> None:
-    """Warn if a start angle [rad] is beyond a whole turn, as one in degrees would be, unless `many_turns` are meant.
-
-    The warning points to the line that called the function by which this one was called.
-
-    Raises:
-      ParameterError: if `many_turns` is neither True nor False.
-    """
-    if not boolean("many_turns", many_turns) and abs(phi0) > 2 * math.pi:
-        warnings.warn(
-            f"phi0 = {phi0:.6g} is taken as radians, {phi0 / (2 * math.pi):.4g} turns: if degrees are meant, write "
-            f"math.radians({phi0:.6g}); if radians are, add many_turns=True",
-            AngleWarning,
-            stacklevel=3,
-        )
-
-
-def boolean(name: str, value: bool) -> bool:
-    """Return `value` as True or False.
-
-    Raises:
-      ParameterError: if it is neither: a text such as "no" would count as true.
-    """
+def boolean(name: str, value: Any) -> bool:
+    """Return `value` as True or False; a text such as "no" would count as true."""
     if not isinstance(value, (bool, np.bool_)):
         raise ParameterError(f"{name} must be True or False, got {shown(value)}")
     return bool(value)
 
 
-def instance(name: str, value: T, kind: type[T]) -> T:
-    """Return `value` if it is an instance of a class of mjbeer.
-
-    Raises:
-      ParameterError: if it is not; the message names the class.
-    """
+def instance(name: str, value: Any, kind: type[T]) -> T:
+    """Return `value` if it is an instance of a class of mjbeer."""
     if not isinstance(value, kind):
         raise ParameterError(f"{name} must be a {kind.__name__}, got {shown(value)}")
     return value
 
 
 def store(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass to their checked values: single precision would spread from there."""
+    """Set fields of a frozen dataclass to their checked values."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
 
 
 @contextmanager
-def from_given(**given: float) -> Generator[None]:
-    """Add to an error about computed values the values that were given.
-
-    Raises:
-      ParameterError: the error from inside the `with` block, with the addition.
-    """
+def from_given(**given: object) -> Generator[None]:
+    """Add to an error in the `with` block, about computed values, the values that were given."""
     try:
         yield
     except ParameterError as error:
@@ -224,29 +180,37 @@ def from_given(**given: float) -> Generator[None]:
         raise ParameterError(f"{error}, which follows from {listed}") from None
 
 
-def _float(value: Any) -> float:
-    """Return a number as a float, which may be infinite, and NaN for what is no number."""
-    try:
-        return float(value) if _is_number(value) else math.nan
-    except (ValueError, OverflowError):  # a decimal that signals, and an integer of 400 digits
-        return math.nan
-
-
-def _is_number(value: object) -> bool:
-    """Return whether a value is a real number of Python's or NumPy's, which True, "1" and [1.0] are not."""
+def shown(value: object) -> str:
+    """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
+    plain = value.item() if isinstance(value, np.generic) else value
     if isinstance(value, np.ndarray):
-        return value.ndim == 0 and value.dtype.kind in "iuf" and not np.ma.is_masked(value)
-    return isinstance(value, (numbers.Real, Decimal)) and not isinstance(value, (bool, np.timedelta64))
-
-
-def _entries(value: Any) -> Any:
-    """Return what has numbers to be checked: a list, a tuple, a range or an array; None for anything else."""
-    if isinstance(value, (list, tuple, range)):
-        return value
-    if isinstance(value, type) or not hasattr(value, "__array__"):
-        return None
+        plain = value.tolist()
     try:
-        array = value if np.ma.is_masked(value) else np.asarray(value)
-    except Exception:  # whatever an object of another library raises, it is no array
-        return None
-    return array if array.ndim == 1 and array.dtype.kind in "iufO" else None
+        text = _SHORT.repr(plain)
+    except (ValueError, RuntimeError):  # an integer of 5000 digits, and what a foreign __repr__ raises
+        text = f"<{type(value).__name__}>"
+    return " ".join(text.splitlines())
+
+
+def spelled_alike(word: str, allowed: Iterable[str]) -> list[str]:
+    """Return the one or two allowed words that are spelled most like this one, in capitals or not; empty if none is."""
+    folded = {each.casefold(): each for each in allowed}
+    return [folded[each] for each in difflib.get_close_matches(word.casefold(), folded, n=2)]
+
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
+
+
+def _in_unit(unit: str) -> str:
+    return f" [{unit}]" if unit else ""
+
+
+def _float(value: Any) -> float:
+    """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    try:
+        return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
+    except (TypeError, OverflowError):  # an integer of 400 digits
+        return math.nan

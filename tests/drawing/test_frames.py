@@ -206,9 +206,9 @@ def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
     "moved",
     [
         simulate(frozen(gravity=0.0), 0.5, 1.0, 1.0, rolling="contact"),
-        exact(sliding(), np.linspace(0, 0.5, 51), 1.0, 1e4, many_turns=True),
+        exact(sliding(), np.linspace(0, 0.5, 51), 1.0, 1e4),
         exact(frozen(), np.linspace(0, 1e-9, 20), 1.0),
-        exact(frozen(), np.linspace(0, 1e6, 2000), 1.0, many_turns=True),
+        exact(frozen(), np.linspace(0, 1e6, 2000), 1.0),
         exact(frozen(), np.linspace(1, 2, 20), 1.0),
     ],
     ids=["weightless", "fast", "short", "long", "late"],

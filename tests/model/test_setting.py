@@ -9,11 +9,11 @@ import pytest
 
 from mjbeer import Can, Load, Scene, build, frozen, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.messages import shown
 from mjbeer.model.build import compile_model, compose
 from mjbeer.model.setting import USUAL, Setting, Softness
 from mjbeer.model.softness import effective_softness
 from mjbeer.model.state import start
+from mjbeer.require import shown
 
 SLIDE_FIRST = USUAL["equality, slide first"]
 REFSAFE = int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

@@ -22,7 +22,7 @@ from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Vali
 from mjbeer.cli.sweep import Sweep
 from mjbeer.cli.view import View
 from mjbeer.drawing import opengl
-from mjbeer.exceptions import LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
+from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
@@ -63,6 +63,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         opengl.keep_out()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
+            warnings.simplefilter("ignore", AngleWarning)  # angles are in degrees here
             warnings.simplefilter("always", LiquidWarning)
             cast("Any", warnings).showwarning = functools.partial(_show, warnings.showwarning)
             return command.run()

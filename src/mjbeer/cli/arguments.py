@@ -268,5 +268,4 @@ class Motion:
             timestep=self.timestep,
             tolerance=self.tolerance,
             friction=self.friction,
-            many_turns=True,
         )

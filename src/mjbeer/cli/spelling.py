@@ -6,7 +6,7 @@ from typing import Any
 
 import tyro
 
-from mjbeer import messages
+from mjbeer import require
 from mjbeer.cli.arguments import SCENES, AnyScene
 from mjbeer.cli.sweep import SweptScene
 from mjbeer.exceptions import ParameterError
@@ -89,7 +89,7 @@ def _unknown_option(
 
 def _close(word: str, allowed: Iterable[str]) -> str:
     """Return a question after the one or two allowed words that are most like this one; empty if none is."""
-    close = messages.spelled_alike(word, allowed)
+    close = require.spelled_alike(word, allowed)
     return f"did you mean {_listed(close)}?" if close else ""
 
 

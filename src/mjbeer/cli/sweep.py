@@ -168,7 +168,6 @@ class Sweep:
                 friction=self.friction,
                 quantity=self.quantity,
                 output=resumed,
-                many_turns=True,
                 **angles,
                 **others,
             )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.drawing.overlay import guides
 from mjbeer.drawing.overlay.charts import charts
 from mjbeer.drawing.overlay.header import Header
@@ -43,7 +43,7 @@ def draw(
     require.instance("trajectory", trajectory, Trajectory)
     if (np.diff(trajectory.time) <= 0).any():
         raise ParameterError(
-            f"the times of a trajectory must increase for it to be drawn, got {messages.shown(trajectory.time)}"
+            f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
         )
     width, height = whole("width", width), whole("height", height)
     return _draw(trajectory, times, width=width, height=height, look=look, speed=speed)

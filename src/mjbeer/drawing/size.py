@@ -1,6 +1,6 @@
 """The size of a picture: its pixels, and the units that all sizes in it are multiples of."""
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 
 UNITS = 36
@@ -17,5 +17,5 @@ def whole(name: str, pixels: float) -> int:
     """
     number = require.positive(name, pixels)
     if number % 1 != 0 or number > _LARGEST:
-        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {messages.shown(pixels)}")
+        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.shown(pixels)}")
     return int(number)

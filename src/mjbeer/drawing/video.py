@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from PIL import Image
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.drawing import encoder
 from mjbeer.drawing.film import Reel, reel
 from mjbeer.drawing.overlay.look import Look
@@ -107,7 +107,7 @@ def frame(
     moment = require.number("time", time, "s")
     if not film.start <= moment <= film.end:
         raise ParameterError(
-            f"time must be within the trajectory, {film.start:g} to {film.end:g} s, got {messages.shown(time)}"
+            f"time must be within the trajectory, {film.start:g} to {film.end:g} s, got {require.shown(time)}"
         )
     return still(film, moment, width, height)
 
@@ -128,5 +128,5 @@ def _reel(trajectory: Trajectory, camera: Camera, speed: float) -> Reel:
 def _file(path: str | os.PathLike[str], suffix: str) -> pathlib.Path:
     target = require.path(path)
     if target.suffix.lower() != suffix:
-        raise ParameterError(f"the file's name must end in {suffix}, got {messages.shown(str(path))}")
+        raise ParameterError(f"the file's name must end in {suffix}, got {require.shown(str(path))}")
     return target

@@ -17,7 +17,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import files
-from mjbeer.theory.exact import exact
+from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 from mjbeer.theory.words import damping_in_words, in_words
@@ -100,7 +100,7 @@ def plot(trajectory: Trajectory, theory: bool = False) -> "tuple[Axes, Axes]":
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
             start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
-            truth = exact(scene, dense, **start, many_turns=True)
+            truth = solution(scene, dense, **start)
             above.plot(dense, np.degrees(truth.phi), label="exact theory", **THEORY)
             below.plot(dense, truth.u, **THEORY)
         name = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"

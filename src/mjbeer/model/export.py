@@ -14,7 +14,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
 from mjbeer.model import check, looks, setting
 from mjbeer.model.build import add_start, compile_spec, compose
@@ -91,7 +91,7 @@ def export(
     require.instance("scene", scene, Scene)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {messages.shown(target.name)}")
+        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
     made = Setting(rolling, integrator, timestep, friction=friction)
     if made.integrator in setting.OWN:
         raise UnsupportedError(

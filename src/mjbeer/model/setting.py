@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 
@@ -39,7 +39,7 @@ def _checked_solref(solref: tuple[float, float]) -> tuple[float, float]:
     if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):
         raise ParameterError(
             "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness [1/s^2] and a "
-            f"damping [1/s], both negated, got {messages.shown(solref)}"
+            f"damping [1/s], both negated, got {require.shown(solref)}"
         )
     return first, second
 
@@ -53,7 +53,7 @@ def _checked_impedance(impedance: tuple[float, float]) -> tuple[float, float]:
     low, high = _IMPEDANCES
     pair = _pair("impedance", impedance)
     if not low <= min(pair) <= max(pair) <= high:
-        raise ParameterError(f"impedance must be two numbers from {low:g} to {high:g}, got {messages.shown(impedance)}")
+        raise ParameterError(f"impedance must be two numbers from {low:g} to {high:g}, got {require.shown(impedance)}")
     return pair
 
 
@@ -64,7 +64,7 @@ def _pair(name: str, value: tuple[float, float]) -> tuple[float, float]:
       ParameterError: if `value` is no list or tuple of two finite numbers.
     """
     if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise ParameterError(f"{name} must be two numbers, got {messages.shown(value)}")
+        raise ParameterError(f"{name} must be two numbers, got {require.shown(value)}")
     return require.number(f"{name}[0]", value[0]), require.number(f"{name}[1]", value[1])
 
 
@@ -132,7 +132,7 @@ class Setting:
         require.choice("integrator", self.integrator, (*INTEGRATORS, *OWN))
         require.store(
             self,
-            timestep=require.positive("timestep", self.timestep, "s"),
+            timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             friction=require.positive("friction", self.friction),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
         )

@@ -6,7 +6,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.engine import quiet
 from mjbeer.theory.coordinates import Coordinates
@@ -30,7 +30,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     values = _at_start(scene, *require.start(phi0, phi_dot0))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
-        raise ParameterError(f"the model must have the joints of a scene, got {messages.shown(sorted(joints))}")
+        raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
     mujoco.mj_resetData(model, data)
     for name in joints & values.keys():
         data.joint(name).qpos[:], data.joint(name).qvel[:] = values[name]

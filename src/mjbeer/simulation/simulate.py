@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError, UntrustedWarning
 from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
@@ -36,7 +36,6 @@ def simulate(
     times: ArrayLike | None = None,
     friction: float = FRICTION,
     softness: Softness = TUNED,
-    many_turns: bool = False,
 ) -> Run:
     """Return the motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
 
@@ -56,8 +55,7 @@ def simulate(
     Without a tolerance the trajectory estimates its error when it is asked for it.
 
     A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
-    `UntrustedWarning`. A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless
-    `many_turns` says that it is meant.
+    `UntrustedWarning`. A start beyond a whole turn gives an `AngleWarning`.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -69,7 +67,7 @@ def simulate(
     require.instance("scene", scene, Scene)
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    require.radians(phi0, many_turns)
+    require.radians(phi0)
     _check_start(scene, phi0, phi_dot0)
     setting = Setting.of(rolling, integrator, timestep, tolerance, friction, softness)
     if times is None:
@@ -118,14 +116,14 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     timestep = setting.timestep
     if times[-1] > duration * (1 + _ON_A_STEP):
         raise ParameterError(
-            f"times must be between 0 and the duration {duration!r} s, got {messages.shown(times[-1])} s"
+            f"times must be between 0 and the duration {duration!r} s, got {require.shown(times[-1])} s"
         )
     if setting.tolerance is not None:
         return times
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
         raise ParameterError(
-            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {messages.shown(times[-1])} s"
+            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.shown(times[-1])} s"
         )
     if setting.integrator in OWN:
         return times
@@ -134,12 +132,12 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     if len(off):
         raise ParameterError(
             f"MuJoCo's integrators have samples at multiples of the timestep {timestep!r} s only, not at "
-            f'{messages.shown(times[off[0]])} s; integrator="DOP853" has them anywhere'
+            f'{require.shown(times[off[0]])} s; integrator="DOP853" has them anywhere'
         )
     same = np.flatnonzero(np.diff(steps) == 0)
     if len(same):
         raise ParameterError(
-            f"times must be at least a timestep of {timestep!r} s apart, got {messages.shown(times[same[0]])} s and "
-            f"{messages.shown(times[same[0] + 1])} s"
+            f"times must be at least a timestep of {timestep!r} s apart, got {require.shown(times[same[0]])} s and "
+            f"{require.shown(times[same[0] + 1])} s"
         )
     return steps * timestep

@@ -34,18 +34,24 @@ class Can:
     inertia: float = 0.0
     """Moment of inertia I_can about the axis [kg m^2], eq. (31)."""
 
+    @property
+    def effective_mass(self) -> float:
+        """Return the mass that the rolling can puts against a force along the incline, m_can + I_can/a^2 [kg]."""
+        return self.mass + self.inertia / self.radius**2
+
     def __post_init__(self) -> None:
         require.store(
             self,
-            radius=require.positive("can radius", self.radius, "m"),
-            length=require.positive("can length", self.length, "m"),
-            mass=require.non_negative("can mass", self.mass, "kg"),
+            radius=require.within("can radius", self.radius, *require.SIZE, "m"),
+            length=require.within("can length", self.length, *require.SIZE, "m"),
+            mass=require.within("can mass", self.mass, *require.MASS, "kg", zero=True),
             inertia=require.non_negative("can inertia", self.inertia, "kg m^2"),
         )
         if self.mass == 0 and self.inertia > 0:
             raise ParameterError(
                 f"a can without mass has no inertia, got mass 0 kg and inertia {self.inertia!r} kg m^2"
             )
+        require.within("can inertia", self.inertia, 0, require.RATIO * self.mass * self.radius**2, "kg m^2")
 
     @classmethod
     def massless(cls, radius: float = RADIUS, length: float = LENGTH) -> "Can":

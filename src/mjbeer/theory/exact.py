@@ -13,27 +13,30 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 
-def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0, many_turns: bool = False) -> Trajectory:
+def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
     """Return the exact motion of a scene that starts with `phi0` [rad] and `phi_dot0` [rad/s] at time 0.
 
     `time` [s] has the times of the samples, in any order, none before 0. For a sliding load the axis starts at
     u = b sin(phi0) with u_dot = b cos(phi0) phi_dot0, so that the load's centre of mass is at s = 0 and at rest
     along the incline; for a frozen load it starts at u = a phi0 with u_dot = a phi_dot0.
 
-    A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant, unless `many_turns` says that
-    it is meant.
+    A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant.
 
     Raises:
-      ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e10 and 1e10
-        rad or -1e50 and 1e50 rad/s, or the motion is too extreme for double precision.
+      ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e4 and 1e4
+        rad or -1e6 and 1e6 rad/s, or the motion is too extreme for double precision.
       NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
       ToleranceError: if the times are so late that the rounding of the scene changes phi by more than 1e-4 rad; with
         damping or drag, also if the start is so near an unstable balance, or the motion takes too many steps.
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    require.radians(phi0, many_turns)
-    time = require.times("time", time)
+    require.radians(phi0)
+    return solution(scene, require.times("time", time), phi0, phi_dot0)
+
+
+def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
+    """Return what `exact` returns, without a warning about the start."""
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
@@ -70,8 +73,7 @@ def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
     If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
     error that a tolerance bounds.
     """
-    start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
-    truth = exact(trajectory.scene, trajectory.time, **start, many_turns=True)
+    truth = solution(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
     return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
 
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.segment import segment
@@ -30,11 +30,21 @@ class Load:
     """Filling height over diameter, h/2a of eq. (32), if the load is a circular segment. It decides
     only how the load is drawn: without it the load is a ball at its centre of mass."""
 
+    @property
+    def moment(self) -> float:
+        """Return its first moment about the axis, m b [kg m]."""
+        return self.mass * self.offset
+
+    @property
+    def axis_inertia(self) -> float:
+        """Return its moment of inertia about the axis, I_cm + m b^2 [kg m^2]."""
+        return self.inertia + self.mass * self.offset**2
+
     def __post_init__(self) -> None:
         require.store(
             self,
-            mass=require.positive("load mass", self.mass, "kg"),
-            offset=require.non_negative("load offset", self.offset, "m"),
+            mass=require.within("load mass", self.mass, *require.MASS, "kg"),
+            offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
             inertia=require.non_negative("load inertia", self.inertia, "kg m^2"),
             fill=None if self.fill is None else _checked_fill(self.fill),
         )
@@ -69,6 +79,6 @@ def _checked_fill(fill: float) -> float:
     share = require.number("fill", fill)
     if not 0 < share <= 1:
         raise ParameterError(
-            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {messages.shown(fill)}"
+            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {require.shown(fill)}"
         )
     return share

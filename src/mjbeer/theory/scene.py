@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory import motion, steady_rolling, viscous_modes
 from mjbeer.theory.can import Can
@@ -20,6 +20,8 @@ ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
 """The ways in which a load can be attached; see `Scene.attachment`."""
 INCLINE = math.radians(10)
 """Default incline [rad]: 10 degrees, as in the paper's footnote 8."""
+_LEAST_OFFSET = 1e-14
+"""Smallest offset of a load that is not balanced, over the radius: less than with a billionth of the height empty."""
 GRAVITY = 9.81
 """Default acceleration of gravity [m/s^2]; the paper's footnote 8 has 9.8."""
 
@@ -60,10 +62,12 @@ class Scene:
         incline = require.number("incline", self.incline, "rad")
         if not abs(incline) < math.pi / 2:
             raise ParameterError(
-                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {messages.shown(self.incline)}"
+                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.shown(self.incline)}"
             )
         require.choice("attachment", self.attachment, ATTACHMENTS)
-        require.store(self, incline=incline, gravity=require.non_negative("gravity", self.gravity, "m/s^2"))
+        require.store(
+            self, incline=incline, gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2", zero=True)
+        )
         require.store(self, drag=require.non_negative("drag", self.drag, "kg/m"))
         if not isinstance(self.damping, Damping):
             require.store(self, damping=require.non_negative("damping", self.damping, "N m s"))
@@ -72,22 +76,42 @@ class Scene:
         if self.dissipates and self.attachment == "frozen":
             raise ParameterError(
                 f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
-                f"got damping={messages.shown(self.damping)} and drag={messages.shown(self.drag)}"
+                f"got damping={require.shown(self.damping)} and drag={require.shown(self.drag)}"
             )
-        if self.load.offset > self.can.radius:
-            raise ParameterError(
-                f"the load must be inside the can: its offset must be at most the radius {self.can.radius!r} m, "
-                f"got {self.load.offset!r} m"
-            )
+        self._check_masses()
         oscillator = Oscillator.sliding if self.attachment == "sliding" else Oscillator.frozen
         reduced = oscillator(can=self.can, load=self.load, incline=self.incline, gravity=self.gravity)
         object.__setattr__(self, "oscillator", reduced)
-        if self.oscillator.base <= 0:
+        if not self.oscillator.base > float(self.oscillator.inertia(math.pi / 2)) / (2 * require.RATIO):
             raise ParameterError(
-                "nothing resists rotation at phi = 0: a point load needs an offset and a can with mass "
+                "next to nothing resists rotation at phi = 0: a point load needs an offset and a can with mass "
                 f"(attachment {self.attachment!r}, load inertia {self.load.inertia!r} kg m^2, load offset "
                 f"{self.load.offset!r} m, can mass {self.can.mass!r} kg)"
             )
+        if self.dissipates:
+            self._check_rates()
+
+    def _check_masses(self) -> None:
+        """Check that the load is inside the can, and that masses and inertias are of comparable sizes."""
+        can, load, largest = self.can, self.load, require.RATIO * (1 + 1e-12)  # a ratio of 1e6 may round up
+        with require.from_given(**{"radius of the can": can.radius}):
+            require.within("load offset", load.offset, _LEAST_OFFSET * can.radius, can.radius, "m", zero=True)
+        with require.from_given(**{"can mass": can.mass, "load mass": load.mass}):
+            ratio = can.mass / load.mass
+            require.within("mass of the can over that of the load", ratio, 1 / largest, largest, zero=True)
+        with require.from_given(**{"load mass": load.mass, "radius of the can": can.radius}):
+            require.within("load inertia", load.inertia, 0, largest * load.mass * can.radius**2, "kg m^2")
+
+    def _check_rates(self) -> None:
+        """Check how fast damping and drag brake where the load resists least, at a slip rate of 1 rad/s."""
+        a, total, moment = self.can.radius, self.effective_mass, self.load.moment
+        slipping = (self.load.axis_inertia / a**2 + 2 * moment / a + total) / (total * self.oscillator.base)
+        limits = 1 / (1e3 * require.DAMPING_RATE), require.DAMPING_RATE
+        with require.from_given(damping=self.damping):
+            rate = float(self.damping_law.slope(1.0)) * slipping
+            require.within("rate of damping", rate, *limits, "1/s", zero=True)
+        with require.from_given(drag=self.drag):
+            require.within("rate of drag", 2 * self.drag * a / total, *limits, "1/s", zero=True)
 
     def _repr_html_(self) -> str:
         """Return the parameters of the scene as a table, for a notebook."""
@@ -102,6 +126,11 @@ class Scene:
     def mass(self) -> float:
         """Return the mass of can and load together [kg]."""
         return self.can.mass + self.load.mass
+
+    @property
+    def effective_mass(self) -> float:
+        """Return the mass against a force along the incline when the can rolls, M = m + m_can + I_can/a^2 [kg]."""
+        return self.load.mass + self.can.effective_mass
 
     @property
     def centre_of_mass(self) -> float:

@@ -54,7 +54,7 @@ def differ(one: float, other: float) -> float:
 @pytest.mark.parametrize("phi", [-3.0, -1.0, -0.1, 0.1, 1.0, 3.0, 10.0])
 def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float) -> None:
     """One line is along the incline, or across it over a bob; the other is turned by phi, clockwise."""
-    motion = exact(make(), TIMES, phi, many_turns=True)
+    motion = exact(make(), TIMES, phi)
     sheet, _, _ = drawn(motion, "phi", 0.0)
     first, second, arc = sheet.lines
     along = -motion.scene.incline + (math.pi / 2 if motion.scene.load.fill is None else 0.0)

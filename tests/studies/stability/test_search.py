@@ -66,7 +66,6 @@ def test_a_run_can_be_pasted() -> None:
         times = setting.pop("times")
         assert scene == run.scene
         assert np.array_equal(times, run.times)
-        assert setting.pop("many_turns")
         assert setting.pop("duration") == run.timestep * run.steps
         assert setting == {name: getattr(run, name) for name in setting}
         assert len(setting) == 7

@@ -7,7 +7,7 @@ import numpy as np
 from mjbeer.drawing.overlay.quantity import QUANTITIES
 from mjbeer.drawing.overlay.strip import MUJOCO, Chart, Line
 from mjbeer.exceptions import MjbeerError
-from mjbeer.theory.exact import exact
+from mjbeer.theory.exact import solution
 from mjbeer.theory.trajectory import Trajectory
 
 _SMOOTH = 1500
@@ -33,6 +33,6 @@ def _theory(trajectory: Trajectory) -> Trajectory | None:
         return None
     times = np.linspace(trajectory.time[0], trajectory.time[-1], _SMOOTH)
     try:
-        return exact(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0, many_turns=True)
+        return solution(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     except MjbeerError:  # a start that rounding decides has no exact motion
         return None

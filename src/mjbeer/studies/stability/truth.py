@@ -10,7 +10,7 @@ from mjbeer.exceptions import NoLibrationError, ParameterError, ToleranceError
 from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
 from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.exact import exact
+from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import Scene
 
 _ROUNDING = float(np.finfo(float).eps)
@@ -82,7 +82,7 @@ def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Trut
 def _exact(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Coordinates | None:
     """Return the motion by `exact`; None on a separatrix, and beyond what rounding leaves to that theory."""
     try:
-        return exact(scene, times, phi0, phi_dot0, many_turns=True)
+        return solution(scene, times, phi0, phi_dot0)
     except (NoLibrationError, ParameterError, ToleranceError):
         return None
 

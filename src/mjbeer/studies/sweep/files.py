@@ -8,7 +8,7 @@ from typing import IO
 
 import numpy as np
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 from mjbeer.studies.sweep.arrays import Sweep, imported_xarray
@@ -85,7 +85,7 @@ def checked(path: str | os.PathLike[str], endings: tuple[str, ...]) -> pathlib.P
     if target.suffix == NETCDF:
         imported_xarray()  # before a long run, not after it
     if target.suffix not in endings:
-        raise ParameterError(f"the file's name must end in {' or '.join(endings)}, got {messages.shown(str(target))}")
+        raise ParameterError(f"the file's name must end in {' or '.join(endings)}, got {require.shown(str(target))}")
     return target
 
 

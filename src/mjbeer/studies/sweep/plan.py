@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.studies.sweep.work import Work
 from mjbeer.theory.scene import Scene
@@ -101,12 +101,12 @@ class Plan:
             return error
         except TypeError as error:
             raise ParameterError(
-                f"make must be a function that returns a scene, got {messages.shown(work.make)}: {error}"
+                f"make must be a function that returns a scene, got {require.shown(work.make)}: {error}"
             ) from error
         if not isinstance(made, Scene):
             raise ParameterError(
-                f"make must be a function that returns a scene, got {messages.shown(work.make)}, which returns "
-                f"{messages.shown(made)}"
+                f"make must be a function that returns a scene, got {require.shown(work.make)}, which returns "
+                f"{require.shown(made)}"
             )
         return None
 
@@ -133,7 +133,7 @@ def check_names(make: Callable[..., Scene], parameters: Mapping[str, Any]) -> No
       ParameterError: if it has no such parameter, or is no function.
     """
     if not callable(make):
-        raise ParameterError(f"make must be a function that returns a scene, got {messages.shown(make)}")
+        raise ParameterError(f"make must be a function that returns a scene, got {require.shown(make)}")
     try:
         known = inspect.signature(make).parameters
     except (ValueError, TypeError):  # some functions in C have no signature; they are seen to fail when they are called
@@ -142,9 +142,9 @@ def check_names(make: Callable[..., Scene], parameters: Mapping[str, Any]) -> No
         return
     for name, value in parameters.items():
         if name not in known:
-            alike = " or ".join(repr(each) for each in messages.spelled_alike(name, known))
+            alike = " or ".join(repr(each) for each in require.spelled_alike(name, known))
             raise ParameterError(
-                f"{label(make)} has no parameter {name!r}, which got {messages.shown(value)}"
+                f"{label(make)} has no parameter {name!r}, which got {require.shown(value)}"
                 + (f": did you mean {alike}?" if alike else f"; it has {', '.join(known)}")
             )
 

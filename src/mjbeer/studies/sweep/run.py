@@ -15,7 +15,7 @@ from typing import Any, cast
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mjbeer import messages, require
+from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output.terminal import STDERR, progress_bar
@@ -56,7 +56,6 @@ def sweep(
     executor: Executor | None = None,
     output: str | os.PathLike[str] | None = None,
     progress: bool = True,
-    many_turns: bool = False,
     **parameters: Any,
 ) -> Sweep:
     """Return many scenes, simulated over a `duration` [s] each.
@@ -86,12 +85,12 @@ def sweep(
     """
     paired, progress = require.boolean("paired", paired), require.boolean("progress", progress)
     if executor is not None and not isinstance(executor, Executor):
-        raise ParameterError(f"executor must be a concurrent.futures.Executor, got {messages.shown(executor)}")
+        raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.shown(executor)}")
     path = None if output is None else files.checked(output, (files.NUMPY,))
     check_names(make, parameters)
     plan, fixed = arrange({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
     start = {name: require.number(name, fixed.pop(name)) for name in ("phi0", "phi_dot0") if name in fixed}
-    require.radians(float(np.abs(plan.axes.get("phi0", start.get("phi0", 0.0))).max()), many_turns)
+    require.radians(float(np.abs(plan.axes.get("phi0", start.get("phi0", 0.0))).max()))
     setting = Setting.of(rolling, integrator, timestep, tolerance, friction)
     asked, functions = _asked(quantity)
     end = _end(require.positive("duration", duration, "s"), setting)
@@ -220,7 +219,7 @@ def _asked(quantity: Asked | Sequence[Asked]) -> tuple[tuple[str, ...], dict[str
             name = require.choice("quantity", each, (*ALWAYS, *ASKED, STATUS, TRUSTED))
             names += [name] if name in ASKED and name not in names else []
         else:
-            raise ParameterError(f"quantity must be a name or a function of a trajectory, got {messages.shown(each)}")
+            raise ParameterError(f"quantity must be a name or a function of a trajectory, got {require.shown(each)}")
     return tuple(names), functions
 
 
@@ -254,7 +253,7 @@ def _nameable(*functions: Callable[..., Any]) -> None:
         if "<" in label(function) or "<locals>" in getattr(function, "__qualname__", ""):
             raise ParameterError(
                 "a sweep that is saved must be known again when it goes on: its functions must be defined at the top "
-                f"of a module, got {messages.shown(function)}"
+                f"of a module, got {require.shown(function)}"
             )
 
 

@@ -11,7 +11,7 @@ from mjbeer.studies.stability.reference.lagrangian import LongMotionError, refer
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
 from mjbeer.theory.coordinates import Coordinates
-from mjbeer.theory.exact import exact
+from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trust import ERROR, LIFT, SLIP
 
@@ -81,5 +81,5 @@ def _is_sensitive(run: RandomRun, times: np.ndarray) -> bool:
 def _motion(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Coordinates:
     """Return the motion from a start, by the theory that refuses as few motions as it can."""
     if scene.dissipates:
-        return exact(scene, times, phi0, phi_dot0, many_turns=True)
+        return solution(scene, times, phi0, phi_dot0)
     return reference(scene, times, phi0, phi_dot0)

@@ -52,7 +52,6 @@ class RandomRun:
             tolerance=self.tolerance,
             times=self.times,
             friction=self.friction,
-            many_turns=True,
         )
 
     def __str__(self) -> str:
@@ -67,6 +66,5 @@ class RandomRun:
             f"tolerance={self.tolerance!r}",
             f"times={self.timestep!r} * {samples}",
             f"friction={self.friction!r}",
-            "many_turns=True",
         ]
         return f"simulate({', '.join(words)})"
