@@ -6,7 +6,6 @@ import subprocess
 import sys
 
 import pytest
-
 from mjbeer.simulation.compiling import _TEXT
 
 pytestmark = pytest.mark.slow

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from mjbeer.theory.losses import stiffest
+from mjbeer.theory.trust import ERROR
 
 from mjbeer import Can, Load, Scene, build, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
@@ -15,9 +17,7 @@ from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.theory.equations import rolling_forces
 from mjbeer.theory.liquid import Damping
-from mjbeer.theory.losses import stiffest
 from mjbeer.theory.trajectory import distance
-from mjbeer.theory.trust import ERROR
 from tests.support import damped
 from tests.support.scenes import METAL, scenes
 

@@ -8,6 +8,9 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from mjbeer.simulation.gauss_jackson_pair import GaussJacksonPair
+from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
+from mjbeer.simulation.recorder import Recorder
 
 from mjbeer import exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
@@ -17,10 +20,7 @@ from mjbeer.model.state import read, start
 from mjbeer.simulation import comparison, gauss_jackson_kernel, gauss_jackson_pair
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.gauss_jackson_pair import GaussJacksonPair
-from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.recorder import Recorder
 from mjbeer.studies.convergence import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance

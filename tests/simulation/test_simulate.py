@@ -21,7 +21,8 @@ from mjbeer.exceptions import (
     UnsupportedError,
     UntrustedWarning,
 )
-from mjbeer.model.pattern import Editable, Plan
+from mjbeer.model.build import Stepped
+from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.run import Run
@@ -316,12 +317,12 @@ def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(roll
 def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     timesteps: list[float] = []
 
-    def count(editable: Editable, plan: Plan) -> None:
-        timesteps.append(plan.setting.timestep)
-        write(editable, plan)
+    def count(stepped: Stepped, numbers: Numbers) -> None:
+        timesteps.append(numbers.setting.timestep)
+        write(stepped, numbers)
 
-    write = Editable.write
-    monkeypatch.setattr(Editable, "write", count)
+    write = Stepped.write
+    monkeypatch.setattr(Stepped, "write", count)
     run = simulate(frozen(), 0.1, 1.0)
     assert timesteps == [1e-3]
     assert run.trusted

@@ -158,7 +158,7 @@ def test_cans_of_any_size_keep_to_the_tolerance(make: Callable[..., Scene], radi
 def test_an_equality_that_is_not_hard_enough_is_no_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     """As it would be if something tiny had to be above MuJoCo's floor under inertias: in so small a unit, all else is
     so heavy that the floor under softness shows."""
-    monkeypatch.setattr("mjbeer.model.build.mass_unit", lambda _: 2.0**36)
+    monkeypatch.setattr("mjbeer.model.numbers.mass_unit", lambda _: 2.0**36)
     with pytest.raises(ToleranceError, match=r"MuJoCo's equality loses 1.9e-05 of what moves the load"):
         simulate(frozen(), 2.0, 0.0, rolling="equality", tolerance=1e-5)
 

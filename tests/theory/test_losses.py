@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mjbeer.theory.losses import followed, losses, stiffest, stiffness
+from mjbeer.theory.trust import doubts
 from scipy.integrate import cumulative_simpson
 
 from mjbeer import Scene, pendulum, sliding
 from mjbeer.theory.equations import Coordinates, accelerations, slip_rate
 from mjbeer.theory.liquid import Damping
-from mjbeer.theory.losses import followed, losses, stiffest, stiffness
 from mjbeer.theory.record import Record
-from mjbeer.theory.trust import doubts
 from tests.support.damped import motion
 from tests.support.scenes import METAL
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
+from mjbeer.model import check
 from mjbeer.model.engine import quiet
 from mjbeer.model.setting import DOP853, TUNED, Setting
 from mjbeer.model.state import START_DEPTH
-from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.stepping import Solution
 from mjbeer.theory.equations import Coordinates
@@ -152,7 +152,7 @@ class Second:
         scene, setting, motion = run.scene, run.setting, run.spread
         prepared = Prepared(scene, setting, uneven=True)
         exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
-        lost = residual.lost(prepared.model, scene, motion, run.record, exact_constraint)
+        lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
         beside = START_DEPTH if setting.rolling == "contact" else _ASIDE
         aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
         try:

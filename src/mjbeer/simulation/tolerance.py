@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
+from mjbeer.model import check
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.model.state import read
-from mjbeer.simulation import residual
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.dop853_kernel import LARGEST
 from mjbeer.simulation.gauss_jackson import GaussJackson, plan
@@ -338,8 +338,8 @@ class Solver:
         """
         if not self._model.neq:
             return 0.0
-        chosen = np.linspace(0, len(fine) - 1, min(residual.STATES, len(fine))).astype(int)
-        _, loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
+        chosen = np.linspace(0, len(fine) - 1, min(check.STATES, len(fine))).astype(int)
+        _, loss = check.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
         if loss <= _NO_LOSS * tolerance:
             return 0.0
         aside = self._integrate(self._aside(start, min(loss, 1.0)), times, local, tolerance)

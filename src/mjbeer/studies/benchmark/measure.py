@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.softness import effective_softness
+from mjbeer.model.check import effective_softness
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.simulation.stepping import Solution

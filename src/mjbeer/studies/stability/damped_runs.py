@@ -12,7 +12,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
-from mjbeer.model.constrained import stiffest
+from mjbeer.model.numbers import stiffest
 from mjbeer.model.setting import Integrator, Rolling, Setting
 from mjbeer.predictions import linear_stability, soft_rolling
 from mjbeer.predictions.linear_stability import GROWTH
