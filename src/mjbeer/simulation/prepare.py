@@ -63,7 +63,7 @@ class Prepared:
 
     @classmethod
     @contextmanager
-    def lent(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
+    def borrowed(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
         """Yield a set-up for the block, after which another call may write its scene into the same model.
 
         All that an idle set-up did before is gone: a motion has the same bits in it as in a new one.

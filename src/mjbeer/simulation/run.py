@@ -173,7 +173,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         along = np.union1d(times, spread[spread <= times[-1]])
         if len(along) > len(times):
             samples = np.searchsorted(along, times)
-    with quiet(), Prepared.lent(scene, setting) as prepared:
+    with quiet(), Prepared.borrowed(scene, setting) as prepared:
         solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
         motion = prepared.coordinates(solution.states, along)
     return Run(

@@ -9,12 +9,14 @@ from mjbeer.theory.equations import (
     accelerations,
     axis_without_swing,
     dissipation,
+    energy,
     kinetic_energy,
     potential_energy,
     rolling_forces,
     slip_rate,
     steady_acceleration,
 )  # fmt: skip
+from mjbeer.theory.liquid import lost_at
 from mjbeer.theory.scene import Scene
 
 ERROR = 1e-2
@@ -60,10 +62,14 @@ class Record:
         """Time [s] at which N < 0 or |F| > friction N for the first time, interpolated; infinity if it never was."""
         self.swing = 0.0
         """Largest kinetic energy of the swing, J phi_dot^2 / 2 [J]."""
+        self.fastest_slip = 0.0
+        """Largest rate between can and load in a scene with damping, |u_dot/a - phi_dot| [rad/s]."""
+        self.no_lump_at = math.inf
+        """First time at which the wall of a can with a liquid is too fast for a lump [s]; infinite if there is none."""
         self.axis_drift = 0.0
         """Largest distance of the axis from where the momentum at the start has it [m]; 0 with damping or drag."""
         self._kinetic = self._energy_change = self._work = 0.0
-        self._swing_change = self._swing_drift = self._largest_swing_drift = 0.0
+        self._swing_drift = self._largest_swing_drift = 0.0
         self._first: Coordinates | None = None
         self._last: Coordinates | None = None
         self._before: tuple[float, float] | None = None
@@ -93,32 +99,33 @@ class Record:
         first, last = self._first, self._last
         slid = (motion.u - first.u) - radius * (motion.roll - first.roll)
         self.slip, self.lift = _largest(self.slip, slid), _largest(self.lift, motion.lift)
-        self.turned, self.rolled = (
-            _largest(self.turned, motion.phi - first.phi),
-            _largest(self.rolled, motion.u - first.u),
-        )
+        self.turned = _largest(self.turned, motion.phi - first.phi)
+        self.rolled = _largest(self.rolled, motion.u - first.u)
         self.fastest = _largest(self.fastest, motion.phi_dot)
         covered = np.abs(np.diff(motion.phi, prepend=last.phi))
         self.path += float(covered.sum())
         kinetic, form = kinetic_energy(scene, motion), scene.oscillator
         swing = form.inertia(motion.phi) * motion.phi_dot**2 / 2
         self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
-        start = _energy(scene, first)
-        if not scene.dissipates:
-            self._energy_change = _largest(self._energy_change, kinetic + potential_energy(scene, motion) - start)
-            at_first = form.inertia(first.phi) * first.phi_dot**2 / 2
-            change = swing - at_first - form.drop(motion.phi, first.phi)
-            self._swing_change = _largest(self._swing_change, change)
-            drift = self._swing_drift + np.cumsum(change * covered)
-            self._swing_drift = float(drift[-1])
-            self._largest_swing_drift = _largest(self._largest_swing_drift, drift)
-            self.axis_drift = _largest(self.axis_drift, axis_drift(scene, motion, first))
-        elif self._all_steps:
+        self._last, change = _piece(motion, -1), kinetic + potential_energy(scene, motion) - energy(scene, first)
+        if scene.dissipates:
+            self._add_losses(motion, last, change)
+            return
+        self._energy_change = _largest(self._energy_change, change)
+        swing -= form.inertia(first.phi) * first.phi_dot**2 / 2 + form.drop(motion.phi, first.phi)
+        drift = self._swing_drift + np.cumsum(swing * covered)
+        self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
+        self.axis_drift = _largest(self.axis_drift, axis_drift(scene, motion, first))
+
+    def _add_losses(self, motion: Coordinates, last: Coordinates, change: np.ndarray) -> None:
+        """Add the next piece of a motion with damping or drag, and the `change` of its energy [J]."""
+        scene = self.scene
+        self.fastest_slip = _largest(self.fastest_slip, slip_rate(scene, motion.phi_dot, motion.u_dot))
+        if scene.damping_law.holds is not None:
+            self.no_lump_at = min(self.no_lump_at, lost_at(scene, motion.time, motion.u_dot))
+        if self._all_steps:
             work = self._work + np.cumsum(_work(scene, motion, last))
-            self._work = float(work[-1])
-            change = kinetic + potential_energy(scene, motion) - start + work
-            self._energy_change = _largest(self._energy_change, change)
-        self._last = _piece(motion, -1)
+            self._work, self._energy_change = float(work[-1]), _largest(self._energy_change, change + work)
 
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
         """Add the normal and friction forces that rolling needs at times [s] in the states of the motion there.
@@ -169,8 +176,8 @@ class Record:
         A relative error of the swing's energy is about as large a relative error of its speed or its period, and so of
         the path that phi covers meanwhile.
         """
-        energy = max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
-        return _ratio(self._largest_swing_drift, energy) / max(1.0, self.turned)
+        least = max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
+        return _ratio(self._largest_swing_drift, least) / max(1.0, self.turned)
 
     @property
     def axis_error(self) -> float:
@@ -253,10 +260,6 @@ def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
     change = change + 3 * scene.drag * np.abs(u_dot) * u_dot * u_ddot
     step = np.diff(time)
     return step * (power[:-1] + power[1:]) / 2 - step**2 * np.diff(change) / 12
-
-
-def _energy(scene: Scene, motion: Coordinates) -> np.ndarray:
-    return kinetic_energy(scene, motion) + potential_energy(scene, motion)
 
 
 def _piece(motion: Coordinates, place: int) -> Coordinates:
