@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from mjbeer.theory.trust import ERROR, LIFT, SLIP, doubts
+from mjbeer.theory.record import ERROR, LIFT, SLIP, doubts
 from scipy.optimize import brentq
 
 from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding

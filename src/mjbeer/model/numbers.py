@@ -304,7 +304,7 @@ def write(numbers: Numbers, made: Made) -> None:
     if numbers.chord > 0:
         _write_tendon(made, "chord", armature=numbers.chord)
     # MuJoCo's polynomials of a rate v: d1 v + d2 v |v| + d3 v^3.
-    if numbers.drag > 0:
+    if numbers.kind.dissipates and "slide" in numbers.joints:  # also 0, over that of a scene before
         _write_damping(made, "slide", (0.0, numbers.drag, 0.0))
     if any(numbers.damping):
         if "swing" in numbers.joints:

@@ -3,7 +3,6 @@
 import math
 import warnings
 
-import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -12,12 +11,8 @@ from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.liquid import about_run
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import DURATION, PHI0, Scene
 
-DURATION = 2.0
-"""Default duration [s]."""
-PHI0 = math.radians(60)
-"""Default start [rad]."""
 _ON_A_STEP = 1e-10
 """Largest distance of a requested time from a multiple of the timestep h, over the time itself: it allows for rounding.
 Rounding is relative: k h and what np.linspace gives are off by 1e-15 or less, and a running sum of a million timesteps,
@@ -71,7 +66,6 @@ def simulate(
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0)
-    _check_start(scene, phi0, phi_dot0)
     setting = Setting.of(rolling, integrator, timestep, tolerance, friction, softness)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
@@ -83,24 +77,6 @@ def simulate(
     if about := about_run(scene, run.record.fastest_slip, run.record.no_lump_at):
         warnings.warn(about, LiquidWarning, stacklevel=2)
     return run
-
-
-def _check_start(scene: Scene, phi0: float, phi_dot0: float) -> None:
-    """Check that MuJoCo would not call the start itself diverged.
-
-    Raises:
-      ParameterError: if a coordinate or a rate of the start is beyond mjMAXVAL.
-    """
-    u, u_dot = scene.start(phi0, phi_dot0)
-    radius, limit = scene.can.radius, mujoco.mjMAXVAL
-    rates = {"phi_dot0": (phi_dot0, "rad/s"), "u_dot": (u_dot, "m/s"), "roll_dot": (u_dot / radius, "rad/s")}
-    places = {"phi0": (phi0, "rad"), "u": (u, "m"), "roll": (u / radius, "rad")}
-    for name, (value, unit) in (places | rates).items():
-        if not abs(value) <= limit:
-            raise ParameterError(
-                f"{name} of the start must be between {-limit:g} and {limit:g} [{unit}], beyond which MuJoCo calls a "
-                f"state diverged (mjMAXVAL), got {value!r}"
-            )
 
 
 def _every_step(duration: float, timestep: float) -> np.ndarray:

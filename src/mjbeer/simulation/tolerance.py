@@ -135,7 +135,8 @@ class Solver:
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
-        self._nudge = _NUDGE * max(1.0, _CANCELLED * form.swing / form.base)
+        rounding = max(1.0, _CANCELLED * form.swing / form.base)
+        self._nudge, self._smallest = _NUDGE * rounding, _SMALLEST * rounding
         try:
             self._gauss_jackson: GaussJackson | None = GaussJackson(model, self._dop853)
         except UnsupportedError:
@@ -207,7 +208,7 @@ class Solver:
 
     def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return the solution by ever finer runs of DOP853."""
-        local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
+        local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest), 0
         run = partial(self._integrate, times=times, tolerance=tolerance)
         coarse = run(self._aside(start), local=local)
         local /= _RATIO
@@ -218,7 +219,7 @@ class Solver:
         while max(error, drift) > tolerance:
             if error <= tolerance:  # the drift may be that of a model which no smaller steps can cure
                 self._loss(fine.states, start=start, times=times, local=local, tolerance=tolerance)
-            if local < _RATIO * _SMALLEST:
+            if local < _RATIO * self._smallest:
                 raise _not_reached(
                     tolerance,
                     f"two runs at the limit of rounding differ by {fine.distance:.2g} rad"

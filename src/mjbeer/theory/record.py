@@ -267,7 +267,7 @@ def _piece(motion: Coordinates, place: int) -> Coordinates:
     return Coordinates(**{name: getattr(motion, name)[[place]] for name in Coordinates.__dataclass_fields__})
 
 
-def _largest(so_far: float, values: np.ndarray) -> float:
+def _largest(so_far: float, values: np.ndarray | float) -> float:
     """Return the largest magnitude; NaN if there is one, which `max` would hide."""
     return float(np.maximum(so_far, np.abs(values).max()))
 
