@@ -11,7 +11,7 @@ import shutil
 import pytest
 
 from mjbeer.drawing import opengl
-from mjbeer.model import templates
+from mjbeer.model import looks
 from mjbeer.studies.benchmark.peers.installed import absent
 from tests.support import browser, screen
 
@@ -50,6 +50,6 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def copy(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
     """A copy of the templates in the place of the templates."""
     folder = tmp_path / "mjcf"
-    shutil.copytree(templates.folder(), folder)
-    monkeypatch.setattr(templates, "_FOLDERS", (folder,))
+    shutil.copytree(looks.folder(), folder)
+    monkeypatch.setattr(looks, "FOLDERS", (folder,))
     return folder

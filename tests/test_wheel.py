@@ -41,10 +41,10 @@ SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoo
 SIMULATE = """
 import json, pathlib, sys
 import mjbeer
-from mjbeer.model import templates
+from mjbeer.model import looks
 package = pathlib.Path(mjbeer.__file__).parent
 assert package == pathlib.Path(sys.argv[1]) / "mjbeer", package
-assert templates.folder() == package / "mjcf", templates.folder()
+assert looks.folder() == package / "mjcf", looks.folder()
 found = {}
 for name in ("sliding", "frozen", "pendulum", "hoop"):
     scene = getattr(mjbeer, name)()

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from mjbeer.drawing.video import render
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
+    from mjbeer.model.state import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep.run import sweep
 
@@ -40,6 +41,7 @@ __all__ = [
     "liquid",
     "pendulum",
     "render",
+    "reset",
     "simulate",
     "sliding",
     "specify",
@@ -51,6 +53,7 @@ _LAZY = {
     "build": "mjbeer.model.build",
     "specify": "mjbeer.model.build",
     "export": "mjbeer.model.export",
+    "reset": "mjbeer.model.state",
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep.run",

@@ -15,9 +15,9 @@ from mjbeer import exact, frozen
 from mjbeer.drawing import viewer
 from mjbeer.drawing.viewer import Player, view
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import templates
-from mjbeer.model.build import finish
-from mjbeer.model.present import present
+from mjbeer.model import looks
+from mjbeer.model.build import compile_spec, is_rigid
+from mjbeer.model.export import present
 from mjbeer.model.setting import Setting
 from tests.support import processes
 from tests.support.scenes import METAL
@@ -54,7 +54,7 @@ def shown(tmp_path: pathlib.Path) -> Generator[Screen]:
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_a_template_shows_its_can_after_three_seconds(name: str, shown: Screen) -> None:
     """In MuJoCo's viewer as it comes, which runs the model at once."""
-    command = [sys.executable, "-m", "mujoco.viewer", f"--mjcf={templates.folder() / name}.xml"]
+    command = [sys.executable, "-m", "mujoco.viewer", f"--mjcf={looks.folder() / name}.xml"]
     with subprocess.Popen(command, env=shown.environment) as process:
         try:
             shown.wait(is_drawn)
@@ -109,7 +109,7 @@ def test_without_a_display_there_is_one_line_with_two_ways_on() -> None:
 
 def player(speed: float = 1.0, phi0: float = 2.0) -> Player:
     setting = Setting("equality")
-    return Player(finish(present(SCENE, setting, phi0, 0.0), setting), speed)
+    return Player(compile_spec(present(SCENE, setting, phi0, 0.0), is_rigid(setting)), speed)
 
 
 def test_a_player_moves_as_theory_says() -> None:

@@ -1,45 +1,52 @@
-"""Exported MJCF: MuJoCo 4 loads it without mjbeer, it is the model that mjbeer builds, and moves as the paper says."""
+"""Exported MJCF: MuJoCo 4 loads it without mjbeer, it is the model that mjbeer builds, and moves as the paper says.
+
+Portable exports are loaded by MuJoCo 3.3, MJX, mujoco_warp and dm_control too. The tests with these install them in
+build/others, and run only where MJBEER_OTHERS names the tools: `MJBEER_OTHERS="MuJoCo 3.3" .venv/bin/python -m pytest
+tests/model/test_export.py` takes half a minute the first time; MJBEER_OTHERS=all downloads about 1.5 GB and takes half
+an hour. The names are those of `others.OTHERS`.
+"""
 
 import math
 import os
 import pathlib
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, exact, frozen, hoop, pendulum, sliding
+from mjbeer import Can, MjbeerError, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.cli.app import main
-from mjbeer.exceptions import OutputError, ParameterError, UnsupportedError
-from mjbeer.model import state
-from mjbeer.model.build import compose
+from mjbeer.exceptions import NoLibrationError, OutputError, ParameterError, UnsupportedError
+from mjbeer.model import export as exporting
+from mjbeer.model import looks, state
+from mjbeer.model.build import build, compose
+from mjbeer.model.check import effective_softness
 from mjbeer.model.engine import library
-from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS, OWN, Setting
+from mjbeer.model.export import export, farthest, present
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.theory.liquid import Damping
-from tests.support.scenes import METAL, SCENES
+from tests.support import others
+from tests.support.others import BY_NAME, FRICTION, START
+from tests.support.scenes import METAL, SCENES, scenes
 
-pytestmark = pytest.mark.slow
-
-START = 1.0, 0.5
-FRICTION = 10.0
-TIMESTEP = 1e-4
-# RK4's own error after 1 s, in phi and u/a: 2e-9 rad for the hoop, which passes its bottom at 47 rad/s; the
-# others are below 2e-12.
-REDUCED = 1e-8
-# The joint equality's softness is less than that: 2e-10 rad for the pendulum.
-EQUALITY = 1e-8
-# The contact's softness and the creep of its friction: 2e-7 rad for the hoop, 4e-9 for the others.
-CONTACT = 1e-6
-TOLERANCE = {"reduced": REDUCED, "equality": EQUALITY, "contact": CONTACT}
-CASES = [
-    (name, rolling)
-    for name, scene in SCENES.items()
-    for rolling in TOLERANCE
-    if rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen"
-]
+DOCUMENT = others.CHECKOUT / "docs" / "portability.md"
+# RK4's own error after 1 s at 1 ms, and at 0.25 ms for the hoop, which passes its bottom at 47 rad/s: 4.2e-8 rad. The
+# joint equality's softness is less. A contact's creeps, 2e-7 rad for the hoop; a portable one's impedance of 0.999
+# misses ten times as much of its force, 1.8e-6 rad.
+TOLERANCE = {"reduced": 1e-7, "equality": 1e-7, "contact": 5e-6}
+# In single precision each of 1000 to 4000 steps rounds phi and its rate by 6e-8 of their size: 1e-6 rad in all if the
+# roundings are independent, and 1e-4 rad if they all have the same sign. The equality's residual is a difference of two
+# angles, whose rounding the stiffness 4/h^2 multiplies. The depth of a contact, 1e-8 m, is the difference of heights of
+# 0.03 m, which are rounded by 2e-9 m: its force has hardly a digit in each step, and is right on average only.
+ALLOWED = {True: TOLERANCE, False: {"reduced": 1e-4, "equality": 1e-3, "contact": 1e-2}}
+FAITHFUL = [name for name, other in BY_NAME.items() if other.faithful]
+CASES = [(name, rolling) for name, scene in SCENES.items() for rolling in ROLLINGS if supported(scene, rolling)]
 PHYSICAL = (
     "body_mass", "body_inertia", "body_ipos", "body_pos", "body_parentid", "jnt_type", "jnt_axis", "jnt_bodyid",
     "dof_armature", "dof_damping", "dof_dampingpoly", "dof_frictionloss",
@@ -49,35 +56,22 @@ PHYSICAL = (
 )  # fmt: skip
 OPTIONS = ("timestep", "integrator", "gravity", "cone", "solver", "impratio", "disableflags")
 TENDONS = ("tendon_armature", "tendon_stiffness", "tendon_damping", "tendon_dampingpoly", "tendon_frictionloss")
-ENERGY = int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-# MuJoCo normalizes quaternions whenever it compiles, which rounds once more.
-QUATERNION = 2 * np.finfo(float).eps
+# Sums of a few products of positions and rates.
+ROUNDING = 1e-12
 
 
-def load(path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> mujoco.MjModel:
-    """Load a file as a stranger to mjbeer would, from some other folder."""
-    (path.parent / "elsewhere").mkdir()
-    monkeypatch.chdir(path.parent / "elsewhere")
-    return mujoco.MjModel.from_xml_path(str(path))
-
-
-def step(model: mujoco.MjModel, duration: float) -> tuple[np.ndarray, np.ndarray]:
-    """Times and states of a model that is stepped from its keyframe with nothing but MuJoCo."""
+def move(path: pathlib.Path, scene: Scene, start: tuple[float, float] = START, duration: float = 1.0) -> float:
+    """Return the error of phi [rad] and u/a after a time [s] of nothing but mj_step from the keyframe."""
+    model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
-    states = [np.concatenate([data.qpos, data.qvel])]
-    for _ in range(round(duration / model.opt.timestep)):
-        mujoco.mj_step(model, data)
-        states.append(np.concatenate([data.qpos, data.qvel]))
+    assert np.array_equal(np.concatenate([data.qpos, data.qvel]), state.start(model, scene, *start))
+    mujoco.mj_step(model, data, round(duration / model.opt.timestep))
     assert not any(warning.number for warning in data.warning)
-    return model.opt.timestep * np.arange(len(states)), np.array(states)
-
-
-def assert_moves_exactly(scene: Scene, model: mujoco.MjModel, tolerance: float, duration: float = 1.0) -> None:
-    times, states = step(model, duration)
-    motion, truth = state.read(model, scene, states, times), exact(scene, times, *START)
-    assert np.abs(motion.phi - truth.phi).max() < tolerance
-    assert np.abs(motion.u - truth.u).max() < tolerance * scene.can.radius
+    time = np.array([data.time])
+    found = state.read(model, scene, np.concatenate([data.qpos, data.qvel])[None], time)
+    truth = exact(scene, time, *start)
+    return max(abs(found.phi[0] - truth.phi[0]), abs(found.u[0] - truth.u[0]) / scene.can.radius)
 
 
 def assert_same_physics(model: mujoco.MjModel, built: mujoco.MjModel) -> None:
@@ -85,69 +79,76 @@ def assert_same_physics(model: mujoco.MjModel, built: mujoco.MjModel) -> None:
         assert np.array_equal(getattr(model, name), getattr(built, name)), name
     for name in OPTIONS:
         assert np.array_equal(getattr(model.opt, name), getattr(built.opt, name)), name
-    assert model.opt.enableflags & ~ENERGY == built.opt.enableflags
     # The tendons of the built model come first; the others only measure.
     for name in TENDONS:
         assert np.array_equal(getattr(model, name)[: built.ntendon], getattr(built, name)), name
         assert not getattr(model, name)[built.ntendon :].any(), name
-    for name in ("body_quat", "body_iquat"):
-        assert getattr(model, name) == pytest.approx(getattr(built, name), rel=0, abs=QUATERNION), name
-    for i in range(built.npair):
-        for geom in (int(built.pair_geom1[i]), int(built.pair_geom2[i])):
-            for name in ("geom_type", "geom_size", "geom_pos", "geom_quat"):
-                assert np.array_equal(getattr(model, name)[geom], getattr(built, name)[geom]), name
+    assert np.array_equal(model.wrap_prm[: built.nwrap], built.wrap_prm)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("portable", [False, True])
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 def test_an_export_is_the_model_and_moves_exactly(
-    name: str, rolling: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    name: str, rolling: Rolling, portable: bool, tmp_path: pathlib.Path
 ) -> None:
-    scene, path = SCENES[name], tmp_path / "new" / "model.xml"
-    export(scene, path, *START, rolling, timestep=TIMESTEP, friction=FRICTION)
-    assert not re.search(r"\b(file|\w+dir)=|<include", path.read_text())
-    model = load(path, monkeypatch)
-    built = compose(scene, Setting(rolling, timestep=TIMESTEP, friction=FRICTION), visuals=True).compile()
-    assert_same_physics(model, built)
-    assert [model.key(i).name for i in range(model.nkey)] == ["start"]
-    start = state.start(built, scene, *START)
-    assert np.array_equal(np.concatenate([model.key("start").qpos, model.key("start").qvel]), start)
-    assert_moves_exactly(scene, model, TOLERANCE[rolling])
+    scene, path, timestep = SCENES[name], tmp_path / "new" / "model.xml", others.timestep(name)
+    export(scene, path, *START, rolling, timestep=timestep, friction=FRICTION, portable=portable)
+    text = path.read_text()
+    assert not re.search(r"\b(file|\w+dir)=|<include", text)
+    assert f"Written by mjbeer: rolling={rolling!r}" in text
+    assert move(path, scene) < TOLERANCE[rolling]
+    if not portable:
+        built = compose(scene, Setting(rolling, timestep=timestep, friction=FRICTION), visuals=True).compile()
+        assert_same_physics(mujoco.MjModel.from_xml_path(str(path)), built)
+        return
+    root = ET.parse(path).getroot()
+    assert not re.search(r"diagexact|colorspace|<frame", text)
+    assert not [light for light in root.iter("light") if "type" in light.attrib]
+    for body in root.iter("body"):
+        inertial = body.find("inertial")
+        assert inertial is not None
+        assert all(float(each) > 0 for each in (inertial.attrib["mass"], *inertial.attrib["diaginertia"].split()))
+        assert body.find("joint") is not None
 
 
-@pytest.mark.parametrize("rolling", TOLERANCE)
-def test_an_export_has_damping_and_drag(rolling: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("rolling", ROLLINGS)
+def test_an_export_has_damping_and_drag(rolling: Rolling, tmp_path: pathlib.Path) -> None:
+    """A portable one has damping as one number, which is all that MuJoCo 3.3 takes."""
     scene, path = sliding(can=METAL, damping=Damping(1e-3, 1 / 3, 1e-9), drag=1 / 7), tmp_path / "model.xml"
     export(scene, path, *START, rolling)
-    model = load(path, monkeypatch)
     built = compose(scene, Setting(rolling), visuals=True).compile()
-    assert_same_physics(model, built)
     assert built.tendon_damping.any() == built.tendon_dampingpoly.any() == (rolling == "reduced")
     assert built.dof_damping.any() == (rolling != "reduced")
-    assert built.dof_dampingpoly.any()
-    assert np.array_equal(model.wrap_prm[: built.nwrap], built.wrap_prm)
-    data = mujoco.MjData(model)
-    data.qvel[:] = np.linspace(1, 2, model.nv)
-    mujoco.mj_forward(model, data)
-    damped = {"slide"} | ({"phi"} if rolling == "reduced" else {"swing"})
-    joints = state.places(model)
-    assert {name for name in joints if data.qfrc_damper[joints[name]] != 0} == damped
+    assert_same_physics(mujoco.MjModel.from_xml_path(str(path)), built)
+    export(replace(scene, damping=1 / 3, drag=0.0), path, *START, rolling, portable=True)
+    kind, name = ("fixed", "damper") if rolling == "reduced" else ("joint", "swing")
+    (damper,) = (each for each in ET.parse(path).getroot().iter(kind) if each.get("name") == name)
+    assert float(damper.attrib["damping"]) == 1 / 3
 
 
-@pytest.mark.parametrize("rolling", TOLERANCE)
-@pytest.mark.parametrize("radius", [1e-3, 1.0])
+@pytest.mark.slow
+@pytest.mark.parametrize("portable", [False, True])
+@pytest.mark.parametrize("rolling", ROLLINGS)
+@pytest.mark.parametrize("radius", [1e-3, 1.0, 10.0])
 @pytest.mark.parametrize("make", [sliding, frozen])
 def test_cans_of_every_size(
-    make: Callable[..., Scene], radius: float, rolling: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    make: Callable[..., Scene], radius: float, rolling: Rolling, portable: bool, tmp_path: pathlib.Path
 ) -> None:
-    scene = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300))
+    """A portable equality is about as hard as it can be: with its joints in the other order, a row would reach 1 % of
+    its force for a can of 1 mm, 61 % for 100 m."""
     # Time goes as the root of the size, and so do the timestep and the duration that are as hard to simulate.
-    pace = math.sqrt(radius / 0.033)
-    path = tmp_path / "model.xml"
-    export(scene, path, *START, rolling, timestep=TIMESTEP * pace, friction=FRICTION)
-    model = load(path, monkeypatch)
-    built = compose(scene, Setting(rolling, timestep=TIMESTEP * pace, friction=FRICTION), visuals=True).compile()
-    assert_same_physics(model, built)
-    assert_moves_exactly(scene, model, TOLERANCE[rolling], 0.3 * pace)
+    scene, pace = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300)), math.sqrt(radius / 0.033)
+    path, start = tmp_path / "model.xml", (START[0], START[1] / pace)
+    export(scene, path, *start, rolling, timestep=1e-3 * pace, friction=FRICTION, portable=portable)
+    assert move(path, scene, start, 0.3 * pace) < TOLERANCE[rolling]
+    if rolling == "equality":
+        model = mujoco.MjModel.from_xml_path(str(path))
+        softness = effective_softness(model, np.concatenate([model.key("start").qpos, model.key("start").qvel]))
+        assert softness is not None
+        # 1e-4 with the exact diagonal. The sum of the joints' inverse inertias leaves out that the load couples them,
+        # a factor of up to 1.9 here.
+        assert 1 - softness.effective_impedance < 2e-4
 
 
 @pytest.mark.parametrize(
@@ -155,8 +156,8 @@ def test_cans_of_every_size(
 )
 def test_what_was_asked_for_arrives(integrator: str, incline: float, tmp_path: pathlib.Path) -> None:
     # An incline of 1e-17 needs forces that MuJoCo takes for none and does not write.
-    for scene in (sliding(incline, 0.37, METAL), frozen(incline), pendulum(incline, gravity=1.62), hoop(incline)):
-        for rolling in TOLERANCE:
+    for scene in (sliding(incline, 0.37, METAL), pendulum(incline, gravity=1.62)):
+        for rolling in ROLLINGS:
             export(scene, tmp_path / "model.xml", 2.0, -3.0, rolling, integrator, 7.3e-4, 0.37)
             model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
             assert model.opt.integrator == getattr(mujoco.mjtIntegrator, f"mjINT_{integrator.upper()}")
@@ -167,59 +168,227 @@ def test_what_was_asked_for_arrives(integrator: str, incline: float, tmp_path: p
 
 def test_the_command_line_exports_in_degrees(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
     said, meant = tmp_path / "said.xml", tmp_path / "meant.xml"
-    words = "export hoop --incline 5 --phi0 30 --phi-dot0 -60 --rolling contact --timestep 2e-4 --friction 0.5"
+    words = (
+        "export hoop --incline 5 --phi0 30 --phi-dot0 -60 --rolling contact --timestep 2e-4 --friction 0.5 --portable"
+    )
     assert main([*words.split(), "--output", str(said)]) == 0
     assert capsys.readouterr() == ("", f"wrote {said}\n")
-    export(hoop(math.radians(5)), meant, math.radians(30), math.radians(-60), "contact", "RK4", 2e-4, 0.5)
+    export(hoop(math.radians(5)), meant, math.radians(30), math.radians(-60), "contact", "RK4", 2e-4, 0.5, True)
     assert said.read_text() == meant.read_text()
 
 
-@pytest.mark.parametrize("digits", [6, 11])
-def test_the_precision_that_mujoco_writes_with_is_restored(digits: int, tmp_path: pathlib.Path) -> None:
+def test_the_precision_that_mujoco_writes_with_is_restored(tmp_path: pathlib.Path) -> None:
     c = library()
     before = c._mjPRIVATE__get_xml_precision()
-    c._mjPRIVATE__set_xml_precision(digits)
+    c._mjPRIVATE__set_xml_precision(11)
     try:
         export(frozen(), tmp_path / "model.xml")
-        assert c._mjPRIVATE__get_xml_precision() == digits
+        assert c._mjPRIVATE__get_xml_precision() == 11
     finally:
         c._mjPRIVATE__set_xml_precision(before)
 
 
-@pytest.mark.parametrize("name", OWN)
-def test_an_integrator_of_mjbeer_s_is_refused_by_name(name: str, tmp_path: pathlib.Path) -> None:
-    with pytest.raises(
-        UnsupportedError, match=f"{name} is mjbeer's integrator, not MuJoCo's; export with one of Euler"
-    ):
-        export(frozen(), tmp_path / "model.xml", rolling="reduced", integrator=name)
-    assert not os.listdir(tmp_path)
-
-
-@pytest.mark.parametrize("name", ["x.urdf", "x.mjcf", "x", "x.XML"])
-def test_a_file_of_another_format_is_refused(name: str, tmp_path: pathlib.Path) -> None:
-    """MJCF under the name of a URDF would be read as URDF."""
-    with pytest.raises(ParameterError, match=rf"MJCF is written: the file's name must end in \.xml, got '{name}'"):
-        export(frozen(), tmp_path / name)
-    assert not os.listdir(tmp_path)
-
-
-@pytest.mark.parametrize("rolling", ["equality", "contact"])
-def test_a_massless_can_around_a_sliding_load_is_refused(rolling: str, tmp_path: pathlib.Path) -> None:
-    with pytest.raises(UnsupportedError, match="massless can with a sliding load exists only in rolling="):
-        export(sliding(), tmp_path / "model.xml", rolling=rolling)
-    assert not os.listdir(tmp_path)
-
-
-def test_a_file_that_cannot_be_written_is_an_output_error(tmp_path: pathlib.Path) -> None:
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        *(({"integrator": name}, UnsupportedError, f"{name} is mjbeer's integrator, not MuJoCo's") for name in OWN),
+        ({"path": "x.urdf"}, ParameterError, r"MJCF is written: the file's name must end in \.xml, got 'x\.urdf'"),
+        ({"path": "x.XML"}, ParameterError, r"must end in \.xml, got 'x\.XML'"),
+        ({"path": "file/model.xml"}, OutputError, r"cannot write .*model\.xml"),
+        ({"scene": sliding(), "rolling": "contact"}, UnsupportedError, "massless can with a sliding load exists only"),
+        *(
+            ({"integrator": name, "portable": True}, UnsupportedError, f"Euler, implicitfast, RK4, not {name}")
+            for name in ("discrete", "implicit")
+        ),
+        *(
+            ({"scene": scene, "portable": True}, UnsupportedError, "damping in proportion to the slip rate only")
+            for scene in (sliding(drag=0.1), sliding(damping=Damping(cubic=1.0)))
+        ),
+    ],
+)
+def test_what_cannot_be_written_is_refused(
+    arguments: dict[str, object], error: type[Exception], message: str, tmp_path: pathlib.Path
+) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match=r"cannot write .*model\.xml"):
-        export(frozen(), tmp_path / "file" / "model.xml")
+    with pytest.raises(error, match=message):
+        export(**{"scene": frozen(), **arguments, "path": tmp_path / str(arguments.get("path", "model.xml"))})
     assert os.listdir(tmp_path) == ["file"]
 
 
-def test_a_number_that_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mjbeer.model.export._DIGITS", 6)
-    with pytest.raises(Exception, match="the MJCF written is not the model: body_mass is") as caught:
-        export(frozen(), tmp_path / "model.xml")
-    assert type(caught.value).__name__ == "MjbeerError"
-    assert not os.listdir(tmp_path)
+def test_what_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    rewrite = exporting._portable
+
+    def expect(message: str, lose: Callable[[str], str]) -> None:
+        monkeypatch.setattr(exporting, "_portable", lambda text: lose(rewrite(text)))
+        with pytest.raises(MjbeerError, match=f"the MJCF written is not the model: {message}"):
+            export(frozen(can=METAL), tmp_path / "model.xml", *START, "contact", friction=2.0, portable=True)
+
+    expect("body_mass is", lambda text: re.sub(r'mass="0\.2\d*"', 'mass="0.2"', text))
+    expect("geom_xpos is", lambda text: re.sub(r'(name="load"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text))
+    expect("geom_xmat is", lambda text: re.sub(r'(name="board"[^>]* quat=")[^"]*"', r'\1 1 0 0 0"', text))
+    expect("cam_xpos is", lambda text: re.sub(r'(<camera name="side"[^>]*) pos="[^"]*"', r"\1", text))
+    expect("light_xdir is", lambda text: re.sub(r' dir="[^"]*"', "", text))
+    expect("pair_friction is", lambda text: text.replace('friction="2 2"', 'friction="3 3"'))
+    expect("option timestep is", lambda text: text.replace('timestep="0.001"', 'timestep="0.002"'))
+    monkeypatch.setattr(exporting, "_DIGITS", 6)
+    expect("body_mass is", str)
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_edited_template_keeps_its_looks(copy: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    """Nested frames, lights and classes in a body without a joint: the export itself compares where everything is."""
+    template = copy / "frozen.xml"
+    more = """<body name="load" childclass="visual">
+          <light dir="1 0 -1" pos="0 1 2"/>
+          <site pos="0.01 0 0"/>
+          <frame pos="0 0 0.1" euler="10 20 30">
+            <geom type="sphere" size="0.01" rgba="1 0 0 1"/>
+            <frame euler="0 0 45"><camera pos="0 0 1"/><light/></frame>
+          </frame>"""
+    text = template.read_text().replace("<worldbody>", '<worldbody><camera name="more" pos="0 0 1"/>')
+    template.write_text(text.replace('<body name="load">', more))
+    for rolling in ROLLINGS:
+        export(frozen(), tmp_path / "model.xml", *START, rolling, portable=True)
+        model = mujoco.MjModel.from_xml_path(str(tmp_path / "model.xml"))
+        assert (model.nbody, model.nlight, model.ncam) == (2, 3, 5)
+        assert model.camera(model.vis.global_.cameraid).name == "side"
+        assert not model.geom_contype.any()
+        assert move(tmp_path / "model.xml", frozen()) < TOLERANCE[rolling]
+
+
+@pytest.mark.parametrize("integrator", exporting.PORTABLE)
+@pytest.mark.parametrize("rolling", ROLLINGS)
+def test_every_integrator_of_a_portable_export_is_stable(
+    integrator: str, rolling: Rolling, tmp_path: pathlib.Path
+) -> None:
+    export(pendulum(), tmp_path / "model.xml", *START, rolling, integrator, friction=FRICTION, portable=True)
+    # Semi-implicit Euler's own error at 1 ms is 1e-2 rad after a second; what explodes is off by radians.
+    assert move(tmp_path / "model.xml", pendulum()) < (TOLERANCE[rolling] if integrator == "RK4" else 0.05)
+
+
+# What the viewer shows
+
+
+def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[str, float]:
+    """The sensors' values."""
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = np.split(state.start(model, scene, phi, phi_dot), 2)
+    mujoco.mj_forward(model, data)
+    return {model.sensor(i).name: float(data.sensor(i).data[0]) for i in range(model.nsensor)}
+
+
+@pytest.mark.parametrize(("name", "rolling"), CASES)
+def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
+    """And energies, from the height of the load and of the can, or none: where a constant force stands for a weight."""
+    scene = SCENES[name]
+    model, (phi, phi_dot) = present(scene, Setting(rolling), 0.0, 0.0).compile(), (1.1, -7.0)
+    found, (u, u_dot) = at(model, scene, phi, phi_dot), scene.start(phi, phi_dot)
+    expected = {"u": u, "phi": phi, "u_dot": u_dot, "phi_dot": phi_dot}
+    if rolling != "reduced":
+        expected["slip"] = 0.0
+    if rolling == "contact":
+        expected["lift"] = -1e-9 * scene.can.radius
+    if not model.nu:
+        can, load, tilt = scene.can, scene.load, scene.incline
+        along, across = u_dot - load.offset * math.cos(phi) * phi_dot, load.offset * math.sin(phi) * phi_dot
+        kinetic = can.mass * u_dot**2 + can.inertia * (u_dot / can.radius) ** 2
+        kinetic += load.mass * (along**2 + across**2) + load.inertia * phi_dot**2
+        fall = scene.mass * u * math.sin(tilt) + load.mass * load.offset * (math.cos(phi + tilt) - math.cos(tilt))
+        level = at(model, scene, 0.0, 0.0)["potential_energy"]
+        expected |= {"potential_energy": level - scene.gravity * fall, "kinetic_energy": kinetic / 2}
+    assert found.keys() == expected.keys()
+    scale = max(abs(value) for value in expected.values())
+    # A can in contact starts 1e-9 radii deep.
+    assert found == pytest.approx(expected, rel=ROUNDING, abs=(1e-8 if rolling == "contact" else ROUNDING) * scale)
+    assert build(scene, rolling, visuals=True).nsensor == 0
+
+
+def test_slip_and_lift_are_what_is_missing_from_rolling() -> None:
+    scene = pendulum()
+    model = present(scene, Setting("contact"), 0.0, 0.0).compile()
+    data = mujoco.MjData(model)
+    data.joint("slide").qpos, data.joint("roll").qpos, data.joint("lift").qpos = 0.7, 3.0, 0.2
+    mujoco.mj_forward(model, data)
+    assert data.sensor("slip").data[0] == pytest.approx(0.7 - scene.can.radius * 3.0, rel=ROUNDING)
+    assert data.sensor("lift").data[0] == 0.2
+    # Masses that are multiplied for MuJoCo's sake would show an energy that is multiplied too.
+    light = present(pendulum(wheel_mass=1e-9, load_mass=1e-9), Setting("equality"), 0.0, 0.0)
+    assert not {"potential_energy", "kinetic_energy"} & {each.name for each in light.sensors}
+
+
+@pytest.mark.parametrize("name", ["sliding, metal can", "frozen, metal can", "pendulum", "hoop"])
+def test_templates_have_the_sensors_of_the_models(name: str) -> None:
+    scene = SCENES[name]
+    model = mujoco.MjModel.from_xml_path(str(looks.template(scene)))
+    rolling, fill = "contact" if name == "hoop" else "equality", scene.load.fill
+    found, wanted = (
+        at(each, scene, 0.3, 2.0) for each in (model, present(scene, Setting(rolling), 0.0, 0.0).compile())
+    )
+    # Numbers in the templates have 13 digits, and a point load has an inertia of 1e-12 kg m^2 there.
+    assert found == pytest.approx(wanted, rel=1e-7 if fill is None else 1e-11, abs=1e-15)
+
+
+@pytest.mark.slow
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(scenes(), st.floats(-4, 4), st.floats(-5, 5), st.sampled_from([0.0, 1e-3, 1.0]))
+def test_no_can_goes_farther_than_the_bound(scene: Scene, phi0: float, swing: float, damping: float) -> None:
+    rate = math.sqrt(scene.gravity / scene.can.radius)
+    if scene.attachment == "sliding":
+        scene = replace(scene, damping=damping * scene.oscillator.base * rate)
+    try:
+        u = exact(scene, np.linspace(0, 3, 31), phi0, swing * rate).u
+    except NoLibrationError:
+        assume(False)
+    assert np.abs(u - u[0]).max() <= farthest(scene, phi0, swing * rate, 3.0) * (1 + 1e-9)  # rounding of a few products
+
+
+def test_a_board_is_as_long_as_ten_seconds_and_as_graphics_can_draw() -> None:
+    for scene, start, most in (
+        (frozen(1.2), (1.0, 45.0), 1e4),
+        (hoop(1.0, radius=1e-4, length=1e-3), (0.0, 0.0), 10.01),
+    ):
+        board, u = present(scene, Setting(), *start).geom("board"), exact(scene, [0.0, 10.0], *start).u
+        low, high = board.pos[0] - board.size[0], board.pos[0] + board.size[0]
+        assert max(-low, high) < most
+        assert most < 11 or low < u.min() < u.max() < high
+
+
+# What others make of portable exports
+
+
+@pytest.mark.parametrize("name", FAITHFUL)
+def test_others_load_portable_exports_and_move_them_exactly(name: str) -> None:
+    other = wanted_or_skip(name)
+    found = others.errors(other)
+    assert list(found) == others.cases()
+    allowed = ALLOWED[other.precise]
+    wrong = {case: each for case, each in found.items() if isinstance(each, str) or not each < allowed[case[1]]}
+    assert not wrong
+
+
+def test_mujoco_3_refuses_what_is_not_portable() -> None:
+    """Or `--portable` would not be needed."""
+    found = others.errors(wanted_or_skip("MuJoCo 3.3"), portable=False)
+    for (_, rolling), error in found.items():
+        assert (rolling == "reduced") == isinstance(error, float), error
+        assert isinstance(error, float) or "diagexact" in str(error)
+
+
+def wanted_or_skip(name: str) -> others.Other:
+    """Return a tool that MJBEER_OTHERS names and that is here, or skip the test."""
+    if name not in others.wanted():
+        pytest.skip(f'MJBEER_OTHERS="{name}" or MJBEER_OTHERS=all in the environment runs this')
+    try:
+        BY_NAME[name].python()
+    except others.AbsentError as error:
+        pytest.skip(str(error))
+    return BY_NAME[name]
+
+
+def test_the_table_of_the_document_is_within_these_tolerances() -> None:
+    rows = [line.strip("| ").split(" | ") for line in DOCUMENT.read_text().splitlines() if line.startswith("| ")]
+    numbers = {row[0]: row[1:7] for row in rows if row[0] in BY_NAME and len(row) > len(ROLLINGS * 2)}
+    assert list(numbers) == list(BY_NAME)
+    for name in FAITHFUL:
+        for rolling, number in zip(ROLLINGS * 2, numbers[name], strict=True):
+            assert float(number) < ALLOWED[BY_NAME[name].precise][rolling], (name, rolling)

@@ -6,12 +6,12 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
+from mjbeer.model.softness import effective_softness
 
 from mjbeer import Can, Load, Scene, build, frozen, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model.build import compile_model, compose
 from mjbeer.model.setting import USUAL, Setting, Softness
-from mjbeer.model.softness import effective_softness
 from mjbeer.model.state import start
 from mjbeer.require import shown
 

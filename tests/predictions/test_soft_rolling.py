@@ -9,7 +9,7 @@ import pytest
 from mjbeer import Scene, sliding
 from mjbeer.model import state
 from mjbeer.model.build import build
-from mjbeer.model.constrained import stiffest
+from mjbeer.model.numbers import stiffest
 from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.predictions import soft_rolling
 from mjbeer.predictions.linear_stability import spectral_radius

@@ -110,9 +110,9 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(name: str) -> None:
     model = build(scene)
     begin = start(model, scene, 0.7, 2.0)
     integrator = Integrator(model)
-    assert len(integrator._pointers[0]) > 1
+    assert len(integrator.dynamics[0][0]) > 1
     slope = np.empty_like(begin)
-    dop853_kernel._slope(integrator._pointers, integrator._views, begin, slope)
+    dop853_kernel.slope(*integrator.dynamics, begin, slope)
     data = mujoco.MjData(model)
     data.qpos, data.qvel = np.split(begin, 2)
     mujoco.mj_forward(model, data)
@@ -130,13 +130,13 @@ def test_an_evaluation_does_not_know_how_far_the_can_has_come(scene: Scene) -> N
         begin = start(model, scene, 0.7, 2.0)
         begin[int(model.joint("slide").qposadr[0])] = place
         slopes.append(np.empty_like(begin))
-        dop853_kernel._slope(integrator._pointers, integrator._views, begin, slopes[-1])
+        dop853_kernel.slope(*integrator.dynamics, begin, slopes[-1])
     assert (slopes[0] == slopes[1]).all()
 
 
 def test_a_slide_that_is_tied_to_others_matters() -> None:
     model = build(pendulum(), "equality")
-    assert Integrator(model)._views[-1].all()
+    assert Integrator(model).dynamics[1][-1].all()
 
 
 def test_the_clock_is_put_back() -> None:

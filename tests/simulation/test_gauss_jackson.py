@@ -14,13 +14,12 @@ from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.model.state import read, start
-from mjbeer.simulation import comparison, gauss_jackson_kernel, gauss_jackson_pair
+from mjbeer.simulation import gauss_jackson_kernel
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.gauss_jackson_pair import GaussJacksonPair
-from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
+from mjbeer.simulation.gauss_jackson_kernel import COUNT, series, weights
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.recorder import Recorder
+from mjbeer.simulation.stepping import Recorder
 from mjbeer.studies.convergence import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance

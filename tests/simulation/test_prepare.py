@@ -19,6 +19,7 @@ SETTINGS = [
     Setting("contact", timestep=2e-3),
 ]
 SCENES = [sliding(can=METAL), sliding(0.3, 0.2, can=METAL), frozen(0.2), frozen(0.3, 0.8, can=METAL), pendulum()]
+DAMPED = [sliding(can=METAL, damping=1e-4, drag=0.1), sliding(0.3, can=METAL, damping=1e-3), sliding(can=METAL, drag=0.2)]
 TIMES = np.linspace(0, 0.4, 5)
 
 
@@ -34,33 +35,39 @@ def bits(prepared: Prepared) -> bytes:
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
     for scene in SCENES * 2:
-        with Prepared.lent(scene, setting) as prepared:
+        with Prepared.borrowed(scene, setting) as prepared:
             assert bits(prepared) == bits(Prepared(scene, setting))
     assert len(prepare._idle) < len(SCENES)
+    for scene in DAMPED * 2:  # with drag, and then without
+        with Prepared.borrowed(scene, setting) as prepared:
+            assert bits(prepared) == bits(Prepared(scene, setting))
 
 
 def test_a_set_up_in_use_is_not_lent() -> None:
-    with Prepared.lent(SCENES[0], SETTINGS[0]) as one:
+    with Prepared.borrowed(SCENES[0], SETTINGS[0]) as one:
         before = bits(one)
-        with Prepared.lent(SCENES[1], SETTINGS[0]) as other:
+        with Prepared.borrowed(SCENES[1], SETTINGS[0]) as other:
             assert other.model is not one.model
         assert bits(one) == before
 
 
 def test_a_set_up_comes_back_from_a_run_that_failed() -> None:
-    with pytest.raises(DivergenceError), Prepared.lent(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed:
+    with (
+        pytest.raises(DivergenceError),
+        Prepared.borrowed(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed,
+    ):
         failed.solve(np.array([0.0, 0.7, 0.0, 1e9]), np.array([0.0, 100.0]))
-    with Prepared.lent(SCENES[0], Setting(tolerance=1e-13)) as prepared:
+    with Prepared.borrowed(SCENES[0], Setting(tolerance=1e-13)) as prepared:
         assert prepared is failed
         with pytest.raises(ToleranceError):
             prepared.solve(prepared.start(0.7, 2.0), np.array([0.0, 1e5]))
-    with Prepared.lent(SCENES[1], SETTINGS[0]) as prepared:
+    with Prepared.borrowed(SCENES[1], SETTINGS[0]) as prepared:
         assert prepared is failed
         assert bits(prepared) == bits(Prepared(SCENES[1], SETTINGS[0]))
 
 
 def test_few_are_kept() -> None:
-    lent = [Prepared.lent(scene, setting) for scene in SCENES for setting in SETTINGS]
+    lent = [Prepared.borrowed(scene, setting) for scene in SCENES for setting in SETTINGS]
     for each in lent:
         each.__enter__()
     for each in lent:
@@ -72,6 +79,6 @@ def test_one_setting_may_follow_another() -> None:
     """Of a kind are all that have the same elements, whatever the integrator and its steps."""
     scene: Scene = SCENES[1]
     for setting in (SETTINGS[0], SETTINGS[2], Setting(), SETTINGS[0]):
-        with Prepared.lent(scene, setting) as prepared:
+        with Prepared.borrowed(scene, setting) as prepared:
             assert bits(prepared) == bits(Prepared(scene, setting))
     assert len(prepare._idle) == 1

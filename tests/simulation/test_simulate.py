@@ -5,33 +5,30 @@ import re
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
-from mjbeer.exceptions import (
-    AngleWarning,
-    DivergenceError,
-    MjbeerError,
-    ParameterError,
-    UnsupportedError,
-    UntrustedWarning,
-)
-from mjbeer.model.pattern import Editable, Plan
+from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, liquid, pendulum, simulate, sliding
+from mjbeer.cli.arguments import Motion, Sliding
+from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.run import Run
+from mjbeer.simulation.run import Run, Second
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
-from tests.support.scenes import SCENES
+from tests.support import damped
+from tests.support.scenes import METAL, SCENES
 
-HUGE = Scene(Can(radius=1e20), Load(1.0, 1e20, 1.0), attachment="frozen")
-WEIGHTLESS = pendulum(gravity=0.0)
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
+ALL = (*INTEGRATORS, "DOP853")
+
+
+def error(run: Run) -> float:
+    """The largest error of phi and u/a at the samples of a run, as a tolerance bounds it."""
+    start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
+    return distance(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -42,22 +39,22 @@ def test_a_run_starts_where_theory_starts(name: str) -> None:
         assert getattr(run, each)[0] == pytest.approx(getattr(truth, each)[0], rel=4e-16)
 
 
-def test_every_array_has_a_row_a_sample() -> None:
-    run = simulate(frozen(), 0.5, 1.0, rolling="contact")
-    assert {getattr(run, each).shape for each in ARRAYS} == {(501,)}
-    assert run.time[-1] == 0.5
+def test_the_command_line_has_the_same_defaults() -> None:
+    ours, theirs = simulate(sliding()), Motion(Sliding()).simulate()
+    assert (ours.time[-1], ours.phi0) == (2.0, math.radians(60))
+    # Degrees and back are a rounding of the start.
+    assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)
 
 
-def test_a_run_ends_on_the_first_step_at_or_after_its_duration() -> None:
-    assert simulate(frozen(), 0.0104, 1.0).time[-1] == pytest.approx(0.011)
-
-
-@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+@pytest.mark.parametrize("integrator", ALL)
 def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
     times = np.array([0.0, 0.007, 0.1, 0.25])
-    whole = simulate(frozen(), 0.25, 1.0, integrator=integrator)
-    some = simulate(frozen(), 0.25, 1.0, integrator=integrator, times=times)
+    whole = simulate(frozen(), 0.2499, 1.0, integrator=integrator, rolling="contact")
+    some = simulate(frozen(), 0.25, 1.0, integrator=integrator, rolling="contact", times=times)
+    times[1] = 7.0  # the run has a copy
+    assert {getattr(whole, each).shape for each in ARRAYS} == {(251,)}
     assert np.array_equal(some.phi, whole.phi[[0, 7, 100, 250]])
+    assert some.time[1] == 0.007
 
 
 @pytest.mark.parametrize(
@@ -65,63 +62,24 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
     [
         ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
         ({"duration": math.inf}, "duration must be a finite number"),
-        ({"duration": 1e6, "timestep": 1e-12}, "too many timesteps of 1e-12 s: at most 1e.08, or say with times="),
-        ({"duration": 1e40, "timestep": 1e-40}, "too many timesteps"),
-        ({"duration": 1e300}, r"duration must be between 1e-50 and 1e\+50 \[s\], got 1e\+300"),
-        ({"duration": np.float64(-1.0)}, r"duration must be greater than 0 \[s\], got -1\.0$"),
+        ({"duration": 1e6, "timestep": 1e-6}, "too many timesteps of 1e-06 s: at most 1e.08, or say with times="),
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
-        ({"phi0": "1"}, "phi0 must be a finite number"),
-        ({"phi_dot0": math.inf}, "phi_dot0 must be a finite number"),
-        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e\+50 and 1e\+50 \[rad/s\], got 1e\+200"),
-        (
-            {"phi_dot0": -2e10},
-            r"phi_dot0 of the start must be between -1e\+10 .* \[rad/s\], beyond .*mjMAXVAL.*, got -2",
-        ),
-        ({"phi0": 2e10}, r"phi0 must be between -1e\+10 and 1e\+10 \[rad\], got 20000000000\.0"),
-        (
-            {"scene": HUGE},
-            r"u of the start must be between -1e\+10 and 1e\+10 \[m\], beyond which MuJoCo .*, got 1e\+20",
-        ),
-        ({"scene": HUGE, "phi0": 0.0, "phi_dot0": 1.0}, r"u_dot of the start .* \[m/s\], .*, got 1e\+20"),
+        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e\+06 and 1e\+06 \[rad/s\], got 1e\+200"),
         ({"scene": "frozen"}, "scene must be a Scene, got 'frozen'"),
         ({"softness": "hard"}, "softness must be a Softness, got 'hard'"),
         ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
         ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4': did you mean 'RK4'\?"),
+        ({"integrator": "DOP853", "tolerance": 1e-6}, "a tolerance chooses the integrator .* got integrator 'DOP853'"),
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
-        ({"times": []}, r"times must be a list or a one-dimensional array of one or more numbers \[s\], got \[\]"),
-        ({"times": 0.05}, r"times must be a list .* \[s\], got 0\.05"),
-        ({"times": "0.05"}, r"times must be a list .* \[s\], got '0\.05'"),
-        ({"times": (each for each in (0.0, 0.1))}, r"times must be a list .* \[s\], got <generator object"),
-        (
-            {"times": np.zeros((2, 2))},
-            r"times must be a list .*, got ndarray of shape \(2, 2\) and type float64: \[0\.0",
-        ),
-        ({"times": np.array([0.0, 0.1j])}, r"times must be a list .*, got ndarray of shape \(2,\) and type complex128"),
-        ({"times": [0.0, 0.1j]}, r"times\[1\] must be a finite number \[s\], got 0\.1j"),
-        ({"times": [[0.0], [0.0, 0.1]]}, r"times\[0\] must be a finite number \[s\], got \[0\.0\]"),
-        ({"times": [0.0, None]}, r"times\[1\] must be a finite number \[s\], got None"),
-        ({"times": [False, True]}, r"times\[0\] must be a finite number \[s\], got False"),
-        ({"times": np.array([0.0, "x"], object)}, r"times\[1\] must be a finite number \[s\], got 'x'"),
-        ({"times": np.ma.array([0.0, 0.1], mask=[0, 1])}, r"times\[1\] must be a finite number \[s\], got masked"),
-        ({"times": [-0.01, 0.1]}, r"times\[0\] must be 0 or greater \[s\], got -0\.01"),
         ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at 0.0105 s; integrator="DOP853"'),
         ({"times": [5e-10]}, "multiples of the timestep 0.001 s only, not at 5e-10 s"),
         (
             {"times": [0.01, 0.01 * (1 + 1e-12)]},
             r"times must be at least a timestep of 0\.001 s apart, got 0\.01 s and 0\.01",
         ),
-        (
-            {"duration": 1e15, "times": [1e15]},
-            r"times must be within 1e\+12 timesteps of 0\.001 s, got 1000000000000000\.0 s",
-        ),
-        ({"duration": 1e15, "times": [1e15], "integrator": "DOP853"}, r"times must be within 1e\+12 timesteps"),
-        *(
-            ({"rolling": rolling, "tolerance": 1e-6, "timestep": bad}, f"timestep must be .*, got {bad}")
-            for rolling in ("reduced", "equality")
-            for bad in (0, -1e-3, math.nan, math.inf)
-        ),
-        ({"tolerance": 1e-6, "integrator": "foo"}, "integrator must be one of .*; got 'foo'"),
+        ({"duration": 1e15, "times": [1e15]}, r"times must be within 1e\+12 timesteps of 0\.001 s"),
+        ({"rolling": "reduced", "tolerance": 1e-6, "timestep": math.nan}, "timestep must be .*, got nan"),
         ({"friction": 1e-6}, r"friction must be at least 1e-05, MuJoCo's smallest \(mjMINMU\), got 1e-06"),
     ],
 )
@@ -130,45 +88,19 @@ def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: s
         simulate(**({"scene": frozen(), "duration": 0.1, "phi0": 1.0} | arguments))
 
 
-def test_a_run_has_a_step_however_short_it_is() -> None:
-    assert simulate(frozen(), 1e-10, 1.0).time.tolist() == [0.0, 1e-3]
-
-
 @pytest.mark.parametrize("timestep", [0.1, 1e-3, 1 / 3])
 def test_rounding_does_not_take_a_time_from_its_step(timestep: float) -> None:
     """Times as people write them, and as clocks that add up timesteps count: all are the steps that were meant."""
-    steps = np.arange(29_900, 30_000)
+    steps, scene = np.arange(29_900, 30_000), pendulum(gravity=0.0)
     clock = np.cumsum(np.full(30_000, timestep))[steps - 1]
     for times in (timestep * steps, np.linspace(29_900 * timestep, 29_999 * timestep, 100), clock):
-        run = simulate(WEIGHTLESS, 30_000 * timestep, 0.0, timestep=timestep, times=times)
+        run = simulate(scene, 30_000 * timestep, 0.0, timestep=timestep, times=times)
         assert np.array_equal(run.time, timestep * steps)
+    for duration, samples in ((0.3, 4), (0.1 * 3, 4), (0.3 * (1 - 1e-15), 4), (0.31, 5), (1e-10, 2)):
+        assert len(simulate(scene, duration, 1.0, timestep=0.1).time) == samples
 
 
-def test_a_run_ends_on_its_duration_if_that_is_a_step_but_for_rounding() -> None:
-    for duration in (0.3, 0.1 * 3, 0.3 * (1 - 1e-15), sum([0.1] * 3)):
-        assert len(simulate(frozen(), duration, 1.0, timestep=0.1).time) == 4
-
-
-def test_numbers_of_any_kind_become_doubles() -> None:
-    run = simulate(frozen(), Decimal("0.01"), Fraction(1, 2), np.float32(0.5), timestep=np.float16(0.0009765625))
-    assert all(type(each) is float for each in (run.phi0, run.phi_dot0, run.setting.timestep, run.setting.friction))
-    assert (run.phi0, run.phi_dot0, run.timestep) == (0.5, 0.5, 2**-10)
-
-
-def test_the_times_are_a_copy() -> None:
-    times = np.array([0.0, 0.1])
-    for motion in (exact(frozen(), times, 1.0), simulate(frozen(), 0.1, 1.0, integrator="DOP853", times=times)):
-        times[1] = 7.0
-        assert motion.time[1] == 0.1
-        times[1] = 0.1
-
-
-def test_a_massless_can_needs_reduced() -> None:
-    with pytest.raises(UnsupportedError, match='only in rolling="reduced"'):
-        simulate(sliding(), 1, 1.0, rolling="contact")
-
-
-@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+@pytest.mark.parametrize("integrator", ALL)
 def test_divergence_is_an_error_with_time_and_cause(integrator: str, capfd: pytest.CaptureFixture[str]) -> None:
     """Steps of half a second on a swing of 0.1 s; MuJoCo's own log stays silent."""
     with pytest.raises(DivergenceError, match=r"diverged at t = [\d.e+]+ s: .+"):
@@ -176,8 +108,8 @@ def test_divergence_is_an_error_with_time_and_cause(integrator: str, capfd: pyte
     assert capfd.readouterr().err == ""
 
 
-@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
-@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
+@pytest.mark.parametrize("rolling", ROLLINGS)
+@pytest.mark.parametrize("integrator", ALL)
 def test_a_run_repeats_to_the_bit_alone_and_beside_another(rolling: str, integrator: str) -> None:
     def run(_: int) -> np.ndarray:
         found = simulate(SCENES["frozen, metal can"], 0.3, 1.0, rolling=rolling, integrator=integrator)
@@ -189,26 +121,37 @@ def test_a_run_repeats_to_the_bit_alone_and_beside_another(rolling: str, integra
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_a_good_run_is_trusted(name: str) -> None:
+def test_a_good_run_is_trusted_and_makes_no_second_one_unasked(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Second] = []
+    second = Second.of
+    monkeypatch.setattr(Second, "of", lambda run: made.append(second(run)) or made[-1])
     run = simulate(SCENES[name], 1, 0.5)
+    assert not made
     assert run.trusted, run.warnings
-    assert run.warnings == ()
+    assert run.error_estimate == run.error_estimate == made[0].error
+    assert len(made) == 1
 
 
 @pytest.mark.parametrize(
     ("run", "reason"),
     [
         (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "energy or momentum drift"),
-        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "as a run at other timesteps shows"),
         (lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02), "the can slips by"),
         (lambda: simulate(hoop(), 0.5, 3.0, rolling="contact", timestep=1e-4, friction=1e3), "parts from the incline"),
-        (lambda: simulate(frozen(), 2, math.pi), r"from t = 0\.83.* s the incline would have to pull"),
+        (lambda: simulate(frozen(), 2, math.pi), r"from t = 0\.83.* s the incline would have to pull at the can"),
+        # It slides all the way, by less than a milliradian.
+        (
+            lambda: simulate(frozen(0.0), 0.3, 0.01, rolling="contact", friction=1e-5),
+            r"rolling needs a friction coefficient of 0\.00\d+, and the contact has 1e-05: it slides",
+        ),
     ],
 )
-def test_a_run_that_is_not_to_be_relied_on_says_so(run: Callable[[], Trajectory], reason: str) -> None:
-    trajectory = run()
+def test_a_run_that_is_not_to_be_relied_on_warns_when_it_is_made(run: Callable[[], Trajectory], reason: str) -> None:
+    with pytest.warns(UntrustedWarning, match=f"this run is not to be relied on: .*{reason}") as caught:
+        trajectory = run()
+    assert [each.filename for each in caught] == [__file__]
     assert not trajectory.trusted
-    assert any(re.search(reason, each) for each in trajectory.warnings), trajectory.warnings
+    assert any(re.search(reason, each) for each in trajectory.warnings)
 
 
 HOLES = {
@@ -224,36 +167,45 @@ HOLES = {
     "34 turns in a step, whose parts are nearly whole turns too": lambda: simulate(
         frozen(incline=0.0), 0.003, 0.0, 68 * math.pi / 1e-3, integrator="Euler"
     ),
-    "an arm lost in rounding": lambda: simulate(
-        Scene(Can(0.033, 0.12, 1.0, 5e-4), Load(1e-16, 0.02, 1e-21), 0.0, "frozen"),
-        1e7,
-        1.0,
-        rolling="equality",
-        timestep=1e4,
-    ),
 }
 
 
 @pytest.mark.parametrize("run", HOLES.values(), ids=HOLES.keys())
 def test_a_wrong_run_is_never_trusted(run: Callable[[], Run]) -> None:
-    """Each of these was once trusted. The least error among them is 0.45 rad."""
+    """Each of these was once trusted, or might be. The least error among them is 0.45 rad."""
     made = run()
-    truth, start = exact(made.scene, made.time, made.phi0, made.phi_dot0), made.scene.start(made.phi0, made.phi_dot0)
-    assert distance(made, truth, made.scene.can.radius, start=(made.phi0, start[0])) > 0.4
+    assert error(made) > 0.4
     assert not made.trusted
 
 
+def test_far_turns_in_a_step_of_dop853_are_no_alarm() -> None:
+    """Its stages are at twelve phases of them: the error is 2e-5 rad, and so says the second run."""
+    scene = Scene(Can(0.033, 0.12, 20.0, 0.02), Load(0.2, 0.01, 3e-5), 0.2, "sliding")
+    run = simulate(scene, 1, 0.0, 150.0, integrator="DOP853", timestep=0.02)
+    assert run.record.fastest * 0.02 > 2
+    assert scene.oscillator.unevenness(0.0, 150.0) > 1e-2
+    assert error(run) < 1e-4
+    assert run.trusted, run.warnings
+
+
+def test_strong_damping_in_an_equality_is_no_alarm() -> None:
+    """What it takes in a step was once known to fewer digits than the run has, and called a drift of 0.18 rad."""
+    scene = sliding(can=METAL, damping=0.1)
+    run = simulate(scene, 1, 1.0, rolling="equality", tolerance=7e-6, times=np.linspace(0, 1, 11))
+    assert distance(run, damped.motion(scene, run.time, 1.0), scene.can.radius) < 7e-6
+    assert run.trusted, run.warnings
+
+
 @pytest.mark.parametrize(
-    ("rolling", "integrator"),
+    ("rolling", "setting"),
     [  # a contact that parts is not smooth enough for a tolerance
-        *[(rolling, integrator) for rolling in ROLLINGS for integrator in ("Euler", "DOP853")],
-        ("reduced", "tolerance"),
-        ("equality", "tolerance"),
+        *[(rolling, {"integrator": integrator}) for rolling in ROLLINGS for integrator in ("Euler", "DOP853")],
+        ("reduced", {"tolerance": 1e-6}),
+        ("equality", {"tolerance": 1e-6}),
     ],
 )
-def test_what_a_run_says_of_itself_does_not_depend_on_its_samples(rolling: str, integrator: str) -> None:
+def test_what_a_run_says_of_itself_does_not_depend_on_its_samples(rolling: str, setting: dict[str, Any]) -> None:
     """A frozen can from the top is pulled at, slips and parts before the end of a second."""
-    setting: dict[str, Any] = {"tolerance": 1e-6} if integrator == "tolerance" else {"integrator": integrator}
     all_samples, one = (
         simulate(frozen(), 1.0, math.pi, rolling=rolling, friction=0.1, **setting, times=times)
         for times in (None, [1.0])
@@ -287,46 +239,23 @@ def test_rolls_until_is_where_theory_says() -> None:
     assert run.rolls_until(friction=0.3) < run.rolls_until()
 
 
-def test_frequency_needs_three_turning_points() -> None:
-    with pytest.raises(MjbeerError, match="the motion turns 1 times"):
-        simulate(frozen(), 0.5, math.pi).frequency()
-
-
 def test_measured_frequency_is_that_of_the_exact_period() -> None:
-    scene = frozen(can=Can.sheet_metal())
+    scene = frozen(can=METAL)
     amplitude = 0.4
     run = simulate(scene, 4, scene.equilibrium() + amplitude, tolerance=1e-12)
     # Turning points are interpolated to fourth order in the 1 ms between samples: (omega h)^4 = 2e-8 of h.
     assert run.frequency() * scene.period(amplitude) == pytest.approx(2 * math.pi, rel=1e-12)
 
 
-@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
+@pytest.mark.parametrize("rolling", ROLLINGS)
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(rolling: str, integrator: str) -> None:
     """3.2 times the distance is 1.2 times the error where it is of first order in the softness of a contact, 1.5 times
     where it is of first order in the timestep, and up to 3.2 times for higher orders, once the order has settled."""
     scene, steps = SCENES["frozen, metal can"], {"Euler": 1e-4, "RK4": 4e-3, "DOP853": 3e-2}
     run = simulate(scene, 1.2, 1.0, rolling=rolling, integrator=integrator, timestep=steps[integrator])
-    truth = exact(scene, run.time, 1.0)
-    error = distance(run, truth, scene.can.radius, start=(1.0, scene.start(1.0, 0.0)[0]))
     assert run.error_estimate is not None
-    assert 1.2 * error < run.error_estimate < 3.3 * error
-
-
-def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    timesteps: list[float] = []
-
-    def count(editable: Editable, plan: Plan) -> None:
-        timesteps.append(plan.setting.timestep)
-        write(editable, plan)
-
-    write = Editable.write
-    monkeypatch.setattr(Editable, "write", count)
-    run = simulate(frozen(), 0.1, 1.0)
-    assert timesteps == [1e-3]
-    assert run.trusted
-    assert run.error_estimate == run.error_estimate
-    assert timesteps == pytest.approx([1e-3, (math.sqrt(5) - 1) / 2 * 1e-3], rel=1e-15)
+    assert 1.2 * error(run) < run.error_estimate < 3.3 * error(run)
 
 
 def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -341,7 +270,7 @@ def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.Mon
     assert run.warnings == ("a run at other timesteps diverges: take a much smaller timestep or a better integrator",)
 
 
-@pytest.mark.parametrize("gravity", [1e-5, 1e-3, 1.0, 1e6])
+@pytest.mark.parametrize("gravity", [1e-3, 1.0, 1e3])
 @pytest.mark.parametrize("scene", [frozen, pendulum])
 def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: float) -> None:
     """In units of sqrt(a/g) the motion is that on Earth; MuJoCo's solver has an acceleration in its tolerance.
@@ -354,53 +283,24 @@ def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: floa
     assert np.abs(run.slip).max() < 1e-6 * run.scene.can.radius
 
 
-@pytest.mark.parametrize("call", [lambda: simulate(sliding(), 0.1, 60), lambda: exact(sliding(), [0.1], 60)])
-def test_degrees_in_place_of_radians_are_a_warning(call: Callable[[], Trajectory]) -> None:
-    message = r"phi0 = 60 is taken as radians, 9.549 turns: .* math.radians\(60\)"
-    with pytest.warns(AngleWarning, match=message) as caught:
-        call()
+def test_degrees_in_place_of_radians_are_a_warning() -> None:
+    with pytest.warns(
+        AngleWarning, match=r"phi0 = 60 is taken as radians, 9.549 turns: .* math.radians\(60\)"
+    ) as caught:
+        simulate(sliding(), 0.1, 60)
     assert [each.filename for each in caught] == [__file__]
-
-
-@pytest.mark.parametrize("phi0", [2 * math.pi, -2 * math.pi, 0.0])
-def test_a_start_within_a_turn_is_no_warning(phi0: float) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", AngleWarning)
-        simulate(sliding(), 0.1, phi0)
+        simulate(sliding(), 0.1, -2 * math.pi)
 
 
-@pytest.mark.parametrize(
-    ("run", "reason"),
-    [
-        (lambda: simulate(frozen(), 2, 1.0, integrator="Euler", timestep=4e-3), "energy or momentum drift"),
-        (lambda: simulate(frozen(), 1, 1.0, rolling="contact", friction=0.02), "the can slips by"),
-        (lambda: simulate(hoop(), 0.5, 3.0, rolling="contact", timestep=1e-4, friction=1e3), "parts from the incline"),
-        (lambda: simulate(frozen(), 2, math.pi), "N < 0"),
-    ],
-)
-def test_a_run_that_is_not_to_be_relied_on_warns_when_it_is_made(run: Callable[[], Trajectory], reason: str) -> None:
-    with pytest.warns(UntrustedWarning, match=f"this run is not to be relied on: .*{reason}") as caught:
-        run()
-    assert [each.filename for each in caught] == [__file__]
+def test_a_liquid_that_is_no_lump_any_more_is_a_warning() -> None:
+    """Water passes the speed at which the wall throws it up, u_dot^2 = a g cos(alpha), after some 10 cm."""
     with warnings.catch_warnings():
-        warnings.simplefilter("error", UntrustedWarning)
-        with pytest.raises(UntrustedWarning):
-            run()
-        warnings.simplefilter("ignore", UntrustedWarning)
-        assert not run().trusted
-
-
-def test_a_good_run_warns_of_nothing_and_is_run_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("mjbeer.simulation.run.Second.of", lambda _: pytest.fail("a second run"))
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", UntrustedWarning)
-        simulate(frozen(), 1.0, 1.0)
-
-
-@pytest.mark.parametrize(("gravity", "trusted"), [(0.0, True), (9.81, False)])
-def test_a_model_that_rounding_takes_all_inertia_from(gravity: float, trusted: bool) -> None:
-    """A point on the rim of a can of next to no mass, where it touches the incline: nothing but the can has inertia."""
-    scene = Scene(Can(1.0, 1.0, 1e-32, 0.0), Load(10**-14.8125, 1.0, 0.0), 0.0, "frozen", gravity)
-    run = simulate(scene, 5.0, 0.0, rolling="contact", integrator="Euler", timestep=1.0)
-    assert run.error_estimate is not None
-    assert run.trusted == trusted
+        warnings.simplefilter("ignore", LiquidWarning)
+        scene = liquid("water")
+    with pytest.warns(LiquidWarning, match=r"from t = 0\.\d+ s on the wall's centrifugal acceleration is more than"):
+        run = simulate(scene, 1.0, 1.0)
+    speed = float(np.interp(run.record.no_lump_at, run.time, np.abs(run.u_dot)))
+    # To a timestep of 1 ms, in which it gains less than 2 mm/s.
+    assert speed == pytest.approx(math.sqrt(scene.can.radius * scene.gravity * math.cos(scene.incline)), abs=2e-3)

@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+from mjbeer.theory.record import ERROR, LIFT, SLIP, doubts
 from scipy.optimize import brentq
 
 from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
@@ -14,7 +15,6 @@ from mjbeer.simulation.run import Run
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import Record, axis_drift
 from mjbeer.theory.trajectory import turning_times
-from mjbeer.theory.trust import ERROR, LIFT, SLIP, doubts
 from tests.support.scenes import METAL, SCENES
 
 # After 2 s the can as a whole has some thousand times the energy of the swing, to which a drift is compared.

@@ -14,7 +14,7 @@ from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import NAMES, Name
 from mjbeer.theory.load import BEER
-from mjbeer.theory.scene import GRAVITY, Scene, frozen, hoop, liquid, liquid_in, pendulum, sliding
+from mjbeer.theory.scene import DURATION, GRAVITY, PHI0, Scene, frozen, hoop, liquid, liquid_in, pendulum, sliding
 
 if TYPE_CHECKING:
     from mjbeer.theory.trajectory import Trajectory
@@ -246,7 +246,7 @@ class Start:
 
     scene: AnyScene
     _: KW_ONLY
-    phi0: float = 60.0
+    phi0: float = round(math.degrees(PHI0), 9)
     """Initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline, 180 where it
     is farthest, and growing as the load turns with a can that rolls downhill."""
     phi_dot0: float = 0.0
@@ -265,7 +265,7 @@ class Start:
 class Motion(Start):
     """The options of a simulation: the scene, the start of its motion, and how it is integrated."""
 
-    duration: float = 2.0
+    duration: float = DURATION
     """Duration of the motion [s]."""
     rolling: Rolling = "reduced"
     """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""

@@ -1,5 +1,15 @@
-"""Builds the MuJoCo model of a scene, for each of three ways of rolling, from an MJCF template."""
+"""Builds the MuJoCo model of a scene, for each of three ways of rolling.
 
+A model that is only stepped is a skeleton: joints, masses, forces and what touches. One that is seen has the template's
+looks too. Both get their elements from `_add`, and their numbers from `numbers.write`.
+
+- "reduced" has no constraint: its coordinates allow no other motion than rolling without slipping. The can's rotation
+  follows from u, or from phi, and its inertia is added to theirs. There is no error but the integrator's.
+- "equality" and "contact" leave it to MuJoCo's constraint solver to make the can roll. Its constraints are soft; here
+  they are made as hard as is stable under the integrator.
+"""
+
+import copy
 import math
 import threading
 import warnings
@@ -8,22 +18,27 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.model import appearance, constrained, mechanics, reduced, templates
-from mjbeer.model.inertia import mass_unit
-from mjbeer.model.mechanics import Mechanics
-from mjbeer.model.setting import DOP853, FRICTION, GAUSS_JACKSON, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model import check, looks, numbers, state
+from mjbeer.model.engine import quiet
+from mjbeer.model.numbers import Kind, Numbers
+from mjbeer.model.setting import FRICTION, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.theory.scene import Scene
 
-_INTEGRATORS = {
-    "Euler": mujoco.mjtIntegrator.mjINT_EULER,
-    "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
-    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
-    "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
-    "RK4": mujoco.mjtIntegrator.mjINT_RK4,
-    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # not used: mjbeer's own integrators step by themselves
-    GAUSS_JACKSON: mujoco.mjtIntegrator.mjINT_RK4,
+START = "start"
+"""The name of the keyframe."""
+_JOINTS = {
+    "slide": ("can", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),  # u, positive downhill
+    "lift": ("can", mujoco.mjtJoint.mjJNT_SLIDE, (0, 0, 1)),  # positive away from the incline
+    "roll": ("can", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),
+    "swing": ("load", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),  # the load's angle relative to the can
+    "phi": ("can", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),  # the load's angle, in a model of one body
 }
-_DISABLE = mujoco.mjtDisableBit
+"""Body, type and axis of each joint."""
+_TURNED = [math.sqrt(0.5), 0, math.sqrt(0.5), 0]
+"""Orientation of every inertial frame: a quarter turn about the axis. If the frame were parallel to the body's, MuJoCo
+would move a centre of mass within 1e-6 m of the origin to the origin, and lose the weight's torque. The inertia is the
+same in both frames."""
+_DISABLE, _ENABLE = mujoco.mjtDisableBit, mujoco.mjtEnableBit
 # No scene needs these stages. Autoreset must go: it would hide a divergence by starting again.
 _UNUSED = (
     _DISABLE.mjDSBL_AUTORESET
@@ -35,17 +50,15 @@ _UNUSED = (
     | _DISABLE.mjDSBL_SENSOR
     | _DISABLE.mjDSBL_SPRING
 )
-_HEAVY = 2.0**60
-"""Factor of all masses where "discrete" meets the damping of a tendon. It then iterates for the acceleration, and takes
-forces below 3e-8 [N, N m] for none: at its true mass, a load that is let go 1e-6 rad beside the top would stay there
-for ever."""
-_SINGULAR = "Inertia matrix is too close to singular"
-"""What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
-_compiling = threading.Lock()
-"""Warnings are caught by the whole process, and so by one thread at a time."""
 _UNCONSTRAINED = (
     _DISABLE.mjDSBL_CONSTRAINT | _DISABLE.mjDSBL_CONTACT | _DISABLE.mjDSBL_EQUALITY | _DISABLE.mjDSBL_WARMSTART
 )
+_SINGULAR = "Inertia matrix is too close to singular"
+"""What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
+_skeletons: dict[Kind, mujoco.MjModel] = {}
+"""The skeleton of each kind, with the numbers of the scene that came first."""
+_compiling = threading.RLock()
+"""Warnings are caught by the whole process, and so by one thread at a time."""
 
 
 def build(
@@ -56,13 +69,19 @@ def build(
     timestep: float = 1e-3,
     friction: float = FRICTION,
     softness: Softness = TUNED,
+    phi0: float = 0.0,
+    phi_dot0: float = 0.0,
 ) -> mujoco.MjModel:
-    """Return a compiled MuJoCo model of a scene.
+    """Return a compiled MuJoCo model of a scene, whose keyframe "start" is at `phi0` [rad], `phi_dot0` [rad/s].
 
     `rolling` is "reduced" (no constraint: the coordinates allow no other motion), "equality" (a joint equality
     u = a roll) or "contact" (a cylinder on a plane, with a `friction` coefficient). Constraints are as hard as
-    `integrator` and `timestep` [s] allow, except where `softness` says otherwise. Without `visuals` the model has no
-    geoms but those in contact, and the stages of a step that it does not need are disabled.
+    `integrator` and `timestep` [s] allow, except where `softness` says otherwise.
+
+    With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
+    and z away from the incline, and `model.opt.gravity` is g (sin alpha, 0, -cos alpha). That model has no geoms but
+    those in contact, and the stages of a step that it does not need are disabled. Begin a loop of your own with
+    `mjbeer.reset`: a new MjData is at zero coordinates, where a can in contact hardly touches.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
     the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. In a scene so light that
@@ -72,44 +91,23 @@ def build(
     Raises:
       ParameterError: if a name is unknown or a number is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
-      TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
+      TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
     """
     require.instance("scene", scene, Scene)
-    visuals = require.boolean("visuals", visuals)
+    visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
-    return compile_model(scene, setting, visuals)
+    return compile_model(scene, setting, visuals, phi0, phi_dot0)
 
 
-def compile_model(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjModel:
+def compile_model(
+    scene: Scene, setting: Setting, visuals: bool = False, phi0: float = 0.0, phi_dot0: float = 0.0
+) -> mujoco.MjModel:
     """Return the compiled model of a scene in a setting, with the same errors as `build`."""
-    return finish(compose(scene, setting, visuals), setting)
-
-
-def finish(spec: mujoco.MjSpec, setting: Setting) -> mujoco.MjModel:
-    """Return the model that a specification in a setting compiles to, with its joint equality made rigid."""
-    model = compile_spec(spec)
-    if constrained.is_rigid(setting):
-        constrained.make_rigid(model)
-    return model
-
-
-def compile_spec(spec: mujoco.MjSpec) -> mujoco.MjModel:
-    """Return the model that a specification compiles to.
-
-    Raises:
-      UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the template.
-    """
-    with _compiling, warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            model = spec.compile()
-        except ValueError as error:
-            reason = "; ".join(str(error).splitlines())
-            raise UnsupportedError(f"MuJoCo cannot represent this scene: {reason}") from error
-    for warning in caught:
-        if _SINGULAR in str(warning.message):
-            raise UnsupportedError(f"MuJoCo cannot represent this scene: {warning.message}")
-        warnings.warn(warning.message, stacklevel=2)
+    spec = compose(scene, setting, visuals)
+    add_start(spec, scene, phi0, phi_dot0)
+    model = compile_spec(spec, rigid=is_rigid(setting))
+    if visuals:
+        check.require_theory(model, scene, setting)
     return model
 
 
@@ -132,77 +130,194 @@ def specify(
     require.instance("scene", scene, Scene)
     visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
-    return compose(scene, setting, visuals)
-
-
-def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
-    """Return the specification that `compile_model` compiles, with the same errors as `build`."""
-    spec, moving = templates.read(templates.name(scene)), mechanics_of(scene, setting, visuals)
+    spec = compose(scene, setting, visuals)
     if visuals:
-        appearance.dress(spec, scene)
-    else:
-        appearance.strip(spec)
-    _tilt(spec, scene, visuals)
-    # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
-    # in contact, must lie on the incline.
-    spec.body("can").pos = [0, 0, scene.can.radius if visuals else 0.0]
-    if setting.rolling == "reduced":
-        reduced.add(spec, moving)
-    elif setting.rolling == "equality":
-        constrained.add_equality(spec, moving, setting)
-    else:
-        constrained.add_contact(spec, moving, setting)
-    fit(spec, scene, setting, moving)
-    if visuals:
-        spec.option.gravity = [0, 0, -scene.gravity]
-    else:
-        _disable_unused(spec, setting.rolling, moving)
+        check.require_theory(compile_spec(spec), scene, setting)
     return spec
 
 
-def mechanics_of(scene: Scene, setting: Setting, visuals: bool = False) -> Mechanics:
-    """Return the joints, masses and forces of the model of a scene in a setting; one with visuals keeps its masses.
+def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
+    """Return the specification of a scene in a setting, whose template is not checked yet.
 
     Raises:
       UnsupportedError: if MuJoCo cannot move one of its bodies.
+      TemplateError: if a template is missing or lacks a part.
     """
-    unit = mass_unit(scene)
-    if setting.rolling == "reduced":
-        if setting.integrator == "discrete" and scene.damping_law and not visuals:
-            unit *= _HEAVY
-        return reduced.mechanics(scene, unit)
-    return constrained.mechanics(scene, unit, setting.rolling)
+    made = Numbers.of(scene, setting, visuals)
+    if visuals:
+        spec = looks.dressed(scene)
+        _tilt(spec, scene.incline)
+        if "slide" in made.joints and "roll" not in made.joints:  # nothing turns with the can, but these with the load
+            for geom in filter(None, map(spec.geom, looks.TURNING)):
+                spec.delete(geom)
+    else:
+        spec = mujoco.MjSpec()
+        can = spec.worldbody.add_body(name="incline").add_body(name="can")
+        if "load" in made.bodies:
+            can.add_body(name="load")
+        _disable_unused(spec, made.kind)
+    # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
+    # in contact, must lie on the incline.
+    spec.compiler.fusestatic = not visuals
+    spec.body("can").pos = [0, 0, scene.can.radius if visuals else 0.0]
+    _add(spec, made.kind)
+    numbers.write(made, spec)
+    return spec
 
 
-def fit(made: mujoco.MjSpec | mujoco.MjModel, scene: Scene, setting: Setting, moving: Mechanics) -> None:
-    """Write all numbers of a scene in a setting into a specification without visuals, or the model compiled from it."""
-    option = made.opt if isinstance(made, mujoco.MjModel) else made.option
-    option.timestep, option.integrator = setting.timestep, int(_INTEGRATORS[setting.integrator])
-    gravity, incline = scene.gravity, scene.incline
-    option.gravity = [gravity * math.sin(incline), 0, -gravity * math.cos(incline)]
-    mechanics.fit(made, moving)
-    if setting.rolling == "equality":
-        constrained.fit_equality(made, scene, setting)
-    elif setting.rolling == "contact":
-        constrained.fit_contact(made, scene, setting)
+def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -> None:
+    """Add the keyframe "start" to a specification that has nothing but a scene's joints."""
+    joints = {joint.name: place for place, joint in enumerate(spec.joints)}
+    qpos, qvel = state.at(joints, scene, phi0, phi_dot0)
+    spec.add_key(name=START, qpos=qpos, qvel=qvel)
 
 
-def _tilt(spec: mujoco.MjSpec, scene: Scene, visuals: bool) -> None:
-    """Tilt the incline if it is to be seen; otherwise gravity is tilted, which is exact and needs no body."""
-    tilt = scene.incline if visuals else 0.0
-    for element, angle in ((spec.body("incline"), tilt), (spec.frame("level"), -tilt)):
+def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
+    """Return the model that a specification compiles to, in which a joint equality is made `rigid` if asked for.
+
+    Raises:
+      UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the template.
+    """
+    with _compiling, warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            model = spec.compile()
+        except ValueError as error:
+            raise _refused("; ".join(str(error).splitlines())) from error
+    for warning in caught:
+        if _SINGULAR in str(warning.message):
+            raise _refused(str(warning.message))
+        warnings.warn(warning.message, stacklevel=2)
+    if rigid:
+        _make_rigid(model)
+    return model
+
+
+class Stepped:
+    """A model to be stepped, and its data, for one thread at a time; scenes of its kind are written into it in place.
+
+    Raises:
+      UnsupportedError: if MuJoCo cannot have such a model.
+    """
+
+    def __init__(self, made: Numbers) -> None:
+        with _compiling:
+            if (skeleton := _skeletons.get(made.kind)) is None:
+                skeleton = compile_spec(compose(made.scene, made.setting), made.kind.rigid)
+                _skeletons[made.kind] = skeleton
+        self.model = copy.copy(skeleton)
+        self.data = mujoco.MjData(self.model)
+        self.write(made)
+
+    def write(self, made: Numbers) -> None:
+        """Write numbers of the same kind into the model, and reset the data.
+
+        Raises:
+          UnsupportedError: if MuJoCo cannot have such a model.
+        """
+        model, data = self.model, self.data
+        numbers.write(made, model)
+        mujoco.mj_resetData(model, data)
+        with quiet():
+            mujoco.mj_setConst(model, data)
+        model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
+        if made.kind.rigid:
+            _make_rigid(model)
+        if min(min(body.mass, body.inertia) for body in made.bodies.values()) < mujoco.mjMINVAL:
+            raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
+        if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
+            raise _refused(_SINGULAR)
+        mujoco.mj_resetData(model, data)
+
+
+def is_rigid(setting: Setting) -> bool:
+    """Return whether a model's rolling is a joint equality that is solved exactly."""
+    return setting.rolling == "equality" and setting.softness == TUNED
+
+
+def _make_rigid(model: mujoco.MjModel) -> None:
+    """Change a compiled model so that MuJoCo solves its joint equality exactly, which MJCF cannot express.
+
+    A row's softness is proportional to the inverse inertia that the compiled model stores for its joints, which is
+    used for nothing else here, and so is set to 0. One sweep of PGS then solves the single row,
+    where Newton would add a nearly infinite stiffness to the inertias.
+    """
+    model.dof_invweight0[:] = 0
+    model.opt.enableflags &= ~int(_ENABLE.mjENBL_DIAGEXACT)
+    model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
+    model.opt.iterations, model.opt.tolerance = 1, 0.0
+
+
+def _refused(reason: str) -> UnsupportedError:
+    return UnsupportedError(f"MuJoCo cannot represent this scene: {reason}")
+
+
+def _tilt(spec: mujoco.MjSpec, incline: float) -> None:
+    """Tilt the incline, and keep the frame of the cameras level."""
+    for element, angle in ((spec.body("incline"), incline), (spec.frame("level"), -incline)):
         element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
         element.quat = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
-    spec.compiler.fusestatic = not visuals
 
 
-def _disable_unused(spec: mujoco.MjSpec, rolling: str, moving: Mechanics) -> None:
-    spec.option.disableflags |= int(_UNUSED)
-    if not moving.dissipates:  # dampers stay where there is damping or drag
-        spec.option.disableflags |= int(_DISABLE.mjDSBL_DAMPER)
-    if rolling == "reduced":
-        spec.option.disableflags |= int(_UNCONSTRAINED)
-    if rolling == "equality":
-        spec.option.disableflags |= int(_DISABLE.mjDSBL_CONTACT)
-    if not spec.actuators:
-        spec.option.disableflags |= int(_DISABLE.mjDSBL_ACTUATION)
+def _disable_unused(spec: mujoco.MjSpec, kind: Kind) -> None:
+    flags = int(_UNUSED)
+    if not kind.dissipates:
+        flags |= int(_DISABLE.mjDSBL_DAMPER)
+    if kind.rolling != "contact":
+        flags |= int(_UNCONSTRAINED if kind.rolling == "reduced" else _DISABLE.mjDSBL_CONTACT)
+    if not kind.pushed:
+        flags |= int(_DISABLE.mjDSBL_ACTUATION)
+    spec.option.disableflags |= flags
+
+
+def _add(spec: mujoco.MjSpec, kind: Kind) -> None:
+    """Add the elements of a kind to the bodies "incline", "can" and "load", without their numbers."""
+    for body in filter(None, map(spec.body, ("can", "load"))):
+        body.explicitinertial, body.iquat = True, _TURNED  # its masses are its own, not those of its geoms
+        body.mass, body.inertia = 0.0, [0.0] * 3  # a load that is part of the can has none
+    for name in kind.joints:  # the order matters in one body: a slide that came after a hinge would turn with it
+        body, type_, axis = _JOINTS[name]
+        spec.body(body).add_joint(spec.default, name=name, type=type_, axis=axis)
+    if kind.pushed:
+        joint, bias = mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtBias.mjBIAS_AFFINE
+        weight = spec.add_actuator(name="weight", target=kind.joints[0], trntype=joint, biastype=bias)
+        weight.gainprm[0] = 0.0
+    if kind.chord:
+        can = spec.body("can")
+        top = [0, 0, float(can.pos[2]) + numbers.ARM]
+        spec.body("incline").add_site(spec.default, name="chord_top", pos=top, group=4)
+        can.add_site(spec.default, name="chord_end", pos=[0, 0, -numbers.ARM], group=4)
+        chord = spec.add_tendon(name="chord", rgba=[0, 0, 0, 0])
+        chord.wrap_site("chord_top")
+        chord.wrap_site("chord_end")
+    if kind.damped and kind.rolling == "reduced":
+        # The length of this tendon, phi - u/a, is the angle by which the load is ahead of the can. Its damping is the
+        # torque between them, though the can has no joint: the torque on the can, over its radius, acts on the slide.
+        spec.add_tendon(name="damper").wrap_joint("phi", 1.0)  # the slide follows with its number
+    if kind.rolling != "reduced":
+        _add_constraint(spec, kind)
+
+
+def _add_constraint(spec: mujoco.MjSpec, kind: Kind) -> None:
+    """Add a joint equality, or two massless geoms that collide as a pair and with nothing else."""
+    # MuJoCo's default diagonal adds the inverse inertias of slide and hinge without regard to metres and radians.
+    if kind.exact_diagonal:
+        spec.option.enableflags |= int(_ENABLE.mjENBL_DIAGEXACT)
+    if not kind.refsafe:
+        spec.option.disableflags |= int(_DISABLE.mjDSBL_REFSAFE)
+    if kind.rolling == "equality":
+        first, second = ("slide", "roll") if kind.first == "slide" else ("roll", "slide")
+        spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1=first, name2=second)
+        return
+    plane, cylinder = mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
+    surface = spec.body("incline").add_geom(spec.default, name="surface", type=plane, size=[0, 0, 1])
+    can = spec.body("can").add_geom(spec.default, name="can", type=cylinder, size=[1, 1, 0])
+    can.quat = [math.sqrt(0.5), math.sqrt(0.5), 0, 0]
+    collision = spec.find_default("collision")
+    for geom in (surface, can):
+        geom.contype, geom.conaffinity, geom.mass = 0, 0, 0.0
+        if collision is not None:
+            geom.group, geom.rgba = collision.geom.group, collision.geom.rgba
+    spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
+    cones = mujoco.mjtCone
+    spec.option.cone = cones.mjCONE_ELLIPTIC if kind.elliptic else cones.mjCONE_PYRAMIDAL

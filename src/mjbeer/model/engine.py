@@ -74,8 +74,3 @@ def address(name: str) -> int:
     value = ctypes.cast(getattr(library(), name), ctypes.c_void_p).value
     assert value is not None
     return value
-
-
-def copy_model(target: mujoco.MjModel, source: mujoco.MjModel) -> None:
-    """Copy all of a model into another one of the same sizes; a model's data and views stay valid."""
-    library().mj_copyModel(ctypes.c_void_p(target._address), ctypes.c_void_p(source._address))

@@ -1,21 +1,63 @@
-"""Writes a scene as one stand-alone MJCF file, with all digits of every number and with mjbeer's meshes inside."""
+"""A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or for others too.
 
+What is shown has everything drawn, sensors to plot, a board for ten seconds of rolling, a camera that goes along with
+the can, and its start as a keyframe.
+"""
+
+import copy
+import math
 import os
 import pathlib
+import xml.etree.ElementTree as ET
+from typing import Any
 
 import mujoco
+import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import portable as portability
-from mjbeer.model import same, setting
+from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
+from mjbeer.model import check, looks, setting
+from mjbeer.model.build import START, add_start, compile_spec, compose
 from mjbeer.model.engine import library
-from mjbeer.model.present import START, present
+from mjbeer.model.numbers import mass_unit
+from mjbeer.model.setting import Setting, Softness
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 
+CAMERA = "side"
+"""The camera with which the viewer opens. It goes along with the can."""
+_DURATION = 10.0
+"""How long the can may roll before the board ends [s]."""
+_LONGEST = 1e5
+"""Largest length of the board to either side, in radii: graphics compute in single precision, so that further away the
+can would be drawn a percent of its radius beside its place."""
 _DIGITS = 17
 """Decimal digits from which a double can be read back exactly."""
+PORTABLE = ("Euler", "implicitfast", "RK4")
+"""The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
+has no "discrete"."""
+_METRE = 1.0
+"""Radius [m] from which on a portable equality is about distances instead of angles."""
+_PORTABLE_CONTACT = Softness(exact_diagonal=False, impedance=(0.999, 0.999), impratio=10.0)
+"""The softness of a portable contact. With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double
+precision, but in single precision, as in mujoco_warp, the solver then ends with NaN."""
+_INERTIALS = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
+"""Arrays of which a portable model lacks the rows of bodies without mass."""
+_EXACT = (
+    "jnt_axis", "dof_armature", "dof_damping", "dof_dampingpoly", "tendon_armature", "tendon_damping",
+    "tendon_dampingpoly", "wrap_prm", "actuator_gainprm", "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp",
+    "pair_friction", "pair_solref", "pair_solimp", "key_qpos", "key_qvel",
+)  # fmt: skip
+"""Arrays that are the same in whatever bodies the model has."""
+_OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
+_POSES = ("geom_xpos", "geom_xmat", "site_xpos", "site_xmat", "cam_xpos", "cam_xmat", "light_xpos", "light_xdir")
+"""Arrays of positions and orientations in the world."""
+_LEFT_OUT = float(np.finfo(float).eps)
+"""Largest difference that is allowed. MuJoCo does not write a number that is this near to its default, such as a force
+of 1e-16 N. The numbers that it writes are read back to the last bit, except quaternions, which it normalizes again."""
+_ROUNDING = 1e-14
+"""Largest difference of two poses, relative to the largest number among them. A pose is the product of at most five
+others, each rounded a few times by 1e-16."""
 
 
 def export(
@@ -36,12 +78,13 @@ def export(
     turns on the spot, because its one coordinate is phi.
 
     With `portable`, MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load the file too. The integrator must then be one of
-    `portable.INTEGRATORS`, the scene must have no drag and no damping but in proportion to a rate, and a contact is
-    softer: docs/portability.md has the errors.
+    `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
+    docs/portability.md has the errors.
 
     Raises:
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model, or cannot write all digits.
+      TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
       OutputError: if the file cannot be written.
       MjbeerError: if the text does not give the same model.
     """
@@ -49,18 +92,14 @@ def export(
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
         raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
-    wanted = setting.Setting(rolling, integrator, timestep, friction=friction)
-    if wanted.integrator in setting.OWN:
+    made = Setting(rolling, integrator, timestep, friction=friction)
+    if made.integrator in setting.OWN:
         raise UnsupportedError(
-            f"{wanted.integrator} is mjbeer's integrator, not MuJoCo's; export with one of "
+            f"{made.integrator} is mjbeer's integrator, not MuJoCo's; export with one of "
             f"{', '.join(setting.INTEGRATORS)}"
         )
-    softness = setting.TUNED
     if require.boolean("portable", portable):
-        portability.require_integrator(integrator)
-        portability.require_linear(scene)
-        softness = portability.softness(scene, rolling)
-    made = setting.Setting(rolling, integrator, timestep, friction=friction, softness=softness)
+        made = Setting(rolling, integrator, timestep, friction=friction, softness=_portable_softness(scene, made))
     spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
     # It replaces the template's.
     spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
@@ -70,12 +109,90 @@ def export(
     spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
     built = spec.compile()
     text = _text(spec)
-    reread = mujoco.MjModel.from_xml_string(text)
-    same.require_same(built, reread)
+    _require_same(built, mujoco.MjModel.from_xml_string(text))
     if portable:
-        text = portability.rewrite(text)
-        same.require_same_motion(reread, mujoco.MjModel.from_xml_string(text))
+        text = _portable(text)
+        _require_same(built, mujoco.MjModel.from_xml_string(text))
     files.write(target, text)
+
+
+def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
+    """Return the specification of a scene to be shown, which starts at `phi0` [rad] with `phi_dot0` [rad/s].
+
+    Raises:
+      UnsupportedError: if MuJoCo cannot have such a model.
+      TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
+    """
+    spec = compose(scene, made, visuals=True)
+    _add_sensors(spec, scene)
+    u = scene.start(phi0, phi_dot0)[0]
+    way = min(farthest(scene, phi0, phi_dot0, _DURATION), _LONGEST * scene.can.radius)
+    looks.lengthen(spec, scene, u - way, u + way)
+    add_start(spec, scene, phi0, phi_dot0)
+    model = compile_spec(spec)
+    check.require_theory(model, scene, made)
+    spec.visual.global_.cameraid = model.camera(CAMERA).id
+    return spec
+
+
+def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> float:
+    """Return a distance that the axis does not exceed within a `duration` [s], from its start uphill or downhill [m].
+
+    Energy and the constant force F downhill bound the way s: M s_dot^2/2 <= E + F s, with the smallest mass M that the
+    axis can have, so that s <= sqrt(2 E/M) t + F t^2/(2 M); E is what the start has above the lowest energy. For a
+    frozen load s is the angle that the can has turned. Damping and drag only take energy.
+    """
+    can, load, oscillator = scene.can, scene.load, scene.oscillator
+    if scene.attachment == "frozen":
+        energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + 2 * oscillator.depth
+        least, force, size = oscillator.base, abs(oscillator.slope), can.radius
+    else:
+        mass, moment = scene.mass + can.inertia / can.radius**2, load.mass * load.offset
+        u_dot, own = scene.start(phi0, phi_dot0)[1], load.inertia + moment * load.offset
+        energy = (mass * u_dot**2 + own * phi_dot0**2) / 2 - moment * math.cos(phi0) * u_dot * phi_dot0
+        energy += 2 * moment * scene.gravity
+        least, size = mass * oscillator.base / own, 1.0
+        force = scene.mass * scene.gravity * abs(math.sin(scene.incline))
+    return size * (math.sqrt(2 * energy / least) * duration + force / least * duration**2 / 2)
+
+
+def _add_sensors(spec: mujoco.MjSpec, scene: Scene) -> None:
+    """Add what MuJoCo's viewer plots, by the letters of the paper, to a model that has its joints.
+
+    They are u [m] and phi [rad] with their rates; slip, u - a roll [m], where rolling is a constraint; lift [m], where
+    the can may leave the incline; and the potential and the kinetic energy [J].
+    """
+    joints, radius = {joint.name for joint in spec.joints}, scene.can.radius
+    if "roll" in joints:
+        phi = {"roll": 1.0, "swing": 1.0} if "swing" in joints else {"roll": 1.0}
+        _add_sensor(spec, "u", {"slide": 1.0}, rate=True)
+        _add_sensor(spec, "phi", phi, rate=True)
+        _add_sensor(spec, "slip", {"slide": 1.0, "roll": -radius})
+    else:  # a reduced model, in which u is a coordinate or follows from phi
+        _add_sensor(spec, "u", {"slide": 1.0} if "slide" in joints else {"phi": radius}, rate=True)
+        _add_sensor(spec, "phi", {"phi": 1.0}, rate=True)
+    if "lift" in joints:
+        _add_sensor(spec, "lift", {"lift": 1.0})
+    # MuJoCo counts no constant force that stands for a weight as potential energy, and has what multiplied masses have.
+    if not spec.actuators and mass_unit(scene) == 1:
+        spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)  # the viewer then shows the sum as well
+        spec.add_sensor(name="potential_energy", type=mujoco.mjtSensor.mjSENS_E_POTENTIAL)
+        spec.add_sensor(name="kinetic_energy", type=mujoco.mjtSensor.mjSENS_E_KINETIC)
+
+
+def _add_sensor(spec: mujoco.MjSpec, name: str, weights: dict[str, float], rate: bool = False) -> None:
+    """Add a sensor of a sum over joints, and one of its rate. A tendon without stiffness measures a sum."""
+    kinds = mujoco.mjtSensor
+    if list(weights.values()) == [1.0]:
+        (measured,), object_ = weights, mujoco.mjtObj.mjOBJ_JOINT
+        of = {"": kinds.mjSENS_JOINTPOS, "_dot": kinds.mjSENS_JOINTVEL}
+    else:
+        measured, object_, tendon = name, mujoco.mjtObj.mjOBJ_TENDON, spec.add_tendon(name=name)
+        of = {"": kinds.mjSENS_TENDONPOS, "_dot": kinds.mjSENS_TENDONVEL}
+        for joint, weight in weights.items():
+            tendon.wrap_joint(joint, weight)
+    for suffix in ("", "_dot") if rate else ("",):
+        spec.add_sensor(name=name + suffix, type=of[suffix], objtype=object_, objname=measured)
 
 
 def _text(spec: mujoco.MjSpec) -> str:
@@ -90,3 +207,125 @@ def _text(spec: mujoco.MjSpec) -> str:
         return spec.to_xml()
     finally:
         set_digits(before)
+
+
+def _require_same(built: mujoco.MjModel, reread: mujoco.MjModel) -> None:
+    """Check that a model that was read back from MJCF moves as the one that was written, and looks like it.
+
+    Its bodies have the same inertias, and no mass is missing. Its joints, constraints and options are the same, and
+    everything is at the same place in two positions of the joints.
+
+    Raises:
+      MjbeerError: if it is not so; the message has the first number that differs.
+    """
+    kept = [built.body(reread.body(body).name).id for body in range(reread.nbody)]
+    for name in _INERTIALS:
+        _require_near(name, getattr(built, name)[kept], getattr(reread, name))
+    _require_near("mass", built.body_mass.sum(), reread.body_mass.sum())
+    for name in _EXACT:
+        _require_near(name, getattr(built, name), getattr(reread, name))
+    for name in _OPTIONS:
+        _require_near(f"option {name}", getattr(built.opt, name), getattr(reread.opt, name))
+    for aside in (0.0, 0.5):
+        before, after = (_posed(model, model.qpos0 + aside) for model in (built, reread))
+        for name in _POSES:
+            _require_near(name, getattr(before, name), getattr(after, name), _ROUNDING)
+
+
+def _posed(model: mujoco.MjModel, qpos: np.ndarray) -> mujoco.MjData:
+    data = mujoco.MjData(model)
+    data.qpos[:] = qpos
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_camlight(model, data)
+    return data
+
+
+def _require_near(name: str, old: Any, new: Any, rounding: float = 0.0) -> None:
+    """Raise an MjbeerError if numbers differ by more than `rounding` times the largest one."""
+    allowed = _LEFT_OUT + rounding * np.abs(old).max(initial=0.0)
+    if np.shape(old) != np.shape(new) or not np.allclose(old, new, rtol=0, atol=allowed):
+        raise MjbeerError(f"the MJCF written is not the model: {name} is {new}, not {old}")
+
+
+def _portable_softness(scene: Scene, made: Setting) -> Softness:
+    """Return how soft the rolling constraint of a portable export is: as hard as can be without `diagexact`.
+
+    Without it the softness of an equality's row is proportional to the sum of the inverse inertias 1/m and 1/I of slide
+    and hinge, in metres and radians alike. In a row about angles, roll - u/a, the first should be 1/(m a^2), and is too
+    small for a can of less than a metre; in a row about distances, u - a roll, the second should be a^2/I, and is too
+    small for a can of more. So the sum is never much too large, and the row never much too soft.
+
+    Raises:
+      UnsupportedError: if not all that load a portable export have the integrator, damping and drag.
+    """
+    if made.integrator not in PORTABLE:
+        raise UnsupportedError(
+            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {made.integrator}: MJX and "
+            "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
+        )
+    if scene.drag > 0 or any(scene.damping_law.coefficients[1:]):
+        raise UnsupportedError(
+            "a portable export has no drag, and damping in proportion to the slip rate only: MuJoCo 3.3 knows no other"
+        )
+    if made.rolling == "contact":
+        return _PORTABLE_CONTACT
+    return Softness(exact_diagonal=False, first="hinge" if scene.can.radius < _METRE else "slide")
+
+
+def _portable(text: str) -> str:
+    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3.0 does not know, frames, and bodies without mass."""
+    root = ET.fromstring(text, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
+    for texture in root.iter("texture"):
+        if texture.get("colorspace") == "auto":  # what a texture without it has
+            del texture.attrib["colorspace"]
+    for light in root.iter("light"):
+        if light.get("type") == "directional":
+            del light.attrib["type"]
+            light.set("directional", "true")
+    world = root.find("worldbody")
+    assert world is not None
+    _dissolve(world)
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode") + "\n"
+
+
+def _dissolve(parent: ET.Element) -> None:
+    """Move to an element what is in its frames and in its bodies without a joint, and remove these, down the tree."""
+    for child in list(parent):
+        if child.tag not in ("frame", "body"):
+            continue
+        _dissolve(child)
+        if child.find("joint") is not None:
+            continue
+        # MuJoCo numbers what is in a body after what is in its parent, but what is in a frame where the frame is.
+        position = list(parent).index(child) if child.tag == "frame" else len(parent) - 1
+        parent.remove(child)
+        for element in reversed([each for each in child if each.tag != "inertial"]):
+            parent.insert(position, _moved(element, child))
+
+
+def _moved(element: ET.Element, frame: ET.Element) -> ET.Element:
+    """Return a copy of an element in a frame, or in a body without a joint, as it is outside of it."""
+    moved = copy.copy(element)
+    place, turn = _numbers_of(frame, "pos", "0 0 0"), _numbers_of(frame, "quat", "1 0 0 0")
+    position, quaternion, direction = np.zeros(3), np.zeros(4), np.zeros(3)
+    mujoco.mju_rotVecQuat(position, _numbers_of(element, "pos", "0 0 0"), turn)
+    moved.set("pos", _written(place + position))
+    if element.tag == "light":
+        mujoco.mju_rotVecQuat(direction, _numbers_of(element, "dir", "0 0 -1"), turn)
+        moved.set("dir", _written(direction))
+    else:
+        mujoco.mju_mulQuat(quaternion, turn, _numbers_of(element, "quat", "1 0 0 0"))
+        moved.set("quat", _written(quaternion))
+    if "childclass" in frame.attrib:
+        name = "childclass" if element.tag in ("body", "frame") else "class"
+        moved.set(name, element.get(name, frame.attrib["childclass"]))
+    return moved
+
+
+def _numbers_of(element: ET.Element, name: str, default: str) -> np.ndarray:
+    return np.array([float(word) for word in element.get(name, default).split()])
+
+
+def _written(numbers: np.ndarray) -> str:
+    return " ".join(repr(float(number)) for number in numbers)

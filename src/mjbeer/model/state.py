@@ -6,6 +6,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from mjbeer import require
+from mjbeer.exceptions import ParameterError
 from mjbeer.model.engine import quiet
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
@@ -15,6 +17,26 @@ START_DEPTH = 1e-9
 a can that does not touch falls freely for a step, 5 um at 1 ms, which is 1e5 times this depth."""
 
 
+def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float, phi_dot0: float = 0.0) -> None:
+    """Put a model of a scene at its start at `phi0` [rad] with `phi_dot0` [rad/s], at time 0, for a loop of one's own.
+
+    All else in the `data` is reset, and accelerations and forces are computed (`mj_forward`). The model may come from
+    `build`, from an export, or from a specification with further joints: the scene's are found by name.
+
+    Raises:
+      ParameterError: if the start is not allowed, or the model has no joint for phi.
+    """
+    require.instance("scene", scene, Scene)
+    values = _at_start(scene, *require.start(phi0, phi_dot0))
+    joints = {model.joint(joint).name for joint in range(model.njnt)}
+    if not joints & {"phi", "roll"}:
+        raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
+    mujoco.mj_resetData(model, data)
+    for name in joints & values.keys():
+        data.joint(name).qpos[:], data.joint(name).qvel[:] = values[name]
+    mujoco.mj_forward(model, data)
+
+
 def places(model: mujoco.MjModel) -> dict[str, int]:
     """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel too."""
     return {model.joint(joint).name: int(model.joint(joint).qposadr[0]) for joint in range(model.njnt)}
@@ -22,16 +44,26 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
 
 def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
+    return np.concatenate(at(places(model), scene, phi0, phi_dot0))
+
+
+def at(joints: Mapping[str, int], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+    """Return qpos and qvel of a start, for the places of the joints, as the rows of one array."""
+    state = np.zeros(2 * len(joints))
+    _assemble(joints, _at_start(scene, phi0, phi_dot0), state)
+    return state.reshape(2, -1)
+
+
+def _at_start(scene: Scene, phi0: float, phi_dot0: float) -> dict[str, tuple[float, float]]:
     u, u_dot = scene.start(phi0, phi_dot0)
     roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
-    values = {
+    return {
         "slide": (u, u_dot),
         "lift": (-START_DEPTH * scene.can.radius, 0.0),
         "roll": (roll, roll_dot),
         "swing": (phi0 - roll, phi_dot0 - roll_dot),
         "phi": (phi0, phi_dot0),
     }
-    return _assemble(model, values, np.zeros(model.nq + model.nv))
 
 
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
@@ -43,16 +75,15 @@ def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
         "swing": (motion.phi - motion.roll, motion.phi_dot - motion.roll_dot),
         "phi": (motion.phi, motion.phi_dot),
     }
-    return _assemble(model, values, np.zeros((len(motion.time), model.nq + model.nv)))
-
-
-def _assemble(model: mujoco.MjModel, values: Mapping[str, tuple[Any, Any]], states: np.ndarray) -> np.ndarray:
-    """Return `states` with the positions and rates of those joints that the model has."""
-    joints = places(model)
-    for name, (position, rate) in values.items():
-        if name in joints:
-            states[..., joints[name]], states[..., model.nq + joints[name]] = position, rate
+    states = np.zeros((len(motion.time), model.nq + model.nv))
+    _assemble(places(model), values, states)
     return states
+
+
+def _assemble(joints: Mapping[str, int], values: Mapping[str, tuple[Any, Any]], states: np.ndarray) -> None:
+    """Write the positions and rates of the joints into `states`, shape (..., 2 * joints)."""
+    for name, place in joints.items():
+        states[..., place], states[..., len(joints) + place] = values[name]
 
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:

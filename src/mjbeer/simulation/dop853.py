@@ -1,16 +1,19 @@
 """The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.engine import address, quiet, untimed
+from mjbeer.model.engine import address
+from mjbeer.model.setting import DOP853
 from mjbeer.model.state import places
 from mjbeer.simulation import dop853_kernel
-from mjbeer.simulation.compiling import told
-from mjbeer.simulation.recorder import Observer
+from mjbeer.simulation.dop853_kernel import BLOCK_END, DONE, NOT_FINITE
+from mjbeer.simulation.stepping import Watcher, stepping
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
@@ -36,22 +39,25 @@ class Integrator:
             raise ValueError("only slide and hinge joints can be integrated component by component")
         self._size = model.nq + model.nv
         self._model, self._data = model, mujoco.MjData(model) if data is None else data
-        actuated = _has_actuators(model)
-        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or _has_constant_forces(model))
+        actuated = model.nu > 0 and not model.opt.disableflags & _ACTUATION
+        constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
+        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or constant)
         if smooth and actuated:
             _apply_constant_forces(model, self._data)
         functions = np.array([address(name) for name in (_SMOOTH if smooth else _EVERYTHING)])
-        self._pointers = (functions, model._address, self._data._address)
         acceleration = self._data.qacc_smooth if smooth else self._data.qacc
-        needed = _needed_positions(model, smooth)
-        self._views = (self._data.qpos, self._data.qvel, acceleration, needed)
+        self.dynamics = (
+            (functions, model._address, self._data._address),
+            (self._data.qpos, self._data.qvel, acceleration, _needed_positions(model, smooth)),
+        )
+        """Addresses and views by which the kernels evaluate the accelerations."""
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
     def slope(self, state: np.ndarray) -> np.ndarray:
         """Return the time derivative of a state, shape (nq + nv,)."""
         slope = np.empty(self._size)
-        dop853_kernel._slope(self._pointers, self._views, state, slope)
+        dop853_kernel.slope(*self.dynamics, state, slope)
         return slope
 
     def run(
@@ -62,13 +68,12 @@ class Integrator:
         tolerance: float = 1e-10,
         scale: np.ndarray | None = None,
         limit: float = math.inf,
-        recorder: Observer | None = None,
+        watch: Watcher | None = None,
     ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
         With a `timestep` [s] the step is fixed. Without it each step keeps its local error below `tolerance` times
         (`scale` + |state|), with `scale` of shape (nq + nv,). The run is given up after `limit` evaluations.
-        A `recorder` is shown all steps.
 
         Raises:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
@@ -76,37 +81,52 @@ class Integrator:
         state, samples = start.copy(), np.empty((len(times), self._size))
         slopes = np.zeros((dop853_kernel.ROWS, self._size))
         scale = np.ones(self._size) if scale is None else scale
-        place = (0.0, timestep or 0.0, 0, 0, 1.0)
-        self.evaluations, status = 0, dop853_kernel.BLOCK_END
-        rows = dop853_kernel.KEPT if recorder else 0
+        rows = dop853_kernel.KEPT if watch else 0
         kept = np.empty(rows), np.empty((rows, self._size)), np.empty((rows, self._size))
-        with told(dop853_kernel.advance), quiet(), untimed():
-            while status == dop853_kernel.BLOCK_END:
-                status, place, evaluations, count = dop853_kernel.advance(
-                    pointers=self._pointers,
-                    views=self._views,
-                    state=state,
-                    slopes=slopes,
-                    times=times,
-                    samples=samples,
-                    place=place,
-                    fixed=timestep is not None,
-                    tolerance=tolerance,
-                    scale=scale,
-                    kept=kept,
-                )
-                if recorder and count:
-                    recorder.add_smooth(*(part[:count] for part in kept))
-                self.evaluations += evaluations
-                if status == dop853_kernel.BLOCK_END and self.evaluations > limit:
-                    raise DivergenceError(
-                        f"the DOP853 run was given up at t = {place[0]:.6g} s after {self.evaluations} evaluations"
-                    )
-        if status != dop853_kernel.DONE:
-            not_finite = status == dop853_kernel.NOT_FINITE
-            cause = "its state is no longer finite" if not_finite else "no step is small enough for it"
-            raise DivergenceError(f"the DOP853 run diverged at t = {place[0]:.6g} s: {cause}")
+        place = (0.0, timestep or 0.0, 0, 0, 1.0)
+        fixed = timestep is not None
+
+        def advance() -> tuple[int, float, int, int]:
+            nonlocal place
+            status, place, evaluations, count = dop853_kernel.advance(
+                *self.dynamics, state, slopes, times, samples, place, fixed, tolerance, scale, kept
+            )
+            return status, place[0], evaluations, count
+
+        self.evaluations = drive(DOP853, dop853_kernel.advance, advance, kept, limit, watch)
         return samples
+
+
+def drive(
+    name: str,
+    kernel: Any,
+    advance: Callable[[], tuple[int, float, int, int]],
+    kept: tuple[np.ndarray, ...],
+    limit: float,
+    watch: Watcher | None,
+) -> int:
+    """Call `advance` until a run of a method is done, and return the number of its evaluations.
+
+    It takes a block of steps with a compiled `kernel`, and returns the status, the time [s], and the numbers of
+    evaluations and of `kept` rows, which are then shown to `watch`.
+
+    Raises:
+      DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
+    """
+    status, time, total = BLOCK_END, 0.0, 0
+    with stepping(kernel):
+        while status == BLOCK_END:
+            if total > limit:
+                raise DivergenceError(f"the {name} run was given up at t = {time:.6g} s after {total} evaluations")
+            status, time, evaluations, count = advance()
+            total += evaluations
+            if watch and count:
+                slopes = kept[2][:count] if len(kept) > 2 else None
+                watch(kept[0][:count], kept[1][:count], slopes)
+    if status != DONE:
+        cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
+        raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: {cause}")
+    return total
 
 
 def integrate(model: mujoco.MjModel, start: np.ndarray, times: np.ndarray, timestep: float) -> np.ndarray:
@@ -124,16 +144,6 @@ def _needed_positions(model: mujoco.MjModel, smooth: bool) -> np.ndarray:
     if smooth and "slide" in (joints := places(model)):
         needed[joints["slide"]] = False
     return needed
-
-
-def _has_actuators(model: mujoco.MjModel) -> bool:
-    """Return whether the model has actuators that are enabled."""
-    return model.nu > 0 and not model.opt.disableflags & _ACTUATION
-
-
-def _has_constant_forces(model: mujoco.MjModel) -> bool:
-    """Return whether the forces of all actuators are constant."""
-    return not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
 
 
 def _apply_constant_forces(model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -6,35 +6,72 @@ II.10 (coefficients from scipy.integrate.DOP853). Each evaluation calls function
 MuJoCo library through their C symbols, so no Python runs between evaluations.
 """
 
+import ctypes
 import math
 
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
 from scipy.integrate import DOP853
 
-from mjbeer.simulation.call import apart, call, small
-
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
-"""The statuses with which `advance` can end."""
+"""The statuses with which a kernel can end."""
+LARGEST = 1e10
+"""Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
 ROWS = 16
 """Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""
 _A, _B = DOP853.A[:12, :12].copy(), DOP853.B.copy()
 _E3, _E5 = DOP853.E3.copy(), DOP853.E5.copy()
 _A_EXTRA, _D = np.asarray(DOP853.A_EXTRA).copy(), np.asarray(DOP853.D).copy()
 _STAGES = 12
-_SAFETY, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
+_CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
 _MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
 _LEAST = 1e-4  # smallest error of the step before that counts
 _BLOCK = 20_000  # steps between two returns to Python, so that a long run can be interrupted
 KEPT = _BLOCK + 1
 """Largest number of steps of a block that are kept, with the start."""
-_LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
+
+
+@intrinsic
+def call(typing_context, function, model, data):
+    """Call the C function at the address `function` with two pointers; no address is compiled in, so caching works."""
+
+    def generate(context, builder, signature, arguments):
+        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
+        function_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.intp, types.intp, types.intp), generate
+
+
+@intrinsic
+def _for_size(typing_context):
+    """Compile the function that calls this for size: its loops over a few joints gain nothing from more code."""
+
+    def generate(context, builder, signature, arguments):
+        builder.function.attributes.add("optsize")
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
+@intrinsic
+def _not_inlined(typing_context):
+    """Keep the function that calls this from being copied into its callers, which would take the compiler seconds."""
+
+    def generate(context, builder, signature, arguments):
+        builder.function.attributes.add("noinline")
+        return context.get_dummy_value()
+
+    return types.void(), generate
 
 
 @njit(cache=True, error_model="numpy")
-def _slope(pointers, views, state, out):
+def slope(pointers, views, state, out):
     """Write the time derivative of a state to `out`."""
-    small()
+    _for_size()
     functions, model, data = pointers
     qpos, qvel, qacc, needed = views
     n = qpos.size
@@ -51,7 +88,7 @@ def _slope(pointers, views, state, out):
 @njit(cache=True, error_model="numpy")
 def _combine(weights, count, slopes, out):
     """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
-    small()
+    _for_size()
     for i in range(out.size):
         out[i] = 0.0
     for j in range(count):
@@ -79,7 +116,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
       kept: times, states and slopes at the ends of the steps of this block, and at the start of the run: work space for
         `KEPT` of them, or for none.
     """
-    small()
+    _for_size()
     time, step, sample, steps, before = place
     kept_times = kept[0]
     stages = _A.shape[0]  # for a constant, numba would compile `_combine` once more
@@ -89,7 +126,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
     weights = np.empty((7, size))
     evaluations = 0
     if steps == 0:
-        _slope(pointers, views, state, slopes[0])
+        slope(pointers, views, state, slopes[0])
         evaluations += 1
         if not fixed:
             step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
@@ -110,12 +147,12 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             _combine(_A[s], s, slopes, total)
             for i in range(size):
                 work[i] = state[i] + step * total[i]
-            _slope(pointers, views, work, slopes[s])
+            slope(pointers, views, work, slopes[s])
         _combine(_B, stages, slopes, total)
         finite = True
         for i in range(size):
             new[i] = state[i] + step * total[i]
-            finite = finite and abs(new[i]) < _LARGEST
+            finite = finite and abs(new[i]) < LARGEST
         evaluations += _STAGES - 1
         if fixed and not finite:
             status = NOT_FINITE
@@ -125,12 +162,12 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             if finite:
                 error = _error(state, new, slopes, step, tolerance, scale, work, total)
             if not error < 1.0:
-                step *= max(_SHRINK, _SAFETY * error ** (-1 / 8)) if finite else _SHRINK
+                step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
                 if not step > 4e-16 * max(time, 1e-300) or step < 1e-200:
                     status = TOO_SMALL if finite else NOT_FINITE
                     break
                 continue
-        _slope(pointers, views, new, slopes[_STAGES])
+        slope(pointers, views, new, slopes[_STAGES])
         evaluations += 1
         steps += 1
         end = steps * step if fixed else time + step
@@ -156,7 +193,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             _keep(kept, row, time, state, slopes)
             row += 1
         if not fixed:
-            growth = _SAFETY * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
+            growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
             step *= min(_GROW, max(_SHRINK, growth))
             before = max(error, _LEAST)
             if time < times[-1]:  # a motion at rest would take steps without bound
@@ -167,7 +204,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
 @njit(cache=True, error_model="numpy")
 def _keep(kept, row, time, state, slopes):
     """Keep the time, the state and the slope at the end of a step."""
-    small()
+    _for_size()
     kept_times, kept_states, kept_slopes = kept
     kept_times[row] = time
     for i in range(state.size):
@@ -181,8 +218,8 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
 
     Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
     """
-    small()
-    apart()
+    _for_size()
+    _not_inlined()
     size = state.size
     d0 = d1 = 0.0
     for i in range(size):
@@ -193,7 +230,7 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     guess = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1
     for i in range(size):
         work[i] = state[i] + guess * slopes[0, i]
-    _slope(pointers, views, work, slopes[1])
+    slope(pointers, views, work, slopes[1])
     d2 = 0.0
     for i in range(size):
         d2 += ((slopes[1, i] - slopes[0, i]) / (tolerance * (scale[i] + abs(state[i])))) ** 2
@@ -206,8 +243,8 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
 @njit(cache=True, error_model="numpy")
 def _error(state, new, slopes, step, tolerance, scale, five, three):
     """Return the estimated error of a step over the tolerated one."""
-    small()
-    apart()
+    _for_size()
+    _not_inlined()
     fifth, third, stages = 0.0, 0.0, _A.shape[0]
     _combine(_E5, stages, slopes, five)
     _combine(_E3, stages, slopes, three)
@@ -222,13 +259,13 @@ def _error(state, new, slopes, step, tolerance, scale, five, three):
 @njit(cache=True, error_model="numpy")
 def _prepare(pointers, views, state, new, slopes, step, work, weights):
     """Write the coefficients of the continuous output over the last step to `weights`."""
-    small()
-    apart()
+    _for_size()
+    _not_inlined()
     for row in range(3):
         _combine(_A_EXTRA[row], _STAGES + 1 + row, slopes, work)
         for i in range(state.size):
             work[i] = state[i] + step * work[i]
-        _slope(pointers, views, work, slopes[_STAGES + 1 + row])
+        slope(pointers, views, work, slopes[_STAGES + 1 + row])
     for i in range(state.size):
         change = new[i] - state[i]
         weights[0, i] = change
@@ -243,8 +280,8 @@ def _prepare(pointers, views, state, new, slopes, step, work, weights):
 @njit(cache=True, error_model="numpy")
 def _interpolate(state, weights, part, out):
     """Write the state after the fraction `part` of a step from `state` to `out`."""
-    small()
-    apart()
+    _for_size()
+    _not_inlined()
     for i in range(state.size):
         value = 0.0
         for k in range(6, -1, -1):

@@ -7,17 +7,16 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError, UnsupportedError
 from mjbeer.model.engine import quiet, untimed
+from mjbeer.model.setting import GAUSS_JACKSON
 from mjbeer.simulation import gauss_jackson_kernel
-from mjbeer.simulation.compiling import told
-from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.gauss_jackson_weights import COUNT
-from mjbeer.simulation.recorder import Recorder
+from mjbeer.simulation.dop853 import Integrator, drive
+from mjbeer.simulation.gauss_jackson_kernel import COUNT
+from mjbeer.simulation.stepping import Watcher
 
 _STARTING = 2
 """Timestep of DOP853, which starts a run, over the timestep. Measured down to 1e-12 rad, the error after 2 s is that of
 a start at single timesteps, and at most a quarter more; with three it is up to ten times as large. Two saves forty
 evaluations of a run's hundreds."""
-
 _SHARE = 0.046
 """Timestep for an error of 1e-6 rad over the shortest regular step of DOP853 at a local tolerance of 1. It is smaller
 than needed in three of four random motions."""
@@ -55,49 +54,47 @@ class GaussJackson:
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
-    def run(
-        self, start: np.ndarray, times: np.ndarray, timestep: float, recorder: Recorder | None = None
-    ) -> np.ndarray:
+    def run(self, start: np.ndarray, times: np.ndarray, timestep: float, watch: Watcher | None = None) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        The first twelve steps of `timestep` [s] are DOP853's, and two more are taken than the times need: a run is no
-        shorter than these fourteen. Between steps the states are those of the polynomial through the accelerations
-        around. A `recorder` is shown all steps.
+        The first twelve steps of `timestep` [s] are DOP853's, and two more are taken than the times need. Between steps
+        the states are those of the polynomial through the accelerations around.
 
         Raises:
           DivergenceError: if the motion stops being finite.
         """
-        size, pointers, views = self._size, self._starter._pointers, self._starter._views
+        size, dynamics = self._size, self._starter.dynamics
         first = timestep * np.arange(COUNT)
+        begun = int(np.searchsorted(times, first[-1], side="right"))
+        along = np.concatenate([first, times[:begun]])
+        order, states = np.argsort(along, kind="stable"), np.empty((len(along), 2 * size))
         try:
-            states = self._starter.run(start, first, _STARTING * timestep)
+            states[order] = self._starter.run(start, along[order], _STARTING * timestep)
         except DivergenceError as error:
             raise DivergenceError(f"GaussJackson could not start: {error}") from error
+        samples = np.empty((len(times), 2 * size))
+        states, samples[:begun] = states[:COUNT], states[COUNT:]
         sums, history = np.empty((4, size)), np.empty((size, COUNT + gauss_jackson_kernel.BLOCK))
-        samples, begun = np.empty((len(times), 2 * size)), int(np.searchsorted(times, 0.0, side="right"))
-        samples[:begun] = start
-        place, status = (timestep, COUNT - 1, begun), gauss_jackson_kernel.BLOCK_END
-        rows = gauss_jackson_kernel.BLOCK if recorder else 0
-        kept = np.empty(rows), np.empty((rows, 2 * size))
-        with told(gauss_jackson_kernel.advance), quiet(), untimed():
-            gauss_jackson_kernel.begin(pointers, views, states, timestep, sums, history)
-            self.evaluations = self._starter.evaluations + COUNT
-            if not np.isfinite(sums).all():  # the position over the square of the timestep overflows, or a force does
-                raise DivergenceError(f"GaussJackson could not start: its sums are not finite at t = {first[-1]:.6g} s")
+        with quiet(), untimed():
+            gauss_jackson_kernel.begin(*dynamics, states, timestep, sums, history)
+        if not np.isfinite(sums).all():  # the position over the square of the timestep overflows, or a force does
+            raise DivergenceError(f"GaussJackson could not start: its sums are not finite at t = {first[-1]:.6g} s")
+        if watch:
             reached = 1 + int(np.searchsorted(first, times[-1]))  # what comes after it is not the run's
-            before = first[:reached], states[:reached]
-            while status == gauss_jackson_kernel.BLOCK_END:
-                status, place, taken, rows = gauss_jackson_kernel.advance(
-                    pointers, views, sums, history, times, samples, place, kept
-                )
-                if recorder:
-                    recorder.add(*(np.concatenate([old, part[:rows]]) for old, part in zip(before, kept, strict=True)))
-                    before = first[:0], states[:0]
-                self.evaluations += 2 * taken
-        if status == gauss_jackson_kernel.NOT_FINITE:
-            raise DivergenceError(
-                f"the GaussJackson run diverged at t = {place[1] * timestep:.6g} s: its state is no longer finite"
+            watch(first[:reached], states[:reached], None)
+        rows = gauss_jackson_kernel.BLOCK if watch else 0
+        kept = np.empty(rows), np.empty((rows, 2 * size))
+        place = (timestep, COUNT - 1, begun)
+
+        def advance() -> tuple[int, float, int, int]:
+            nonlocal place
+            status, place, taken, count = gauss_jackson_kernel.advance(
+                *dynamics, sums, history, times, samples, place, kept
             )
+            return status, place[0] * place[1], 2 * taken, count
+
+        begin = self._starter.evaluations + COUNT
+        self.evaluations = begin + drive(GAUSS_JACKSON, gauss_jackson_kernel.advance, advance, kept, math.inf, watch)
         return samples
 
 

@@ -6,30 +6,84 @@ stable at timesteps that are several times as large; forces that depend on veloc
 
 What a run returns is read off two steps later, when there are accelerations on both sides of it: the formula errs far
 less there than at the end of the accelerations. Velocities gain a digit, for four evaluations a run.
+
+The weights with which accelerations are added up come from rational arithmetic. With the backward difference z
+(z a_n = a_n - a_(n-1)) and a step h, the time derivative is -ln(1 - z)/h, so that the velocity is h/(-ln(1 - z)) and
+the position h^2/ln(1 - z)^2 times the acceleration. Their leading terms, 1/z and 1/z^2, are the first and the second
+sum of all accelerations; the rest are differences of the last ones, and so weights for them. A factor (1 - z)^back
+gives the value that many steps before the last acceleration: -1 predicts the next step.
+
+O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy, Implementation of Gauss-Jackson
+integration for orbit propagation, J. Astronaut. Sci. 52 (2004).
 """
 
 import math
+from fractions import Fraction
 
 import numpy as np
 from numba import njit
+from numpy.polynomial import polynomial
 
-from mjbeer.simulation.dop853_kernel import _slope
-from mjbeer.simulation.gauss_jackson_weights import COUNT, series, weights
+from mjbeer.simulation.dop853_kernel import BLOCK_END, DONE, LARGEST, NOT_FINITE, slope
 
-DONE, BLOCK_END, NOT_FINITE = range(3)
-"""The statuses with which `advance` can end."""
+COUNT = 13
+"""Number of accelerations that are kept: the method has differences up to the twelfth."""
 BLOCK = 4096
 """Steps between two returns to Python, so that a long run can be interrupted."""
+LAG = 2
+"""Steps after which a state is read off; with more of them only the evaluations grow."""
+
+
+def series(power: int, back: int, terms: int) -> list[Fraction]:
+    """Return the first coefficients of (z/(-ln(1 - z)))^power (1 - z)^back in powers of z.
+
+    A `power` of 1 is for velocities, one of 2 for positions.
+    """
+    logarithm = [Fraction(1, j + 1) for j in range(terms)]  # -ln(1 - z)/z
+    inverse, product = [Fraction(1)], [Fraction(1)]
+    for k in range(1, terms):
+        inverse.append(-sum((logarithm[k - j] * inverse[j] for j in range(k)), Fraction(0)))
+        product.append(product[-1] * (k - 1 - back) / k)
+    for _ in range(power):
+        product = [sum((product[j] * inverse[k - j] for j in range(k + 1)), Fraction(0)) for k in range(terms)]
+    return product
+
+
+def weights(power: int, back: int) -> np.ndarray:
+    """Return the weights of the last `COUNT` accelerations, the oldest first, shape (COUNT,).
+
+    The velocity `back` steps before the last one is h times the first sum and the accelerations with the weights of
+    `power` 1. The position is h^2 times the second sum, less 1 + `back` times the first sum, and the accelerations with
+    the weights of `power` 2. Both sums include the last acceleration.
+    """
+    differences = series(power, back, COUNT + power)[power:]
+    ordinates = [
+        (-1) ** k * sum((math.comb(j, k) * differences[j] for j in range(k, COUNT)), Fraction(0)) for k in range(COUNT)
+    ]
+    return np.array([float(weight) for weight in reversed(ordinates)])
+
+
+def _between(power: int) -> np.ndarray:
+    """Return `weights` as polynomials of `back` - `LAG` - 1/2, the lowest power first, shape (terms, COUNT)."""
+    inverse = [float(term) for term in series(power, 0, COUNT + power)]
+    shifts: list[np.ndarray] = [np.ones(1)]
+    for j in range(1, COUNT + power):
+        shifts.append(polynomial.polymul(shifts[-1], [(j - 1.5 - LAG) / j, -1 / j]))
+    ordinates = np.zeros((COUNT + 2, COUNT))
+    for j in range(COUNT):
+        difference = np.zeros(COUNT + 2)
+        for k in range(j + power + 1):
+            difference[: k + 1] += inverse[j + power - k] * shifts[k]
+        for k in range(j + 1):
+            ordinates[:, COUNT - 1 - k] += (-1) ** k * math.comb(j, k) * difference
+    return ordinates
+
+
 _PREDICT_RATE, _PREDICT = weights(1, -1), weights(2, -1)
 _CORRECT_RATE, _CORRECT = weights(1, 0), weights(2, 0)
 _MIDDLE = COUNT // 2
 _MIDDLE_RATE, _MIDDLE_PLACE = weights(1, _MIDDLE), weights(2, _MIDDLE)
-LAG = 2
-"""Steps after which a state is read off; with more of them only the evaluations grow."""
-_READ_RATE, _READ_PLACE = weights(1, LAG), weights(2, LAG)
-_RATES = np.array([float(term) for term in series(1, 0, COUNT + 1)])
-_PLACES = np.array([float(term) for term in series(2, 0, COUNT + 2)])
-_LARGEST = 1e10  # mjMAXVAL: MuJoCo calls a larger state diverged
+_BETWEEN_RATE, _BETWEEN_PLACE = _between(1), _between(2)
 
 
 @njit(cache=True, error_model="numpy")
@@ -47,11 +101,11 @@ def begin(pointers, views, states, step, sums, history):
       history: accelerations, shape (nv, COUNT + BLOCK); the first `COUNT` columns are filled in.
     """
     size = sums.shape[1]
-    slope = np.empty(2 * size)
+    derivative = np.empty(2 * size)
     for k in range(COUNT):
-        _slope(pointers, views, states[k], slope)
+        slope(pointers, views, states[k], derivative)
         for i in range(size):
-            history[i, k] = slope[size + i]
+            history[i, k] = derivative[size + i]
     middle = states[COUNT - 1 - _MIDDLE]
     for i in range(size):
         rate = middle[size + i] / step - _sum(_MIDDLE_RATE, history[i], COUNT)
@@ -103,12 +157,14 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
     step, steps, sample = place
     kept_times, kept_states = kept
     size = sums.shape[1]
-    work, slope = np.empty(2 * size), np.empty(2 * size)
+    work, derivative = np.empty(2 * size), np.empty(2 * size)
+    rate_weights, place_weights = np.empty(COUNT), np.empty(COUNT)
     status, taken, row = BLOCK_END, 0, 0
     while True:
         end = COUNT + taken
         while sample < times.size and times[sample] <= (steps - LAG) * step * (1 + 1e-14):
-            _interpolate(sums, history, end, steps - times[sample] / step, step, samples[sample])
+            back = steps - times[sample] / step
+            _read(sums, history, end, back, step, rate_weights, place_weights, samples[sample])
             sample += 1
         if sample == times.size:
             status = DONE
@@ -118,19 +174,19 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
         for i in range(size):
             work[i] = step**2 * (sums[1, i] + _sum(_PREDICT, history[i], end))
             work[size + i] = step * (sums[0, i] + _sum(_PREDICT_RATE, history[i], end))
-        _slope(pointers, views, work, slope)
+        slope(pointers, views, work, derivative)
         for i in range(size):
-            history[i, end] = slope[size + i]
+            history[i, end] = derivative[size + i]
             work[i] = step**2 * (sums[1, i] + _sum(_CORRECT, history[i], end + 1))
             work[size + i] = step * (sums[0, i] + history[i, end] + _sum(_CORRECT_RATE, history[i], end + 1))
-        _slope(pointers, views, work, slope)
+        slope(pointers, views, work, derivative)
         finite = True
         for i in range(size):
-            history[i, end] = slope[size + i]
-            _add(sums, 0, i, slope[size + i])
+            history[i, end] = derivative[size + i]
+            _add(sums, 0, i, derivative[size + i])
             _add(sums, 1, i, sums[0, i])
-            finite = finite and abs(work[i]) < _LARGEST and abs(work[size + i]) < _LARGEST
-            finite = finite and math.isfinite(slope[size + i])
+            finite = finite and abs(work[i]) < LARGEST and abs(work[size + i]) < LARGEST
+            finite = finite and math.isfinite(derivative[size + i])
         steps += 1
         if not finite:
             status = NOT_FINITE
@@ -138,7 +194,7 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
         taken += 1
         if kept_times.size > 0 and steps - LAG >= COUNT:
             kept_times[row] = (steps - LAG) * step
-            _interpolate(sums, history, end + 1, float(LAG), step, kept_states[row])
+            _read(sums, history, end + 1, float(LAG), step, rate_weights, place_weights, kept_states[row])
             row += 1
     for i in range(size):
         for k in range(COUNT):
@@ -147,35 +203,20 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
 
 
 @njit(cache=True)
-def _interpolate(sums, history, end, back, step, out):
-    """Write the state `back` steps before the last acceleration to `out`: a polynomial of the last ones, twice summed.
+def _read(sums, history, end, back, step, rate_weights, place_weights, out):
+    """Write the state `back` steps before the last acceleration to `out`, with `back` from `LAG` to one more.
 
-    It is the formula of the corrector with the factor (1 - z)^back, whose powers of z are differences here.
+    The weights are work space of shape (COUNT,).
     """
-    size = sums.shape[1]
-    if abs(back - LAG) < 1e-9:
-        for i in range(size):
-            out[i] = step**2 * (sums[1, i] - (1 + LAG) * sums[0, i] + _sum(_READ_PLACE, history[i], end))
-            out[size + i] = step * (sums[0, i] + _sum(_READ_RATE, history[i], end))
-        return
-    shifts, rates, places = np.empty(COUNT + 2), np.empty(COUNT), np.empty(COUNT)
-    differences = np.empty(COUNT)
-    shifts[0] = 1.0
-    for j in range(1, COUNT + 2):
-        shifts[j] = shifts[j - 1] * (j - 1 - back) / j
-    for j in range(COUNT):
-        rates[j], places[j] = 0.0, shifts[j + 2] * _PLACES[0]
-        for k in range(j + 2):
-            rates[j] += shifts[k] * _RATES[j + 1 - k]
-            places[j] += shifts[k] * _PLACES[j + 2 - k]
-    for i in range(size):
+    x = back - LAG - 0.5
+    for k in range(COUNT):
+        rate_weights[k] = place_weights[k] = 0.0
+    for power in range(COUNT + 1, -1, -1):
         for k in range(COUNT):
-            differences[k] = history[i, end - 1 - k]
-        rate = place = 0.0
-        for j in range(COUNT):
-            rate += rates[j] * differences[0]
-            place += places[j] * differences[0]
-            for k in range(COUNT - 1 - j):
-                differences[k] -= differences[k + 1]
-        out[i] = step**2 * (sums[1, i] - (1 + back) * sums[0, i] + place)
-        out[size + i] = step * (sums[0, i] + rate)
+            rate_weights[k] = rate_weights[k] * x + _BETWEEN_RATE[power, k]
+            place_weights[k] = place_weights[k] * x + _BETWEEN_PLACE[power, k]
+    size = sums.shape[1]
+    for i in range(size):
+        place = _sum(place_weights, history[i], end) - (1 + back) * sums[0, i]
+        out[i] = step**2 * (sums[1, i] + place)
+        out[size + i] = step * (sums[0, i] + _sum(rate_weights, history[i], end))

@@ -2,20 +2,19 @@
 
 import math
 import threading
-from collections.abc import Generator, Hashable
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
 from mjbeer.model import state
-from mjbeer.model.pattern import Editable, Plan
+from mjbeer.model.build import Stepped
+from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.recorder import Recorder
-from mjbeer.simulation.solution import Solution
-from mjbeer.simulation.stepping import Stepper
+from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.simulation.tolerance import Solver, tuning
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
@@ -26,7 +25,7 @@ whole number. So no rate of rotation has the same phase at the ends of both part
 
 _MOST_IDLE = 8
 """Largest number of idle set-ups that are kept for later calls: each has memory for contacts that it hardly touches."""
-_idle: list[tuple[Hashable, "Prepared"]] = []
+_idle: list[tuple[Kind, "Prepared"]] = []
 """Set-ups that nobody uses, with the kind of each, the oldest first."""
 _taking = threading.Lock()
 
@@ -40,12 +39,10 @@ class Prepared:
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
-      TemplateError: if the template of the scene is missing or not as it should be.
     """
 
     def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
-        plan = _plan(scene, setting, uneven)
-        self._made = Editable(plan)
+        self._made = Stepped(_numbers(scene, setting, uneven))
         self.model = self._made.model
         self._begin(scene, setting, uneven)
 
@@ -66,26 +63,26 @@ class Prepared:
 
     @classmethod
     @contextmanager
-    def lent(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
+    def borrowed(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
         """Yield a set-up for the block, after which another call may write its scene into the same model.
 
         All that an idle set-up did before is gone: a motion has the same bits in it as in a new one.
         """
-        plan = _plan(scene, setting, uneven=False)
+        numbers = _numbers(scene, setting, uneven=False)
         with _taking:
-            places = (place for place, (kind, _) in enumerate(_idle) if kind == plan.kind)
+            places = (place for place, (kind, _) in enumerate(_idle) if kind == numbers.kind)
             found = _idle.pop(place)[1] if (place := next(places, None)) is not None else None
         if found is None:
             prepared = cls(scene, setting)
         else:
             prepared = found
-            prepared._made.write(plan)
+            prepared._made.write(numbers)
             prepared._begin(scene, setting, uneven=False)
         try:
             yield prepared
         finally:
             with _taking:
-                _idle.append((plan.kind, prepared))
+                _idle.append((numbers.kind, prepared))
                 del _idle[:-_MOST_IDLE]
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
@@ -106,7 +103,7 @@ class Prepared:
             return self._method.run(start, times, self.setting.tolerance, math.inf if friction is None else friction)
         recorder = None if friction is None else Recorder(self.model, self.scene, friction)
         if isinstance(self._method, Integrator | GaussJackson):
-            states = self._method.run(start, times, self._step, recorder=recorder)
+            states = self._method.run(start, times, self._step, watch=recorder)
         else:
             steps = np.rint(times / self.setting.timestep).astype(np.int64)
             states = self._method.run(start, steps, recorder)
@@ -122,9 +119,9 @@ def _step(setting: Setting, uneven: bool) -> float:
     return setting.timestep * (_GREATER if uneven else 1)
 
 
-def _plan(scene: Scene, setting: Setting, uneven: bool) -> Plan:
+def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
     """Return what is to be written into the model of a scene."""
     if setting.tolerance is not None:
         timestep = tuning(scene, setting.rolling, setting.timestep)
-        return Plan.of(scene, replace(setting, integrator=DOP853, timestep=timestep))
-    return Plan.of(scene, replace(setting, timestep=_step(setting, uneven)))
+        return Numbers.of(scene, replace(setting, integrator=DOP853, timestep=timestep))
+    return Numbers.of(scene, replace(setting, timestep=_step(setting, uneven)))

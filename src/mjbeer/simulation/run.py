@@ -8,18 +8,18 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
+from mjbeer.model import check
 from mjbeer.model.engine import quiet
-from mjbeer.model.setting import TUNED, Setting
+from mjbeer.model.setting import DOP853, TUNED, Setting
 from mjbeer.model.state import START_DEPTH
-from mjbeer.simulation import residual
 from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.stepping import Solution
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.record import Record
+from mjbeer.theory.record import ERROR, Record, doubts
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
-from mjbeer.theory.trust import ERROR, doubts
 
-_SAFETY = 3.2
+_OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 0.38 of the error, or 1/2.6. The error of a first-order method is 0.38^2 + 0.62^2 = 0.53 times as
 large. 3.2 allows for an order that has not settled."""
@@ -27,18 +27,12 @@ _ASIDE = 4e-14
 """Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding. Beside a separatrix
 it shows how much rounding matters. In contact it is `START_DEPTH` instead, as no two models would have the same
 depth."""
-_KEPT = 4096
+_COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
-_CHECKED = 32
-"""Number of times for a run with a tolerance, which has to interpolate there: three evaluations each, of thousands."""
 _TURN = 2.0
 """Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle. J goes with
 the sine of twice the angle, so that it looks the same at every step of pi; forces that are taken at the same phase of
-every turn give a rotation that looks even, and is not."""
-_GOLDEN = (math.sqrt(5) - 1) / 2
-"""The fractions of its multiples are spread evenly, and no period is a multiple of the gaps between them."""
-_SPREAD = np.append(0.0, np.sort(np.arange(1, _CHECKED) * _GOLDEN % 1))
-"""Times spread over a motion, over its duration."""
+every turn give a rotation that looks even, and is not. The stages of DOP853 are at too many phases for that."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -50,15 +44,11 @@ class Run(Trajectory):
 
     setting: Setting
     """How the can was made to roll and how it was stepped."""
-    steps: Record
-    """The extremes of all steps."""
-    way: Coordinates
-    """The motion at its samples and at times spread over the whole run, where the uneven run is compared with it."""
-    estimate: float | None = None
-    """Estimated error [rad] of a run with a tolerance, which comes with the run; None without a tolerance."""
-
-    method: str | None = None
-    """The name of the integrator that was chosen for a tolerance; None without one."""
+    solution: Solution
+    """The record of all steps and, with a tolerance, the estimated error and the integrator that was chosen."""
+    spread: Coordinates
+    """The motion at its samples and, without a tolerance, at timesteps spread over the whole run, where the uneven run
+    is compared with it."""
 
     @property
     def rolling(self) -> str:
@@ -67,11 +57,8 @@ class Run(Trajectory):
 
     @property
     def integrator(self) -> str:
-        """Return the name of the integrator.
-
-        With a tolerance it is "GaussJackson" or "DOP853", or "Radau" for a motion that damping makes stiff.
-        """
-        return self.setting.integrator if self.method is None else self.method
+        """Return the name of the integrator; with a tolerance it is "GaussJackson" or "DOP853"."""
+        return self.solution.integrator or self.setting.integrator
 
     @property
     def timestep(self) -> float | None:
@@ -81,7 +68,8 @@ class Run(Trajectory):
     @property
     def record(self) -> Record:
         """Return the extremes of the motion over all its steps, on which its warnings rest."""
-        return self.steps
+        assert self.solution.record is not None
+        return self.solution.record
 
     def rolls_until(self, friction: float = np.inf) -> float:
         """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.
@@ -90,10 +78,10 @@ class Run(Trajectory):
         any other takes a run as long as this one, all of whose steps are looked at.
         """
         friction = require.friction(friction)
-        if friction == self.steps.friction:
-            return self.steps.fails_at
+        if friction == self.record.friction:
+            return self.record.fails_at
         prepared = Prepared(self.scene, self.setting)
-        solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.way.time, friction)
+        solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.spread.time, friction)
         assert solution.record is not None
         return solution.record.fails_at
 
@@ -101,50 +89,48 @@ class Run(Trajectory):
     def error_estimate(self) -> float | None:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It rests on the largest distance from a second run, along the whole way. With a tolerance that was made already.
-        Otherwise the first access makes the uneven run, which takes twice as long as this one; the error is infinite
-        if it diverges.
+        It rests on the largest distance from a second run, along the whole motion. With a tolerance that was made
+        already. Otherwise the first access makes the uneven run, which takes twice as long as this one; the error is
+        infinite if it diverges.
         """
-        return self.estimate if self.estimate is not None else self._second.estimate
+        return self.solution.error if self.solution.error is not None else self._second.error
 
     @cached_property
     def _second(self) -> "Second":
         return Second.of(self)
 
     @cached_property
+    def doubts(self) -> tuple[str, ...]:
+        """Return those reasons not to trust this motion that take no second run."""
+        found = doubts(self.record, self.rolling, self.setting.friction)
+        turn = self.record.fastest * (timestep := self.timestep or 0.0)
+        if turn > _TURN and self.integrator != DOP853:
+            # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
+            rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
+            if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
+                found.append(
+                    f"the load turns by {turn:.2g} rad in a timestep (trusted up to {_TURN:g}), in which its weight "
+                    "and inertia change unseen"
+                )
+        return tuple(found)
+
+    @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
-        found = doubts(self.steps, can_part=self.rolling == "contact")
-        return (*found, *self._in_a_step(), *self._second_run())
-
-    def _in_a_step(self) -> list[str]:
-        """Return what a timestep in which the load turns far says against this run: at most one sentence."""
-        turn = self.steps.fastest * (timestep := self.timestep or 0.0)
-        if turn <= _TURN:
-            return []
-        # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
-        rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
-        if self.scene.oscillator.unevenness(self.phi0, rate) <= ERROR:
-            return []
-        return [
-            f"the load turns by {turn:.2g} rad in a timestep (trusted up to {_TURN:g}), in which its weight and "
-            "inertia change unseen"
-        ]
-
-    def _second_run(self) -> list[str]:
-        """Return what the second run says against this one: at most one sentence."""
-        if self.estimate is None and self._second.lost > ERROR:
-            return [
+        if self.solution.error is None and self._second.lost > ERROR:
+            return (
+                *self.doubts,
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
-                f"by an error of {self._second.lost:.2g} rad"
-            ]
-        estimate = self.error_estimate
-        if estimate is None or estimate <= ERROR:
-            return []
+                f"by an error of {self._second.lost:.2g} rad",
+            )
+        if (error := self.error_estimate) is None or error <= ERROR:
+            return self.doubts
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
-        if math.isfinite(estimate):
-            return [f"phi and u/a are off by {estimate:.2g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"]
-        return [f"a run at {finer} diverges: take a much smaller timestep or a better integrator"]
+        if math.isfinite(error):
+            found = f"phi and u/a are off by {error:.2g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
+        else:
+            found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
+        return (*self.doubts, found)
 
 
 @dataclass(frozen=True)
@@ -155,7 +141,7 @@ class Second:
     effect of their softness. The other start includes the effect of rounding.
     """
 
-    estimate: float
+    error: float
     """Estimated error of phi and u/a [rad], relative beyond 1 rad; infinite if the second run diverges."""
     lost: float
     """The error [rad] that the model has because MuJoCo's sums lose something in rounding."""
@@ -163,49 +149,39 @@ class Second:
     @classmethod
     def of(cls, run: Run) -> "Second":
         """Make the second run, which takes twice as long as the first one."""
-        scene, setting = run.scene, run.setting
+        scene, setting, motion = run.scene, run.setting, run.spread
         prepared = Prepared(scene, setting, uneven=True)
         exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
-        lost = residual.lost(prepared.model, scene, run.way, run.steps, exact_constraint)
+        lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
         beside = START_DEPTH if setting.rolling == "contact" else _ASIDE
         aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
         try:
-            states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), run.way.time).states
+            states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), motion.time).states
         except DivergenceError:
             return cls(math.inf, lost)
         start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
-        uneven = prepared.coordinates(states, run.way.time)
-        return cls(_SAFETY * distance(run.way, uneven, scene.can.radius, start), lost)
+        uneven = prepared.coordinates(states, motion.time)
+        return cls(_OVER_DISTANCE * distance(motion, uneven, scene.can.radius, start), lost)
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
-    along, samples = _way(times, setting)
-    with quiet(), Prepared.lent(scene, setting) as prepared:
+    along, samples = times, slice(None)
+    if setting.tolerance is None:
+        last = max(1, int(times[-1] / setting.timestep))
+        spread = setting.timestep * np.unique(np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64))
+        along = np.union1d(times, spread[spread <= times[-1]])
+        if len(along) > len(times):
+            samples = np.searchsorted(along, times)
+    with quiet(), Prepared.borrowed(scene, setting) as prepared:
         solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
-        way = prepared.coordinates(solution.states, along)
-    assert solution.record is not None
+        motion = prepared.coordinates(solution.states, along)
     return Run(
-        **{name: array[samples] for name, array in vars(way).items()},
+        **{name: array[samples] for name, array in vars(motion).items()},
         scene=scene,
         phi0=phi0,
         phi_dot0=phi_dot0,
         setting=setting,
-        steps=solution.record,
-        way=way,
-        estimate=solution.estimate,
-        method=solution.integrator,
+        solution=solution,
+        spread=motion,
     )
-
-
-def _way(times: np.ndarray, setting: Setting) -> tuple[np.ndarray, np.ndarray | slice]:
-    """Return the times [s] of the samples with those spread over the whole run, and which of them are the samples."""
-    end = times[-1]
-    if setting.tolerance is None:
-        last = max(1, int(end / setting.timestep))
-        spread = setting.timestep * np.unique(np.linspace(0, last, min(last, _KEPT) + 1).astype(np.int64))
-        spread = spread[spread <= end]
-    else:
-        spread = end * _SPREAD
-    along = np.union1d(times, spread)
-    return (along, slice(None)) if len(along) == len(times) else (along, np.searchsorted(along, times))

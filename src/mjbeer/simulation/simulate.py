@@ -3,16 +3,15 @@
 import math
 import warnings
 
-import mujoco
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, UntrustedWarning
+from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.trust import doubts
+from mjbeer.theory.liquid import about_run
+from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
 """Largest distance of a requested time from a multiple of the timestep h, over the time itself: it allows for rounding.
@@ -26,8 +25,8 @@ _MOST_STEPS = 1e12
 
 def simulate(
     scene: Scene,
-    duration: float,
-    phi0: float,
+    duration: float = DURATION,
+    phi0: float = PHI0,
     phi_dot0: float = 0.0,
     rolling: Rolling = "reduced",
     integrator: Integrator | None = None,
@@ -37,30 +36,29 @@ def simulate(
     friction: float = FRICTION,
     softness: Softness = TUNED,
 ) -> Run:
-    """Return the motion of a scene over a `duration` [s], stepped by MuJoCo in compiled code.
+    """Return the motion of a scene, stepped by MuJoCo in compiled code.
 
-    The motion starts at `phi0` [rad] with `phi_dot0` [rad/s], and the axis as in `exact`. `rolling`, `friction` and
-    `softness` are those of `build`. `integrator` is one of MuJoCo's five, RK4 if it is not given, "DOP853" or
-    "GaussJackson", methods of higher order around MuJoCo's forward dynamics. GaussJackson takes fewer evaluations for
-    errors below 1e-6 rad, and has only "reduced" rolling. `timestep` [s] is fixed. Samples are at every timestep, or at
-    `times` [s] from 0 on, which with MuJoCo's integrators must be multiples of the timestep. Samples at every timestep
-    end with the first multiple of the timestep at or after `duration`.
-
-    With a `tolerance` [rad] no integrator is given: mjbeer takes GaussJackson where it needs fewer evaluations, the
-    implicit method Radau, which is slower, where strong damping makes the motion stiff, and otherwise DOP853, which
-    chooses its own steps; the trajectory says which it was. The run is repeated until the error of phi and u/a over the
-    whole motion is below the tolerance, relative to the angle where that exceeds 1 rad; the trajectory has the
-    estimate. `timestep` is then the sampling interval, and what a contact is tuned to. The tolerance bounds the error
-    of integrating the model. The model itself is exact for "reduced" and "equality", but not for a soft contact.
-    Without a tolerance the trajectory estimates its error when it is asked for it.
+    Args:
+      scene: what rolls.
+      duration: how long [s]; samples at every timestep end with the first one at or after it.
+      phi0: angle of the load to the incline at the start [rad].
+      phi_dot0: its rate at the start [rad/s].
+      rolling: how the can is made to roll, as in `build`: "reduced", "equality" or "contact".
+      integrator: one of MuJoCo's five, "DOP853" or, in "reduced" without damping, "GaussJackson"; RK4 if none is given.
+      timestep: fixed timestep [s]; with a tolerance the interval between samples, and what a contact is tuned to.
+      tolerance: largest error of phi and u/a [rad], relative beyond 1 rad, to which the integrator and its steps are
+        then chosen. It is the error of integrating the model, which in a soft contact has one of its own.
+      times: increasing times of the samples [s], for MuJoCo's integrators multiples of the timestep.
+      friction: coefficient of friction of a contact.
+      softness: how soft the rolling constraint is; as hard as is stable if it is not given.
 
     A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
-    `UntrustedWarning`. A start beyond a whole turn gives an `AngleWarning`.
+    `UntrustedWarning`, one in which a liquid is no lump any more a `LiquidWarning`, and a start beyond a whole turn an
+    `AngleWarning`.
 
     Raises:
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model.
-      TemplateError: if the template of the scene is missing or not as it should be.
       DivergenceError: if the motion stops being finite.
       ToleranceError: if the tolerance is not reached.
     """
@@ -68,34 +66,17 @@ def simulate(
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0)
-    _check_start(scene, phi0, phi_dot0)
     setting = Setting.of(rolling, integrator, timestep, tolerance, friction, softness)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
-    if found := doubts(run.record, can_part=run.rolling == "contact"):
-        warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
+    if run.doubts:
+        warnings.warn("this run is not to be relied on: " + "; ".join(run.doubts), UntrustedWarning, stacklevel=2)
+    if about := about_run(scene, run.record.fastest_slip, run.record.no_lump_at):
+        warnings.warn(about, LiquidWarning, stacklevel=2)
     return run
-
-
-def _check_start(scene: Scene, phi0: float, phi_dot0: float) -> None:
-    """Check that MuJoCo would not call the start itself diverged.
-
-    Raises:
-      ParameterError: if a coordinate or a rate of the start is beyond mjMAXVAL.
-    """
-    u, u_dot = scene.start(phi0, phi_dot0)
-    radius, limit = scene.can.radius, mujoco.mjMAXVAL
-    rates = {"phi_dot0": (phi_dot0, "rad/s"), "u_dot": (u_dot, "m/s"), "roll_dot": (u_dot / radius, "rad/s")}
-    places = {"phi0": (phi0, "rad"), "u": (u, "m"), "roll": (u / radius, "rad")}
-    for name, (value, unit) in (places | rates).items():
-        if not abs(value) <= limit:
-            raise ParameterError(
-                f"{name} of the start must be between {-limit:g} and {limit:g} [{unit}], beyond which MuJoCo calls a "
-                f"state diverged (mjMAXVAL), got {value!r}"
-            )
 
 
 def _every_step(duration: float, timestep: float) -> np.ndarray:

@@ -1,19 +1,128 @@
-"""Steps a model with MuJoCo's own integrators, in compiled code."""
+"""What all steppers share, and the one that steps a model with MuJoCo's own integrators, in compiled code."""
 
 import copy
+import math
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
 
 import mujoco
 import numpy as np
+from numba import njit
+from numba.core import event
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
-from mjbeer.simulation.compiling import told
-from mjbeer.simulation.recorder import Recorder
-from mjbeer.simulation.stepping_kernel import advance
+from mjbeer.model.state import read
+from mjbeer.simulation.dop853_kernel import LARGEST, call
+from mjbeer.theory.record import Record
+from mjbeer.theory.scene import Scene
 
+Watcher = Callable[[np.ndarray, np.ndarray, np.ndarray | None], None]
+"""What a stepper shows its steps to: the times [s] at their ends, the states there, shape (steps, nq + nv), and, if the
+steps are so long that much happens within them, the time derivatives of the states."""
 _BLOCK = 4096
 """Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
 cache."""
+_COMPILING = "mjbeer: compiling this integrator for this machine, once: up to 4 s"
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The states of a run, and what it says of itself."""
+
+    states: np.ndarray
+    """States at the samples, shape (samples, nq + nv)."""
+    record: Record | None = None
+    """The extremes of all steps, if they were asked for."""
+    error: float | None = None
+    """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
+    integrator: str | None = None
+    """The name of the integrator, if it was chosen for a tolerance."""
+
+
+class Recorder:
+    """The record of a run of one model of a scene, a `Watcher`."""
+
+    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf) -> None:
+        """Begin the record of a run whose can would slip where rolling needs more than a coefficient `friction`."""
+        self._model, self._scene = model, scene
+        self.record = Record(scene, friction)
+        self._last: np.ndarray | None = None
+        size = model.nq + model.nv
+        unit = read(model, scene, np.eye(size), np.zeros(size))
+        self._rates = np.stack([unit.phi_dot, unit.u_dot] if scene.dissipates else [unit.phi_dot], axis=1)
+        """The weights of a state's components in phi_dot and, where it matters to the forces, in u_dot."""
+
+    def __call__(self, times: np.ndarray, states: np.ndarray, slopes: np.ndarray | None = None) -> None:
+        """Add the next steps; forces are looked for within those that come with slopes, too."""
+        motion = read(self._model, self._scene, states, times)
+        if slopes is None:
+            self.record.add(motion)
+            return
+        self.record.add_conserved(motion)
+        moved = [(motion.phi, motion.phi_dot), (motion.u, motion.u_dot)][: self._rates.shape[1]]
+        ends = np.stack([
+            times,
+            *(row for pair, gain in zip(moved, (slopes @ self._rates).T, strict=True) for row in (*pair, gain)),
+        ])  # fmt: skip
+        if self._last is not None:
+            ends = np.concatenate([self._last, ends], axis=1)
+        self._last = ends[:, -1:]
+        time, phi, phi_dot, phi_ddot, *axis = ends
+        u_dot = axis[1] if axis else 0.0
+        if len(time) > 1:
+            if axis:
+                u_dot = _within(time, *axis)[2]
+            time, phi, phi_dot = _within(time, phi, phi_dot, phi_ddot)
+        self.record.add_forces(time, phi, phi_dot, u_dot)
+
+
+# A polynomial of fifth degree over a step, from its change, rates and second derivatives at both ends, at parts of it.
+_PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
+_ENDS = np.array([[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]])
+_POWER, _TERMS = np.arange(1, 6), np.linalg.inv(_ENDS)
+_CHANGES, _RATES = _PART**_POWER @ _TERMS, _POWER * _PART ** (_POWER - 1) @ _TERMS
+
+
+def _within(
+    time: np.ndarray, place: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return times [s], a coordinate and its rate within steps, from its value and derivatives at the ends."""
+    step = np.diff(time)
+    rate, bend = step * np.stack([speed[:-1], speed[1:]]), step**2 * np.stack([acceleration[:-1], acceleration[1:]])
+    ends = np.stack([np.diff(place), rate[0], bend[0], rate[1], bend[1]], axis=1)
+    step = step[:, None]
+    times, within = time[:-1, None] + step * _PART.T, place[:-1, None] + ends @ _CHANGES.T
+    return times.ravel(), within.ravel(), (ends @ _RATES.T / step).ravel()
+
+
+class _Compiling(event.Listener):
+    """Says once, if somebody may see it, that numba compiles; what is read from its cache is not compiled."""
+
+    said = False
+
+    def on_start(self, _: Any) -> None:
+        from mjbeer.output import terminal
+
+        if not _Compiling.said and terminal.is_seen():
+            _Compiling.said = True
+            terminal.say(_COMPILING)
+
+    def on_end(self, _: Any) -> None:
+        """Nothing is said at the end."""
+
+
+@contextmanager
+def stepping(kernel: Any) -> Generator[None]:
+    """Let a compiled `kernel` step in the block: MuJoCo is quiet and reads no clock."""
+    with quiet(), untimed():
+        if kernel.overloads:  # it is compiled already; `signatures` would make a list of hashed types
+            yield
+        else:
+            with event.install_listener("numba:compile", _Compiling()):
+                yield
 
 
 class Stepper:
@@ -32,10 +141,8 @@ class Stepper:
         self._views = self._data.qpos, self._data.qvel, self._data.qacc
         self._states = np.empty((_BLOCK, model.nq + model.nv))
 
-    def run(self, start: np.ndarray, samples: np.ndarray, recorder: Recorder | None = None) -> np.ndarray:
-        """Return the states after given numbers of steps, shape (samples, nq + nv).
-
-        `start` has shape (nq + nv,), and `samples` are increasing numbers of steps. A `recorder` is shown all steps.
+    def run(self, start: np.ndarray, samples: np.ndarray, watch: Watcher | None = None) -> np.ndarray:
+        """Return the states after increasing numbers of steps, `samples`, as an array of shape (samples, nq + nv).
 
         Raises:
           DivergenceError: if the run stops being finite; the message names the time and MuJoCo's reason.
@@ -45,13 +152,13 @@ class Stepper:
         data.qpos[:], data.qvel[:] = start[:size], start[size:]
         states = np.empty((len(samples), len(start)))
         states[samples == 0] = start
-        if recorder:
-            recorder.add(np.zeros(1), start[None])
+        if watch:
+            watch(np.zeros(1), start[None], None)
         last = int(samples[-1])
-        with told(advance), quiet(), untimed():
+        with stepping(_advance):
             for first in range(0, last, _BLOCK):
                 block = self._states[: min(_BLOCK, last - first)]
-                count = advance(address("mj_step"), self._addresses, data._address, self._views, block)
+                count = _advance(address("mj_step"), self._addresses, data._address, self._views, block)
                 end, cause = (first + count) * self._timestep, _warnings(data)
                 if count < len(block):
                     raise DivergenceError(
@@ -61,8 +168,8 @@ class Stepper:
                     raise DivergenceError(f"the run diverged before t = {end:.6g} s: {cause}")
                 begin, after = np.searchsorted(samples, [first + 1, first + len(block) + 1])
                 states[begin:after] = block[samples[begin:after] - first - 1]
-                if recorder:
-                    recorder.add(self._timestep * np.arange(first + 1, first + len(block) + 1), block)
+                if watch:
+                    watch(self._timestep * np.arange(first + 1, first + len(block) + 1), block, None)
         return states
 
 
@@ -70,3 +177,23 @@ def _warnings(data: mujoco.MjData) -> str:
     """Return what MuJoCo warns of in a run; empty if it does not."""
     kinds = [kind for name, kind in mujoco.mjtWarning.__members__.items() if name != "mjNWARNING"]
     return "; ".join(mujoco.mju_warningText(kind, 0) for kind in kinds if data.warning[kind].number)
+
+
+@njit(cache=True, nogil=True)
+def _advance(function, models, data, views, states):
+    """Take a step for each row of `states`, fill it with the state at its end, and return the number of finite rows.
+
+    `function` is the address of mj_step, `models` has those of the models with which the parts of each step are taken,
+    `data` is that of their common data, and `views` are its qpos, qvel and qacc.
+    """
+    qpos, qvel, qacc = views
+    size = qpos.size
+    for row in range(len(states)):
+        for model in models:
+            call(function, model, data)
+        for i in range(size):
+            states[row, i] = qpos[i]
+            states[row, size + i] = qvel[i]
+            if not (abs(qpos[i]) < LARGEST and abs(qvel[i]) < LARGEST and abs(qacc[i]) < LARGEST):
+                return row
+    return len(states)

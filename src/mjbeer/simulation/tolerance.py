@@ -1,22 +1,41 @@
 """Integration to a global tolerance, with an error estimate from the distance of two runs."""
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 
 import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
-from mjbeer.model.setting import DOP853
-from mjbeer.simulation import radau, residual
-from mjbeer.simulation.comparison import NUDGE, ROUNDING_OVER_NUDGE, SAFETY_BY_CHANCE, Comparison, few, safety
+from mjbeer.model import check
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON
+from mjbeer.model.state import read
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.gauss_jackson_pair import GaussJacksonPair
-from mjbeer.simulation.radau import Radau
-from mjbeer.simulation.recorder import Recorder
-from mjbeer.simulation.solution import Solution
-from mjbeer.theory.losses import stiffest
+from mjbeer.simulation.dop853_kernel import LARGEST
+from mjbeer.simulation.gauss_jackson import GaussJackson, plan
+from mjbeer.simulation.stepping import Recorder, Solution, Watcher
+from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import angle_distance
+
+_SAFETY = 1.5
+"""Error estimate over the distance of two runs."""
+_SAFETY_BY_CHANCE = 3.0
+"""The same where two runs may agree by chance: from the third run on, and for tolerances outside `_ASYMPTOTIC`, where
+rounding or large steps hide the method's order."""
+_ASYMPTOTIC = (1e-11, 1e-5)
+"""Range of tolerances in which the method's order shows: the finer run has an eighth of the other one's error."""
+_NUDGE = 4e-14
+"""Distance of the first run's start from the given start, relative to `scales`. The distance of the first two runs then
+includes the effect of a small change of the start, which is large beside a separatrix."""
+_ROUNDING_OVER_NUDGE = 3 / 40
+"""Estimated effect of rounding over the effect of the nudge: the rounding of a run is like a nudge of some 1e-15, with
+a safety factor of 3."""
+_CANCELLED = 0.1
+"""That rounding over what MuJoCo loses of a small inertia, as a share of the larger ones that cancel in it."""
 
 _FIRST = 0.07
 """Local tolerance of the first run over the global tolerance. Over some ten periods the local errors add up to 2-20
@@ -32,117 +51,268 @@ _STALLED = 0.75
 """Distance of two runs over that of the two runs before, above which the finer runs were no progress."""
 _PATIENCE = 2
 """Number of times in a row that finer runs may be no progress: with too large steps their distance is arbitrary."""
+_EVALUATIONS = 5_000_000
+"""Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
+_STABLE = 6.4 / 12
+"""Longest step of DOP853 over the time in which damping brings can and load together, for each of its evaluations."""
+
+_DRIFT = 0.5
+"""Error of phi over that which the drift of the swing's energy implies at most: the rate of a rotation goes with the
+square root of its energy, and the frequency of a swing depends on its energy less than that."""
+_FAR = 4.0
+"""Beside a barrier the frequency depends on the energy more, and _DRIFT grows: from where the energy is as near to that
+of the barrier as a quarter of the largest kinetic energy (measured for swings of 2.85 rad: 2 instead of 0.5)."""
+_NEAREST = 10.0
+"""How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
+runs shows how much the motion amplifies."""
 _NO_LOSS = 1e-2
 """Relative error of the model's accelerations over the tolerance, below which its effect is not looked at: it would
 have to grow a hundredfold."""
 _LOSS = 2.0
 """Estimated effect of that error over the effect of an equal nudge of the start (measured: up to 1.8)."""
-_STIFF = 3e5
-"""Duration over the time in which damping brings can and load together, from which on a run takes an implicit method.
-DOP853 has no step that is longer than 6.4 of these times, and would take a million evaluations or more."""
-_STIFFEST = 1e12
-"""Largest inverse of that time [1/s]. A torque changes by as much, times the rounding of a rate, 1e-15 rad/s or more,
-over the inertia: a thousandth of a frozen load's accelerations, 100 rad/s^2."""
-_EVALUATIONS = 5_000_000
-"""Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
+
+_LOOSE = 3e-5
+"""Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
+_PILOT = 1e-4
+"""Local tolerance of the run of DOP853 that shows how long a timestep of Gauss-Jackson may be."""
+_ASTRAY = 0.1
+"""Largest distance [rad], relative beyond 1 rad, of that run from those of Gauss-Jackson at the end."""
+_FINER = 1.2
+"""Timestep of one run of Gauss-Jackson over that of the next."""
+_SHARED = 5
+"""Number of timesteps after which those of one run of Gauss-Jackson end with one of the next, which has six."""
+_GAIN = 9.0
+"""Error of one run of Gauss-Jackson over that of the next, 1.2^12."""
+_CHEAPER = 0.8
+"""Largest number of evaluations of Gauss-Jackson over those of DOP853 to the tolerance, at which it is tried: it takes
+two runs that are nearly alike, where the first of two runs of DOP853 takes three quarters of the second one."""
+
+
+class _Ends:
+    """Keeps the ends of all steps of a run, and shows them to another `Watcher`, too."""
+
+    def __init__(self, further: Watcher | None = None) -> None:
+        self._further, self._times, self._states = further, [np.zeros(0)], list[np.ndarray]()
+
+    def __call__(self, times: np.ndarray, states: np.ndarray, slopes: np.ndarray | None) -> None:
+        self._times.append(times.copy())
+        self._states.append(states.copy())
+        if self._further:
+            self._further(times, states, slopes)
+
+    @property
+    def times(self) -> np.ndarray:
+        return np.concatenate(self._times)
+
+    @property
+    def states(self) -> np.ndarray:
+        return np.concatenate(self._states)
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """A run that is compared with the one before: at all samples, and at the ends of the steps of the one before.
+
+    The motion is looked at everywhere in this way, whatever samples were asked for: what is brief takes short steps.
+    """
+
+    states: np.ndarray
+    """States at the samples."""
+    ends: np.ndarray
+    """Times [s] at which the next run is compared with this one, besides the samples."""
+    at_ends: np.ndarray
+    record: Record | None
+    distance: float = math.inf
+    """Largest distance in phi and u/a [rad] from the run before, relative beyond 1 rad."""
 
 
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData | None = None) -> None:
-        self._model, self._scene = model, scene
-        self._explicit, self._compare = Integrator(model, data), Comparison(model, scene)
-        self._integrator: Integrator | Radau = self._explicit
+        self._model, self._scene, self._dop853 = model, scene, Integrator(model, data)
+        self._scale, form = scales(model, scene), scene.oscillator
+        # phi and u/a are sums of components of the state.
+        unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
+        self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
+        rounding = max(1.0, _CANCELLED * form.swing / form.base)
+        self._nudge, self._smallest = _NUDGE * rounding, _SMALLEST * rounding
         try:
-            self._pair: GaussJacksonPair | None = GaussJacksonPair(
-                model, scene, explicit=self._explicit, comparison=self._compare, limit=_EVALUATIONS
-            )
+            self._gauss_jackson: GaussJackson | None = GaussJackson(model, self._dop853)
         except UnsupportedError:
-            self._pair = None
+            self._gauss_jackson = None
 
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float = math.inf) -> Solution:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
-        Each run has a local tolerance of an eighth of that of the run before, and the first starts `NUDGE` from
+        Each run has a local tolerance of an eighth of that of the run before, and the first starts a nudge from
         `start`. The error estimate is a multiple of the distance of the last two runs, and no less than what the drift
         of energy and momentum implies: over many turns the errors of two runs may be the same by chance. From the third
         run on an eighth of the distance before counts if that is larger. None of these shows the effect of rounding; it
         is estimated by further runs where it may matter.
 
-        Where Gauss-Jackson needs fewer evaluations, two of its runs are tried first. Otherwise all runs are
-        DOP853's, or Radau's if the motion is stiff.
-
+        Where Gauss-Jackson needs fewer evaluations, two of its runs are tried first. Otherwise all runs are DOP853's.
         The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
-        stiff = self._is_stiff(times[-1], tolerance)
-        self._integrator = Radau(self._explicit) if stiff else self._explicit
-        pair, local = self._pair, _FIRST * tolerance / _RATIO
-        if pair is not None and (swift := pair.solve(start, times, tolerance, local, friction)) is not None:
-            return swift
-        local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * _SMALLEST), 0
-        chosen = few(len(times))
-        coarse = self._run(self._compare.aside(start), times[chosen], local=local, tolerance=tolerance)
-        fine, record = self._recorded(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
-        first = before = self._compare.distance(coarse, fine[chosen], start)
-        estimate, drift, further = safety(tolerance) * first, self._drift(record), False
-        while max(estimate, drift) > tolerance:
-            if estimate <= tolerance:  # the drift may be that of a model which no smaller steps can cure
-                self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
-            local, further = local / _RATIO, True
-            if local < _RATIO * _SMALLEST:
-                apart = f"two runs at the limit of rounding differ by {before:.2g} rad"
-                raise _not_reached(tolerance, apart if estimate > tolerance else _lost(drift))
-            coarse = fine[chosen]
-            fine, record = self._recorded(start, times, local=local / _RATIO, tolerance=tolerance, friction=friction)
-            distance = self._compare.distance(coarse, fine[chosen], start)
-            drift_before, drift = drift, self._drift(record)
-            estimate = SAFETY_BY_CHANCE * max(distance, before / _RATIO)
-            progress = distance <= _STALLED * before if estimate > tolerance else drift <= _STALLED * drift_before
-            stalled = 0 if progress else stalled + 1
-            if max(estimate, drift) > tolerance and stalled > _PATIENCE:
-                apart = (
-                    f"two runs differ by {before:.2g} rad, and finer ones by {distance:.2g} rad; the motion is not "
-                    "smooth enough, or rounding has the upper hand"
-                )
-                raise _not_reached(tolerance, apart if estimate > tolerance else _lost(drift))
-            before = distance
-        local /= _RATIO
-        rounding = ROUNDING_OVER_NUDGE * first if further else 0.0  # the first distance includes the nudge
-        if rounding > tolerance:
-            rounding = self._rounding_effect(fine, start=start, times=times, local=local, tolerance=tolerance)
-        loss = self._loss(fine, start=start, times=times, local=local, tolerance=tolerance)
-        return Solution(fine, max(estimate, drift, rounding, loss), record, radau.NAME if stiff else DOP853)
-
-    def _is_stiff(self, duration: float, tolerance: float) -> bool:
-        """Return whether damping makes the motion over a `duration` [s] stiff.
-
-        Raises:
-          ToleranceError: if it is too stiff for any method; the `tolerance` is only for the message.
-        """
-        rate = stiffest(self._scene)
-        if rate * duration <= _STIFF:
-            return False
-        if rate > _STIFFEST:
+        rate = _stiffest(self._scene)
+        if rate * times[-1] > _STABLE * _EVALUATIONS:
             raise _not_reached(
                 tolerance,
-                f"damping would bring can and load together {rate:.2g} times a second (at most {_STIFFEST:g}), and "
-                "rounding of the slip rate hides its torque; a frozen load is their limit",
+                f"damping brings can and load together {rate:.2g} times a second, and steps as short as that would be "
+                f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
+                "limit",
             )
-        return True
+        found = None
+        if self._gauss_jackson is not None and tolerance <= _LOOSE:
+            found = self._by_gauss_jackson(self._gauss_jackson, start, times, tolerance, friction)
+        return self._by_dop853(start, times, tolerance, friction) if found is None else found
+
+    def _by_gauss_jackson(
+        self, method: GaussJackson, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
+    ) -> Solution | None:
+        """Return the solution, or None if it is not within the `tolerance` [rad], or DOP853 is cheaper.
+
+        A coarse run of DOP853 shows how long a timestep may be, and that two runs have not gone the same wrong way.
+        """
+        pilot = _Ends()
+        try:
+            (end,) = self._dop853.run(
+                start, times[-1:], tolerance=_PILOT, scale=self._scale, limit=_EVALUATIONS, watch=pilot
+            )
+            timestep, evaluations = plan(pilot.times, tolerance, _PILOT)
+            local = _FIRST * tolerance / _RATIO
+            if not evaluations < _CHEAPER * self._dop853.evaluations * (_PILOT / local) ** (1 / 8):
+                return None
+            coarse = self._take(partial(method.run, timestep=timestep), self._aside(start), times, stride=_SHARED)
+            safety, rounding = _safety(tolerance), 0.0
+            for further in (False, True):
+                timestep /= _FINER
+                fine = self._take(
+                    partial(method.run, timestep=timestep), start, times, coarse, friction, stride=_SHARED
+                )
+                assert fine.record is not None
+                if not further:
+                    rounding = _ROUNDING_OVER_NUDGE * fine.distance  # the first distance includes the nudge
+                error = max(safety * fine.distance, self._drift(fine.record), rounding)
+                if error <= tolerance and self._distance(end[None], fine.states[-1:], start) <= _ASTRAY:
+                    return Solution(fine.states, fine.record, error, GAUSS_JACKSON)
+                if _SAFETY_BY_CHANCE * fine.distance > _GAIN * tolerance:  # the next run would not reach it
+                    return None
+                coarse, safety = fine, _SAFETY_BY_CHANCE
+        except DivergenceError:
+            pass
+        return None
+
+    def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
+        """Return the solution by ever finer runs of DOP853."""
+        local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest), 0
+        run = partial(self._integrate, times=times, tolerance=tolerance)
+        coarse = run(self._aside(start), local=local)
+        local /= _RATIO
+        fine = run(start, local=local, before=coarse, friction=friction)
+        assert fine.record is not None
+        first, further = fine.distance, False
+        error, drift = _safety(tolerance) * first, self._drift(fine.record)
+        while max(error, drift) > tolerance:
+            if error <= tolerance:  # the drift may be that of a model which no smaller steps can cure
+                self._loss(fine.states, start=start, times=times, local=local, tolerance=tolerance)
+            if local < _RATIO * self._smallest:
+                raise _not_reached(
+                    tolerance,
+                    f"two runs at the limit of rounding differ by {fine.distance:.2g} rad"
+                    if error > tolerance
+                    else _lost(drift),
+                )
+            coarse, local, drift_before, further = fine, local / _RATIO, drift, True
+            fine = run(start, local=local, before=coarse, friction=friction)
+            assert fine.record is not None
+            error, drift = _SAFETY_BY_CHANCE * max(fine.distance, coarse.distance / _RATIO), self._drift(fine.record)
+            now, then = (fine.distance, coarse.distance) if error > tolerance else (drift, drift_before)
+            stalled = 0 if now <= _STALLED * then else stalled + 1
+            if max(error, drift) > tolerance and stalled > _PATIENCE:
+                raise _not_reached(
+                    tolerance,
+                    f"two runs differ by {coarse.distance:.2g} rad, and finer ones by {fine.distance:.2g} rad; the "
+                    "motion is not smooth enough, or rounding has the upper hand"
+                    if error > tolerance
+                    else _lost(drift),
+                )
+        rounding = _ROUNDING_OVER_NUDGE * first if further else 0.0  # the first distance includes the nudge
+        if rounding > tolerance:
+            rounding = self._rounding_effect(fine, start=start, times=times, local=local, tolerance=tolerance)
+        loss = self._loss(fine.states, start=start, times=times, local=local, tolerance=tolerance)
+        return Solution(fine.states, fine.record, max(error, drift, rounding, loss), DOP853)
+
+    def _aside(self, start: np.ndarray, distance: float | None = None) -> np.ndarray:
+        """Return a start at a `distance` from `start`, relative to `scales`; that of the nudge if none is given."""
+        return start + (self._nudge if distance is None else distance) * self._scale
+
+    def _distance(self, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
+        """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
+        angles, truth, first = coarse @ self._angles, fine @ self._angles, start @ self._angles
+        return max(angle_distance(angles[:, column], truth[:, column], float(first[column])) for column in (0, 1))
 
     def _drift(self, record: Record) -> float:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum implies.
 
-        What damping takes in the long steps of an implicit method is not known to as many digits as these have.
+        A contact has no such drift to judge by: it takes energy, and gives it back.
         """
-        return 0.0 if isinstance(self._integrator, Radau) else self._compare.drift(record)
+        if self._model.npair:
+            return 0.0
+        gap = _FAR * record.to_barrier
+        share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST
+        return max(_DRIFT * share * record.swing_error, record.axis_error)
+
+    def _take(
+        self,
+        method: Callable[..., np.ndarray],
+        start: np.ndarray,
+        times: np.ndarray,
+        before: _Run | None = None,
+        friction: float | None = None,
+        stride: int = 1,
+    ) -> _Run:
+        """Return a run by a method, compared with the run `before`; with a record if there is a `friction`.
+
+        The next run is compared with it at the end of each step whose number is a multiple of `stride`.
+        """
+        recorder = None if friction is None else Recorder(self._model, self._scene, friction)
+        watch = _Ends(recorder)
+        if before is None:
+            states, distance = method(start, times, watch=watch), math.inf
+        else:
+            along = np.concatenate([times, before.ends])
+            order, found = np.argsort(along, kind="stable"), np.empty((len(along), len(start)))
+            found[order] = method(start, along[order], watch=watch)
+            states, at_ends = found[: len(times)], found[len(times) :]
+            distance = self._distance(before.states, states, start)
+            if len(at_ends):
+                distance = max(distance, self._distance(before.at_ends, at_ends, start))
+        ends, record = watch.times[stride::stride], None if recorder is None else recorder.record
+        count = int(np.searchsorted(ends, times[-1]))
+        return _Run(states, ends[:count], watch.states[stride::stride][:count], record, distance)
+
+    def _integrate(
+        self,
+        start: np.ndarray,
+        times: np.ndarray,
+        local: float,
+        tolerance: float,
+        before: _Run | None = None,
+        friction: float | None = None,
+    ) -> _Run:
+        """Return a run of DOP853 with a `local` tolerance; the `tolerance` is only for the error message."""
+        method = partial(self._dop853.run, tolerance=local, scale=self._scale, limit=_EVALUATIONS)
+        try:
+            return self._take(method, start, times, before, friction)
+        except DivergenceError as error:
+            raise _not_reached(tolerance, str(error)) from error
 
     def _rounding_effect(
-        self, fine: np.ndarray, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
+        self, fine: _Run, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
     ) -> float:
         """Return the estimated effect of rounding on phi and u/a [rad], from two runs that start beside `start`.
 
@@ -151,13 +321,9 @@ class Solver:
         Raises:
           ToleranceError: if the effect is above `tolerance` [rad].
         """
-        distances, chosen = [], few(len(times))
-        for side in (1, -1):
-            nudged = self._run(
-                self._compare.aside(start, side * NUDGE), times[chosen], local=local, tolerance=tolerance
-            )
-            distances.append(self._compare.distance(nudged, fine[chosen], start))
-        effect = ROUNDING_OVER_NUDGE * max(distances)
+        starts = (self._aside(start, side * self._nudge) for side in (1, -1))
+        distances = [self._integrate(each, times, local, tolerance, fine).distance for each in starts]
+        effect = _ROUNDING_OVER_NUDGE * max(distances)
         if effect > tolerance:
             raise _not_reached(tolerance, f"the rounding of the start grows to {effect:.2g} rad")
         return effect
@@ -173,13 +339,12 @@ class Solver:
         """
         if not self._model.neq:
             return 0.0
-        chosen = np.linspace(0, len(fine) - 1, min(residual.STATES, len(fine))).astype(int)
-        _, loss = residual.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
+        chosen = np.linspace(0, len(fine) - 1, min(check.STATES, len(fine))).astype(int)
+        _, loss = check.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
         if loss <= _NO_LOSS * tolerance:
             return 0.0
-        chosen = few(len(times))
-        aside = self._run(self._compare.aside(start, min(loss, 1.0)), times[chosen], local=local, tolerance=tolerance)
-        effect = _LOSS * self._compare.distance(aside, fine[chosen], start)
+        aside = self._integrate(self._aside(start, min(loss, 1.0)), times, local, tolerance)
+        effect = _LOSS * self._distance(aside.states, fine, start)
         if effect > tolerance:
             raise _not_reached(
                 tolerance,
@@ -188,26 +353,10 @@ class Solver:
             )
         return effect
 
-    def _recorded(
-        self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, friction: float
-    ) -> tuple[np.ndarray, Record]:
-        """Return the states of one run of DOP853 or Radau with a `local` tolerance, and its record."""
-        recorder = Recorder(self._model, self._scene, friction)
-        return self._run(start, times, local=local, tolerance=tolerance, recorder=recorder), recorder.record
 
-    def _run(
-        self, start: np.ndarray, times: np.ndarray, local: float, tolerance: float, recorder: Recorder | None = None
-    ) -> np.ndarray:
-        """Return the states of one run of DOP853 or Radau with a `local` tolerance.
-
-        The `tolerance` is only for the error message.
-        """
-        try:
-            return self._integrator.run(
-                start, times, tolerance=local, scale=self._compare.scale, limit=_EVALUATIONS, recorder=recorder
-            )
-        except DivergenceError as error:
-            raise _not_reached(tolerance, str(error)) from error
+def _safety(tolerance: float) -> float:
+    """Return the error estimate of a tolerance [rad] over the distance of the first two runs."""
+    return _SAFETY if _ASYMPTOTIC[0] < tolerance < _ASYMPTOTIC[1] else _SAFETY_BY_CHANCE
 
 
 def _not_reached(tolerance: float, reason: str) -> ToleranceError:
@@ -219,6 +368,29 @@ def _lost(drift: float) -> str:
         f"two runs agree, but energy or momentum drift like an error of {drift:.2g} rad; the model loses in rounding "
         "what moves it"
     )
+
+
+def _stiffest(scene: Scene) -> float:
+    """Return the largest rate at which damping brings can and load together [1/s], at the slip rates that may last.
+
+    The weight of can and load, pulling at the rim, drives them apart at most at these.
+    """
+    if not scene.damping_law:
+        return 0.0
+    slip = min(scene.damping_law.rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
+    angles = np.linspace(0, math.pi, 91)
+    return float(stiffness(scene, angles, np.full_like(angles, slip), np.zeros_like(angles)).max())
+
+
+def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
+    """Return the size of each component of the state below which its error counts absolutely, shape (nq + nv,).
+
+    It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
+    """
+    radius = scene.can.radius
+    positions = np.where(model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE, radius, 1.0)
+    rate = np.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
+    return np.concatenate([positions, positions * rate])
 
 
 def tuning(scene: Scene, rolling: str, timestep: float) -> float:

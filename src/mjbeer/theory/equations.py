@@ -98,6 +98,20 @@ def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | flo
     return u_dot / scene.can.radius - phi_dot
 
 
+def stiffness(
+    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+) -> np.ndarray:
+    """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J).
+
+    J_f is the inertia against which can and load turn as one.
+    """
+    radius, moment = scene.can.radius, scene.load.mass * scene.load.offset
+    mass = scene.mass + scene.can.inertia / radius**2
+    frozen = mass * radius**2 + scene.load.inertia + moment * (scene.load.offset - 2 * radius * np.cos(phi))
+    slope = scene.damping_law.slope(slip_rate(scene, phi_dot, u_dot))
+    return slope * frozen / (radius**2 * mass * scene.oscillator.inertia(phi)) + 2 * scene.drag * np.abs(u_dot) / mass
+
+
 def rolling_forces(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> Forces:

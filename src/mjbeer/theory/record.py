@@ -1,15 +1,31 @@
-"""What a motion has shown of itself over all its steps: running extremes, in memory that does not grow with it."""
+"""What a motion has shown of itself over all its steps, and whether that is a reason not to trust it."""
 
 import math
 
 import numpy as np
 
-from mjbeer.theory.balance import Balance
-from mjbeer.theory.equations import Coordinates, kinetic_energy, potential_energy, rolling_forces
-from mjbeer.theory.losses import followed
+from mjbeer.theory.equations import (
+    Coordinates,
+    accelerations,
+    axis_without_swing,
+    dissipation,
+    energy,
+    kinetic_energy,
+    potential_energy,
+    rolling_forces,
+    slip_rate,
+    steady_acceleration,
+)  # fmt: skip
+from mjbeer.theory.liquid import lost_at
 from mjbeer.theory.motion import energy_to_barrier
 from mjbeer.theory.scene import Scene
 
+ERROR = 1e-2
+"""Largest estimated error of phi and u/a [rad], relative beyond 1 rad, that is trusted: half a degree."""
+SLIP = 1e-3
+"""Largest slip, in radii, that is trusted: a milliradian of roll angle."""
+LIFT = 1e-3
+"""Largest gap or penetration between can and incline, in radii, that is trusted."""
 _SMALL_SWING = 1e-2
 """Smallest energy with which a drift is compared, relative to the depth m g b of the potential well: that of a swing
 of 0.14 rad. A motion that hardly swings would otherwise divide rounding by nearly nothing."""
@@ -21,8 +37,7 @@ is trusted, is still many times the rounding of the kinetic energy."""
 class Record:
     """The largest slip, lift, drift and rate of a motion so far, and when rolling stopped being possible.
 
-    A motion is added in pieces, in the order of time. The first sample of the first piece is what later ones are
-    compared with. The attributes are those of all pieces together.
+    A motion is added in pieces, in the order of time. Its first sample is what later ones are compared with.
     """
 
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
@@ -36,6 +51,8 @@ class Record:
         """Largest angle by which the load has turned from its start [rad]."""
         self.rolled = 0.0
         """Largest distance of the axis from its start [m]."""
+        self.path = 0.0
+        """Angle that the load has covered, forth and back [rad]."""
         self.fastest = 0.0
         """Largest rate of the load, |phi_dot| [rad/s]."""
         self.lowest_normal = math.inf
@@ -46,26 +63,28 @@ class Record:
         """Time [s] at which N < 0 or |F| > friction N for the first time, interpolated; infinity if it never was."""
         self.swing = 0.0
         """Largest kinetic energy of the swing, J phi_dot^2 / 2 [J]."""
-        self._by_rates = self._by_angles = 0.0
-        self._kinetic = self._energy_change = self._swing_change = self._axis_change = 0.0
+        self.fastest_slip = 0.0
+        """Largest rate between can and load in a scene with damping, |u_dot/a - phi_dot| [rad/s]."""
+        self.no_lump_at = math.inf
+        """First time at which the wall of a can with a liquid is too fast for a lump [s]; infinite if there is none."""
+        self.axis_drift = 0.0
+        """Largest distance of the axis from where the momentum at the start has it [m]; 0 with damping or drag."""
+        self._kinetic = self._energy_change = self._work = 0.0
+        self._swing_drift = self._largest_swing_drift = 0.0
         self._first: Coordinates | None = None
-        self._at_first: tuple[float, float] | None = None
         self._last: Coordinates | None = None
-        self._last_margin: tuple[float, float] | None = None
-        self._balance = Balance(scene) if scene.dissipates else None
+        self._before: tuple[float, float] | None = None
+        self._all_steps = True
 
     @classmethod
     def of(cls, motion: Coordinates, scene: Scene, friction: float = math.inf) -> "Record":
         """Return the record of a motion whose samples are all there is; they may be in any order.
 
-        With damping or drag, samples that are too far apart do not tell what the motion loses between them. Its drift
-        is then not known, and taken for none.
+        They do not tell what damping and drag take between them, so that the energy is then not looked at.
         """
         record, order = cls(scene, friction), np.argsort(motion.time)
-        ordered = Coordinates(**{name: getattr(motion, name)[order] for name in Coordinates.__dataclass_fields__})
-        if record._balance is not None and not followed(scene, ordered):
-            record._balance = None
-        record.add(ordered)
+        record._all_steps = False
+        record.add(Coordinates(**{name: getattr(motion, name)[order] for name in Coordinates.__dataclass_fields__}))
         return record
 
     def add(self, motion: Coordinates) -> None:
@@ -75,30 +94,39 @@ class Record:
 
     def add_conserved(self, motion: Coordinates) -> None:
         """Add the next piece of the motion to everything but what rests on forces."""
-        scene = self.scene
-        if self._first is None:
-            self._first = _piece(motion, 0)
-        if self._last is None:
-            self._last = self._first
+        scene, radius = self.scene, self.scene.can.radius
+        if self._first is None or self._last is None:
+            self._first = self._last = _piece(motion, 0)
         first, last = self._first, self._last
-        slid = motion.u - scene.can.radius * motion.roll
-        self.slip = _largest(self.slip, slid - (first.u - scene.can.radius * first.roll))
-        self.lift = _largest(self.lift, motion.lift)
+        slid = (motion.u - first.u) - radius * (motion.roll - first.roll)
+        self.slip, self.lift = _largest(self.slip, slid), _largest(self.lift, motion.lift)
         self.turned = _largest(self.turned, motion.phi - first.phi)
         self.rolled = _largest(self.rolled, motion.u - first.u)
-        rates = np.abs(motion.phi_dot)
-        self.fastest = _largest(self.fastest, rates)
-        time, phi = np.append(last.time, motion.time), np.append(last.phi, motion.phi)
-        self._by_rates += float(np.trapezoid(np.append(np.abs(last.phi_dot), rates), time))
-        self._by_angles += float(np.abs(np.diff(phi)).sum())
-        self._add_energies(motion, first)
-        if not scene.dissipates:
-            self._axis_change = _largest(self._axis_change, axis_drift(scene, motion, first))
-        elif self._balance is not None:
-            self._balance.add(motion, last)
-            self._energy_change, self._swing_change = self._balance.energy_change, self._balance.swing_change
-            self._axis_change = self._balance.axis_change
-        self._last = _piece(motion, -1)
+        self.fastest = _largest(self.fastest, motion.phi_dot)
+        covered = np.abs(np.diff(motion.phi, prepend=last.phi))
+        self.path += float(covered.sum())
+        kinetic, form = kinetic_energy(scene, motion), scene.oscillator
+        swing = form.inertia(motion.phi) * motion.phi_dot**2 / 2
+        self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
+        self._last, change = _piece(motion, -1), kinetic + potential_energy(scene, motion) - energy(scene, first)
+        if scene.dissipates:
+            self._add_losses(motion, last, change)
+            return
+        self._energy_change = _largest(self._energy_change, change)
+        swing -= form.inertia(first.phi) * first.phi_dot**2 / 2 + form.drop(motion.phi, first.phi)
+        drift = self._swing_drift + np.cumsum(swing * covered)
+        self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
+        self.axis_drift = _largest(self.axis_drift, axis_drift(scene, motion, first))
+
+    def _add_losses(self, motion: Coordinates, last: Coordinates, change: np.ndarray) -> None:
+        """Add the next piece of a motion with damping or drag, and the `change` of its energy [J]."""
+        scene = self.scene
+        self.fastest_slip = _largest(self.fastest_slip, slip_rate(scene, motion.phi_dot, motion.u_dot))
+        if scene.damping_law.holds is not None:
+            self.no_lump_at = min(self.no_lump_at, lost_at(scene, motion.time, motion.u_dot))
+        if self._all_steps:
+            work = self._work + np.cumsum(_work(scene, motion, last))
+            self._work, self._energy_change = float(work[-1]), _largest(self._energy_change, change + work)
 
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
         """Add the normal and friction forces that rolling needs at times [s] in the states of the motion there.
@@ -115,53 +143,47 @@ class Record:
             margin = np.minimum(margin, self.friction * forces.normal - np.abs(forces.friction))
         if margin.min() < 0:
             after = int(np.argmax(margin < 0))
-            before = (float(time[after - 1]), float(margin[after - 1])) if after else self._last_margin
-            self.fails_at = _crossing(before, (float(time[after]), float(margin[after])))
-        self._last_margin = float(time[-1]), float(margin[-1])
-
-    @property
-    def path(self) -> float:
-        """Return the angle that the load has covered, forth and back [rad]."""
-        return float(np.maximum(self._by_rates, self._by_angles))
+            later, below = float(time[after]), float(margin[after])
+            before = (float(time[after - 1]), float(margin[after - 1])) if after else self._before
+            earlier, above = before or (later, 0.0)
+            self.fails_at = earlier + above / (above - below) * (later - earlier)
+        self._before = float(time[-1]), float(margin[-1])
 
     @property
     def energy_drift(self) -> float:
         """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
-        With damping or drag it is the change of the energy and the work that they have taken together.
-
-        The total energy includes slip and lift, and is what users see. Warnings rest on `swing_drift` instead, where
-        the energy of a can that runs away down the incline cannot hide a drift. The denominator is at least
-        `_SMALL_SWING` of the well's depth, and at least `_ROUNDING` of the kinetic energy, which matters for a
+        With damping or drag it is the change of the energy and the work that they have taken together, and needs a
+        record of all steps. It includes slip and lift, and is what users see; the implied error rests on the energy of
+        the swing instead, where that of a can that runs away down the incline cannot hide a drift. The denominator is
+        at least `_SMALL_SWING` of the well's depth, and at least `_ROUNDING` of the kinetic energy, which matters for a
         balanced load.
         """
         depth = self.scene.oscillator.depth
         return _ratio(self._energy_change, max(self.swing, _SMALL_SWING * depth, _ROUNDING * self._kinetic))
 
     @property
-    def swing_drift(self) -> float:
-        """Return the largest change of the swing's energy J phi_dot^2 / 2 + V over its largest kinetic energy.
-
-        It is a change that damping and drag do not explain.
-        """
-        return _ratio(self._swing_change, max(self.swing, _SMALL_SWING * self.scene.oscillator.depth))
-
-    @property
     def implied_error(self) -> float:
         """Return the error of phi or u/a [rad], relative beyond 1 rad, that the drift of energy and momentum implies.
 
-        Unlike the error itself, neither drift grows where only the phase is off.
+        Unlike the error itself, neither drift grows where only the phase is off. With damping or drag it is 0.
         """
         return max(self.swing_error, self.axis_error)
 
     @property
     def swing_error(self) -> float:
-        """Return the error of phi [rad], relative beyond 1 rad, that the drift of the swing's energy implies at most.
+        """Return the error of phi [rad], relative beyond 1 rad, that the drift of the swing's energy implies.
 
         A relative error of the swing's energy is about as large a relative error of its speed or its period, and so of
-        the path that phi has covered.
+        the path that phi covers meanwhile.
         """
-        return self.swing_drift * self.path / max(1.0, self.turned)
+        least = max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
+        return _ratio(self._largest_swing_drift, least) / max(1.0, self.turned)
+
+    @property
+    def axis_error(self) -> float:
+        """Return the error of u/a [rad], relative beyond 1 rad, that the drift of the momentum implies."""
+        return self.axis_drift / max(self.scene.can.radius, self.rolled)
 
     @property
     def to_barrier(self) -> float:
@@ -169,30 +191,41 @@ class Record:
 
         With damping or drag the energy falls, or is driven, and no barrier has a fixed distance from it.
         """
-        if self.scene.dissipates:
+        if self.scene.dissipates or self._first is None:
             return math.inf
-        assert self._first is not None, "a record without a motion"
         start = float(self._first.phi[0]), float(self._first.phi_dot[0])
         return energy_to_barrier(self.scene.oscillator, *start)
 
-    @property
-    def axis_error(self) -> float:
-        """Return the error of u/a [rad], relative beyond 1 rad, that the drift of the momentum implies."""
-        return self._axis_change / max(self.scene.can.radius, self.rolled)
 
-    def _add_energies(self, motion: Coordinates, first: Coordinates) -> None:
-        oscillator, kinetic = self.scene.oscillator, kinetic_energy(self.scene, motion)
-        swing = oscillator.inertia(motion.phi) * motion.phi_dot**2 / 2
-        self._kinetic = _largest(self._kinetic, kinetic)
-        self.swing = _largest(self.swing, swing)
-        if self.scene.dissipates:
-            return
-        total = kinetic + potential_energy(self.scene, motion)
-        if self._at_first is None:  # this piece begins with the first sample
-            self._at_first = float(total[0]), float(swing[0])
-        self._energy_change = _largest(self._energy_change, total - self._at_first[0])
-        change = swing - self._at_first[1] - oscillator.drop(motion.phi, float(first.phi[0]))
-        self._swing_change = _largest(self._swing_change, change)
+def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
+    """Return the reasons in its record not to trust a motion, one sentence for each.
+
+    `rolling` says how the can was made to roll. In "contact" it could slip at its coefficient of `friction`, and leave
+    the incline. Where it could not, a normal force below 0 is a reason, as a real can would have left.
+    """
+    reasons, radius = [], record.scene.can.radius
+    if not record.implied_error <= ERROR:
+        reasons.append(
+            f"energy or momentum drift like an error of {record.implied_error:.2g} rad of phi or u/a (trusted up to "
+            f"{ERROR:g}): take a smaller timestep or a better integrator"
+        )
+    if not record.slip <= SLIP * radius:
+        reasons.append(f"the can slips by {record.slip / radius:.2g} radii (trusted up to {SLIP:g})")
+    if not record.lift <= LIFT * radius:
+        reasons.append(
+            f"the can parts from the incline, or sinks in, by {record.lift / radius:.2g} radii (trusted up to {LIFT:g})"
+        )
+    if rolling != "contact":
+        if math.isfinite(record.fails_at):
+            reasons.append(
+                f"from t = {record.fails_at:.6g} s the incline would have to pull at the can (N < 0): a real one "
+                "leaves it there"
+            )
+    elif not record.needed <= friction:
+        reasons.append(
+            f"rolling needs a friction coefficient of {record.needed:.3g}, and the contact has {friction:g}: it slides"
+        )
+    return reasons
 
 
 def axis_drift(scene: Scene, motion: Coordinates, start: Coordinates) -> np.ndarray:
@@ -204,12 +237,25 @@ def axis_drift(scene: Scene, motion: Coordinates, start: Coordinates) -> np.ndar
     if scene.attachment == "frozen":
         return np.zeros_like(motion.time)
     time = motion.time - start.time
-    effective_mass = scene.mass + scene.can.inertia / scene.can.radius**2
-    arm = scene.load.mass * scene.load.offset / effective_mass
-    acceleration = scene.mass * scene.gravity * math.sin(scene.incline) / effective_mass
-    speed = start.u_dot - arm * np.cos(start.phi) * start.phi_dot
-    implied = start.u + arm * (np.sin(motion.phi) - np.sin(start.phi)) + speed * time + acceleration * time**2 / 2
-    return motion.u - implied
+    (place, _), (begin, speed) = axis_without_swing(scene, motion), axis_without_swing(scene, start)
+    return place - begin - speed * time - steady_acceleration(scene) * time**2 / 2
+
+
+def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
+    """Return what damping and drag take in each step of a motion that goes on from its `last` sample [J].
+
+    It is a trapezoid, corrected by the derivatives of the power at its ends.
+    """
+    time, phi, phi_dot, u_dot = (
+        np.append(getattr(last, name), getattr(motion, name)) for name in ("time", "phi", "phi_dot", "u_dot")
+    )
+    (torque, along), slip = dissipation(scene, phi_dot, u_dot), slip_rate(scene, phi_dot, u_dot)
+    u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
+    power = -along * u_dot - torque * phi_dot
+    change = (torque + slip * scene.damping_law.slope(slip)) * slip_rate(scene, phi_ddot, u_ddot)
+    change = change + 3 * scene.drag * np.abs(u_dot) * u_dot * u_ddot
+    step = np.diff(time)
+    return step * (power[:-1] + power[1:]) / 2 - step**2 * np.diff(change) / 12
 
 
 def _piece(motion: Coordinates, place: int) -> Coordinates:
@@ -217,18 +263,10 @@ def _piece(motion: Coordinates, place: int) -> Coordinates:
     return Coordinates(**{name: getattr(motion, name)[[place]] for name in Coordinates.__dataclass_fields__})
 
 
-def _largest(so_far: float, values: np.ndarray) -> float:
+def _largest(so_far: float, values: np.ndarray | float) -> float:
     """Return the largest magnitude; NaN if there is one, which `max` would hide."""
     return float(np.maximum(so_far, np.abs(values).max()))
 
 
 def _ratio(change: float, scale: float) -> float:
     return change / scale if scale > 0 else 0.0
-
-
-def _crossing(before: tuple[float, float] | None, after: tuple[float, float]) -> float:
-    """Return the time at which a margin passes 0 between two times [s], on a straight line."""
-    if before is None:
-        return after[0]
-    (earlier, above), (later, below) = before, after
-    return earlier + above / (above - below) * (later - earlier)

@@ -25,6 +25,10 @@ ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
 """The ways in which a load can be attached; see `Scene.attachment`."""
 INCLINE = math.radians(10)
 """Default incline [rad]: 10 degrees, as in the paper's footnote 8."""
+DURATION = 2.0
+"""Default duration of a motion [s]."""
+PHI0 = math.radians(60)
+"""Default angle at its start [rad]."""
 GRAVITY = 9.81
 """Default acceleration of gravity [m/s^2]; the paper's footnote 8 has 9.8."""
 _LEAST_OFFSET = 1e-14

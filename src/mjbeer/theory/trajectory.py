@@ -13,9 +13,8 @@ from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, rolling_forces
-from mjbeer.theory.record import Record
+from mjbeer.theory.record import Record, doubts
 from mjbeer.theory.scene import Scene, views
-from mjbeer.theory.trust import doubts
 
 _LEAST_SWING = 1e-10
 """Smallest swing whose frequency is measured [rad], relative beyond 1 rad: a million times the rounding of phi."""
@@ -118,7 +117,7 @@ class Trajectory(Coordinates):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
-        return tuple(doubts(self.record, can_part=self.rolling == "contact"))
+        return tuple(doubts(self.record, self.rolling))
 
     def plot(self, *names: str, theory: bool = False) -> Any:
         """Plot quantities, as "phi", "u" and "energy", in a new figure, and return the matplotlib axes of each.

@@ -13,7 +13,7 @@ from mjbeer.drawing.world.display import on_incline, scale
 from mjbeer.drawing.world.positions import coordinates
 from mjbeer.drawing.world.shot import Shot
 from mjbeer.drawing.world.view import View
-from mjbeer.model.parts import WALL
+from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from tests.support.drawn import Recorder
 

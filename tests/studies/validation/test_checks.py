@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, hoop, simulate, sliding
-from mjbeer.model import mesh
+from mjbeer.model import looks
 from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_frequency_55
 from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.studies import convergence
@@ -72,6 +72,6 @@ def test_meshes_converge_as_the_square_of_their_resolution(fill: float) -> None:
 
 
 def test_a_mesh_of_another_fill_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = mesh.beer
-    monkeypatch.setattr(mesh, "beer", lambda fill, *rest: right(fill * 1.01, *rest))
+    right = looks.beer
+    monkeypatch.setattr(looks, "beer", lambda fill, *rest: right(fill * 1.01, *rest))
     assert min(models.mesh_errors(0.5)) > 1e-3

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Literal, Self
 
 from mjbeer.drawing.world.cameras import Camera
-from mjbeer.model import templates
+from mjbeer.model import looks
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["phi", "paths", "forces", "ghost"]
@@ -35,7 +35,7 @@ class Look:
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
         """Return the look of a motion of which nothing else is known."""
-        title = _DAMPED if trajectory.scene.dissipates else _TITLES[templates.name(trajectory.scene)]
+        title = _DAMPED if trajectory.scene.dissipates else _TITLES[looks.name(trajectory.scene)]
         if trajectory.rolling == "contact":
             return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "forces"), camera=camera)
         if trajectory.scene.dissipates:

@@ -12,7 +12,7 @@ from mjbeer.drawing.overlay.look import Mark
 from mjbeer.drawing.overlay.sheet import INK, Sheet
 from mjbeer.drawing.world.display import on_incline
 from mjbeer.drawing.world.view import View, circle
-from mjbeer.model.parts import WALL
+from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory

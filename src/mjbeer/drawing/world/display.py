@@ -12,7 +12,7 @@ from typing import TypeAlias
 import mujoco
 import numpy as np
 
-from mjbeer.model import appearance
+from mjbeer.model import looks
 from mjbeer.model.build import compile_spec, compose
 from mjbeer.model.setting import Setting
 from mjbeer.model.state import places
@@ -57,7 +57,7 @@ class Display:
             for pair in spec.pairs:
                 spec.delete(pair)
         board, *others = specs
-        appearance.lengthen(board, _resize(scenes[0]), low, high)
+        looks.lengthen(board, _resize(scenes[0]), low, high)
         for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
             frame = board.body("incline").add_frame(pos=[0, lane, 0])
             frame.attach_body(spec.body("can"), _prefix(number), "")

@@ -7,7 +7,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.model.build import build
-from mjbeer.model.inertia import mass_unit
+from mjbeer.model.numbers import mass_unit
 from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
 from mjbeer.model.state import places
 from mjbeer.paper.letters import Quantities

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from functools import cached_property, partial
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.softness import effective_softness
-from mjbeer.simulation.comparison import scales
+from mjbeer.model.check import effective_softness
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.solution import Solution
+from mjbeer.simulation.stepping import Solution
+from mjbeer.simulation.tolerance import scales
 from mjbeer.studies.benchmark.peers.peer import Motion, Peer
 from mjbeer.studies.benchmark.points import Point
 from mjbeer.studies.cases import Case

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.model.build import compile_model
+from mjbeer.model.check import effective_softness
 from mjbeer.model.setting import TUNED, USUAL
-from mjbeer.model.softness import effective_softness
 from mjbeer.output.table import Table
 from mjbeer.predictions import semi_implicit_euler, soft_constraint
 from mjbeer.simulation.simulate import simulate

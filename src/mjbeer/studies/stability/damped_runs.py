@@ -12,7 +12,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
-from mjbeer.model.constrained import stiffest
+from mjbeer.model.numbers import stiffest
 from mjbeer.model.setting import Integrator, Rolling, Setting
 from mjbeer.predictions import linear_stability, soft_rolling
 from mjbeer.predictions.linear_stability import GROWTH
@@ -24,8 +24,8 @@ from mjbeer.studies.stability.truth import angles
 from mjbeer.theory.can import Can
 from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.exact import exact
+from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene, sliding
-from mjbeer.theory.trust import ERROR
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)
 """Outcomes of a run, as numbers for the cells of a map. It exploded, or was refused; its error is above `trust.ERROR`,

@@ -9,7 +9,7 @@ from mjbeer.exceptions import DivergenceError, ParameterError, ToleranceError, U
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability.truth import Truth, truth
 from mjbeer.theory.equations import kinetic_energy
-from mjbeer.theory.trust import ERROR
+from mjbeer.theory.record import ERROR
 
 ACCURATE = "stable and accurate"
 INACCURATE = "stable, inaccurate"

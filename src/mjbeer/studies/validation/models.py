@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import mujoco
 import numpy as np
 
-from mjbeer.model import mesh
+from mjbeer.model import looks
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.model.state import start
@@ -132,9 +132,9 @@ def _count_differences() -> int:
     return count + int(np.count_nonzero(once != again))
 
 
-def mesh_errors(fill: float, resolution: int = mesh.RESOLUTION) -> tuple[float, float, float]:
+def mesh_errors(fill: float, resolution: int = looks.EDGES) -> tuple[float, float, float]:
     """Return the relative errors of mass, centre of mass and axial inertia of the beer's mesh as MuJoCo compiles it."""
-    vertices, faces = mesh.beer(fill, RADIUS, LENGTH, resolution)
+    vertices, faces = looks.beer(fill, RADIUS, LENGTH, resolution)
     spec = mujoco.MjSpec()
     method = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
     spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=method)

@@ -12,8 +12,8 @@ from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.truth import angles, truth
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import solution
+from mjbeer.theory.record import ERROR, LIFT, SLIP
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trust import ERROR, LIFT, SLIP
 
 FALSE = "false alarm"
 PARTS = "real slip or lift"

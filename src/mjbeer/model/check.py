@@ -1,0 +1,211 @@
+"""What a compiled model does: its accelerations beside those of theory, and the softness that its solver gives.
+
+A model that is right accelerates as theory says, at some states. One from an edited template may not, and is refused.
+One of a scene with unequal masses may have lost something in rounding: MuJoCo adds masses, and multiplies arms by
+forces, in double precision and in the coordinates of the world. If one mass is far smaller than another, or an arm far
+shorter than the way that the can rolls, what moves the load may be lost in these sums. All runs of such a model are
+wrong alike, so that no comparison of runs can show it.
+"""
+
+import copy
+import math
+from dataclasses import dataclass, replace
+
+import mujoco
+import numpy as np
+
+from mjbeer.exceptions import TemplateError
+from mjbeer.model import looks
+from mjbeer.model.engine import quiet
+from mjbeer.model.numbers import Numbers
+from mjbeer.model.setting import Setting
+from mjbeer.model.state import START_DEPTH, places, read, write
+from mjbeer.theory.equations import Coordinates, accelerations, stiffness
+from mjbeer.theory.record import Record
+from mjbeer.theory.scene import Scene
+
+STATES = 9
+"""Number of states of a run, evenly spread, at which accelerations are compared."""
+_ANGLES = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])
+"""Angles at which a template is compared [rad]: no two are each other's mirror image, or a quarter turn apart."""
+_RATES = np.array([2.0, -1.0, 0.5, 3.0, -2.0])
+"""Rates of phi at which it is compared, over that at which an angle of 1 rad passes in a fall through the radius."""
+_ALLOWED = 1e-9
+"""Largest difference of phi_ddot from theory's that a template may have, over the accelerations at those rates. With
+the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""
+_SMALL_SWING = 0.1
+"""Smallest acceleration with which a difference is compared, relative to the largest that gravity gives at rest: a
+motion that hardly swings would otherwise divide rounding by nearly nothing."""
+_OF_SLIP = 8 * float(np.finfo(float).eps)
+"""Rounding of a slip rate, over the rates whose difference it is: each is rounded a few times."""
+_ROWS = {"reduced": (0,), "equality": (1,)}
+"""Rows of constraints that a model of each rolling has."""
+
+
+def require_theory(model: mujoco.MjModel, scene: Scene, setting: Setting) -> None:
+    """Check that a model from a template moves as the scene does.
+
+    It must have the scene's joints, no constraint but that of rolling, and theory's accelerations at a few states.
+
+    Raises:
+      TemplateError: if not; the message names the file and what differs.
+    """
+    rate = math.sqrt(max(scene.gravity, 1.0) / scene.can.radius)
+    zeros, phi_dot = np.zeros(len(_ANGLES)), rate * _RATES
+    order = slice(None, None, -1 if scene.attachment == "sliding" else 1)
+    roll, roll_dot = _ANGLES[order], phi_dot[order]
+    motion = Coordinates(
+        time=zeros,
+        u=scene.can.radius * roll,
+        phi=_ANGLES,
+        u_dot=scene.can.radius * roll_dot,
+        phi_dot=phi_dot,
+        roll=roll,
+        roll_dot=roll_dot,
+        lift=zeros - START_DEPTH * scene.can.radius,
+        lift_dot=zeros,
+    )
+    fault = _other_elements(model, scene, setting, motion)
+    if not fault:
+        difference, _ = residual(model, scene, write(model, motion), exact_constraint=False)
+        size = np.abs(accelerations(scene, motion.phi, phi_dot, motion.u_dot)[1]).max() + rate**2
+        if not difference <= _ALLOWED * size:
+            fault = f"accelerates phi by {difference:.2g} rad/s^2 (of {size:.2g}) otherwise than theory"
+    if fault:
+        raise TemplateError(f"{looks.template(scene)} {fault}: an edit of it acts on the motion; restore the template")
+
+
+def _other_elements(model: mujoco.MjModel, scene: Scene, setting: Setting, motion: Coordinates) -> str | None:
+    """Return what of joints and constraints is not the scene's, or None."""
+    joints = Numbers.of(scene, setting, visuals=True).joints
+    if (found := tuple(places(model))) != joints:
+        return f"gives the joints {', '.join(found)}, not {', '.join(joints)}"
+    data = mujoco.MjData(model)
+    for each in write(model, motion):
+        data.qpos[:], data.qvel[:] = each[: model.nq], each[model.nq :]
+        with quiet():
+            mujoco.mj_forward(model, data)
+        per_contact = 3 if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else 4
+        rows = _ROWS.get(setting.rolling) or tuple(per_contact * count for count in range(1, 5))
+        if data.nefc not in rows:
+            return f"gives {data.nefc} rows of constraints instead of {rows[0]}"
+        if any(warning.number for warning in data.warning):
+            return "makes MuJoCo warn of a state of rolling"
+    return None
+
+
+def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, exact_constraint: bool) -> float:
+    """Return the error of phi [rad], relative beyond 1 rad, that a model's residual along the way of a run implies.
+
+    Like a relative error of the energy it is a relative error of the rate, and so of the path of phi. It is no more
+    than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
+    """
+    chosen = np.linspace(0, len(way.time) - 1, min(STATES, len(way.time))).astype(int)
+    some = Coordinates(**{name: array[chosen] for name, array in vars(way).items()})
+    difference, relative = residual(model, scene, write(model, some), exact_constraint)
+    missing = min(relative * max(record.path, 1.0), difference * float(way.time[-1]) ** 2 / 2)
+    return missing / max(1.0, record.turned)
+
+
+def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> tuple[float, float]:
+    """Return the largest difference of phi_ddot from theory's at `states` [rad/s^2], and relative to phi_ddot.
+
+    `states` has shape (states, nq + nv). Softness is no loss, and shows as slip: the slip of the states is taken away,
+    and a constraint that is not exact is replaced by that of rolling.
+    """
+    times, radius = np.zeros(len(states)), scene.can.radius
+    motion = read(model, scene, states, times)
+    motion = replace(motion, u=radius * motion.roll, u_dot=radius * motion.roll_dot)
+    states = write(model, motion)
+    slopes = np.concatenate([states[:, model.nq :], _accelerations(model, scene, states, exact_constraint)], axis=1)
+    found = read(model, scene, slopes, times).phi_dot
+    _, right = accelerations(scene, motion.phi, motion.phi_dot, motion.u_dot)
+    oscillator = scene.oscillator
+    small = float((_SMALL_SWING * oscillator.depth / oscillator.inertia(motion.phi)).min())
+    differences = np.abs(found - right)
+    if scene.dissipates:  # the rounding of a slip rate makes a torque that brings can and load together, and so is gone
+        rates = np.abs(motion.phi_dot) + np.abs(motion.u_dot) / radius
+        together = stiffness(scene, motion.phi, motion.phi_dot, motion.u_dot)
+        differences = np.maximum(differences - _OF_SLIP * together * rates, 0.0)
+    largest, difference = max(float(np.abs(right).max()), small), float(differences.max())
+    return difference, difference / largest if largest > 0 else 0.0
+
+
+def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> np.ndarray:
+    """Return the accelerations of the model's joints at `states`, shape (states, nv).
+
+    Under MuJoCo's integrator "discrete" they would be changes over a whole step, over the step.
+    """
+    model = copy.copy(model)
+    model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+    data, found = mujoco.MjData(model), np.empty((len(states), model.nv))
+    inertia = np.empty((model.nv, model.nv))
+    rolling = _rolling(model, scene) if "roll" in places(model) and not exact_constraint else None
+    with quiet():
+        for place, state in enumerate(states):
+            data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = state[: model.nq], state[model.nq :], 0.0
+            mujoco.mj_forward(model, data)
+            if rolling is None:
+                found[place] = data.qacc
+                continue
+            mujoco.mj_fullM(model, data, inertia)
+            reduced, force = rolling @ inertia @ rolling.T, rolling @ data.qfrc_smooth
+            try:
+                found[place] = rolling.T @ np.linalg.solve(reduced, force)
+            except np.linalg.LinAlgError:  # rounding took all inertia: nothing is known, and theory's motion is missing
+                found[place] = 0.0
+    return found
+
+
+def _rolling(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
+    """Return the motions of the joints that roll without slipping, one a row: of the axis, and of phi alone."""
+    joints, radius = places(model), scene.can.radius
+    along, turning = np.zeros(model.nv), np.zeros(model.nv)
+    along[joints["slide"]], along[joints["roll"]] = radius, 1.0
+    if "swing" not in joints:
+        return along[None]
+    along[joints["swing"]], turning[joints["swing"]] = -1.0, 1.0
+    return np.stack([along, turning])
+
+
+@dataclass(frozen=True)
+class EffectiveSoftness:
+    """The softness of a constraint, as asked for and as the solver used it."""
+
+    timeconst: float
+    """Time constant that solref asks for [s]."""
+    effective_timeconst: float
+    """Time constant that the solver used [s]: `refsafe` raises one below two timesteps."""
+    impedance: float
+    """d of solimp: the share of its reference acceleration that a row with the exact diagonal would reach."""
+    effective_impedance: float
+    """The share that the row reached, with the regularizer that the solver used and the exact diagonal."""
+
+    @property
+    def changed(self) -> bool:
+        """Return whether the solver used another time constant than solref asks for."""
+        return abs(self.effective_timeconst / self.timeconst - 1) > 1e-9
+
+
+def effective_softness(model: mujoco.MjModel, state: np.ndarray) -> EffectiveSoftness | None:
+    """Return the softness of the rolling constraint at a `state`, shape (nq + nv,); None if no constraint is active.
+
+    The time constant comes from the stiffness K = 1/(d tau)^2 (damping ratio 1) of MuJoCo's reference acceleration, and
+    the impedance from the regularizer R and the diagonal A = J M^-1 J^T of the constraint's first row.
+    """
+    data = mujoco.MjData(model)
+    data.qpos[:], data.qvel[:] = state[: model.nq], state[model.nq :]
+    with quiet():
+        mujoco.mj_forward(model, data)
+    if data.nefc == 0:
+        return None
+    solref, solimp = (model.eq_solref, model.eq_solimp) if model.neq else (model.pair_solref, model.pair_solimp)
+    jacobian, mass = np.array(data.efc_J).reshape(-1, model.nv)[0], np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    diagonal = float(jacobian @ np.linalg.solve(mass, jacobian))
+    return EffectiveSoftness(
+        timeconst=float(solref[0, 0]),
+        effective_timeconst=1 / (float(solimp[0, 1]) * float(data.efc_KBIP[0, 0]) ** 0.5),
+        impedance=float(data.efc_KBIP[0, 2]),
+        effective_impedance=diagonal / (diagonal + float(data.efc_R[0])),
+    )

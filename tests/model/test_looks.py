@@ -1,0 +1,224 @@
+"""What is drawn fits every scene's sizes, and is the template where the scene is the template's."""
+
+import math
+from collections import Counter
+
+import mujoco
+import numpy as np
+import pytest
+
+from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.model import looks
+from mjbeer.model.build import build, compose
+from mjbeer.model.setting import ROLLINGS, Setting
+from mjbeer.theory.can import LENGTH, RADIUS
+from mjbeer.theory.load import segment
+from tests.support.scenes import METAL
+
+TEMPLATES = {"sliding": sliding(can=METAL), "frozen": frozen(can=METAL), "pendulum": pendulum(), "hoop": hoop()}
+# Vertices of the .obj files have 6 digits, lengths in the templates 10.
+WRITTEN = 5e-6
+# What MuJoCo keeps in single precision: vertices.
+SINGLE = 1e-6
+CAMERAS = "side", "quarter", "overview"
+
+
+def shown(scene: Scene, rolling: str = "contact") -> tuple[mujoco.MjModel, mujoco.MjData]:
+    return posed(compose(scene, Setting(rolling), visuals=True).compile())
+
+
+def written(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    return posed(mujoco.MjModel.from_xml_path(str(looks.folder() / f"{name}.xml")))
+
+
+def posed(model: mujoco.MjModel) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_camlight(model, data)
+    return model, data
+
+
+def drawn(model: mujoco.MjModel) -> list[str]:
+    return [geom.name for geom in map(model.geom, range(model.ngeom)) if geom.group[0] == 2]
+
+
+def vertices(model: mujoco.MjModel, data: mujoco.MjData, name: str | None = None) -> np.ndarray:
+    """All vertices of meshes, or those of one geom, in the world."""
+    found = []
+    for geom in map(model.geom, range(model.ngeom)):
+        if geom.type == mujoco.mjtGeom.mjGEOM_MESH and name in (None, geom.name):
+            shape, pose = model.mesh(int(geom.dataid[0])), data.geom(geom.name)
+            local = model.mesh_vert[shape.vertadr[0] : shape.vertadr[0] + shape.vertnum[0]]
+            found.append(local @ pose.xmat.reshape(3, 3).T + pose.xpos)
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_a_template_s_own_scene_is_drawn_as_the_template(name: str) -> None:
+    model, one = written(name)
+    built, other = shown(TEMPLATES[name], "contact" if name == "hoop" else "equality")
+    assert drawn(model) == drawn(built)
+    for each in drawn(model):
+        assert model.geom(each).matid == built.geom(each).matid
+        if model.geom(each).type == mujoco.mjtGeom.mjGEOM_MESH:  # a mesh's axes are arbitrary if it is symmetric
+            assert np.allclose(vertices(model, one, each), vertices(built, other, each), atol=WRITTEN * LENGTH), each
+        else:
+            assert np.allclose(one.geom(each).xpos, other.geom(each).xpos, atol=WRITTEN * RADIUS), each
+            assert np.allclose(one.geom(each).xmat, other.geom(each).xmat, atol=WRITTEN), each
+            assert np.allclose(model.geom(each).size, built.geom(each).size, atol=WRITTEN), each
+    for each in CAMERAS:
+        assert np.allclose(one.camera(each).xpos, other.camera(each).xpos, atol=WRITTEN)
+        assert np.allclose(one.camera(each).xmat, other.camera(each).xmat, atol=WRITTEN)
+    # The drawn wall is outside of the radius, so the board is lower than the surface by as much.
+    board = model.geom("board")
+    assert board.pos[2] + board.size[2] == pytest.approx(-looks.WALL * RADIUS, rel=1e-9)
+
+
+@pytest.mark.parametrize("radius", [1e-4, 1.0, 100.0])
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_all_grows_with_the_can(name: str, radius: float) -> None:
+    times, scene = radius / RADIUS, TEMPLATES[name]
+    can = Can(radius, min(scene.can.length * times, 100.0), 1.0, radius**2)
+    load = Load(1.0, scene.load.offset * times, radius**2, scene.load.fill)
+    if scene.can.length * times > 100:
+        return
+    (one, small), (other, large) = shown(scene), shown(Scene(can, load, scene.incline, scene.attachment))
+    for each in drawn(one):
+        if one.geom(each).type != mujoco.mjtGeom.mjGEOM_MESH:  # a mesh's frame depends on what it is taken for
+            assert np.allclose(large.geom(each).xpos / times, small.geom(each).xpos, rtol=1e-9, atol=1e-12), each
+            assert np.allclose(other.geom(each).size / times, one.geom(each).size, rtol=1e-9, atol=1e-12), each
+    assert np.allclose(vertices(other, large) / times, vertices(one, small), atol=SINGLE * LENGTH)
+    for each in CAMERAS:
+        assert np.allclose(large.camera(each).xpos / times, small.camera(each).xpos, rtol=1e-9, atol=1e-12)
+    assert other.stat.extent / times == pytest.approx(one.stat.extent, rel=1e-12)
+    assert other.mat("grid").texrepeat * times == pytest.approx(one.mat("grid").texrepeat, rel=1e-6)
+
+
+@pytest.mark.parametrize("length", [1e-4, 0.01, 0.12, 1.0])
+def test_ends_stay_ends(length: float) -> None:
+    model, data = shown(sliding(can=Can.sheet_metal(length=length)), "equality")
+
+    def y(name: str) -> tuple[float, float]:
+        if model.geom(name).type == mujoco.mjtGeom.mjGEOM_MESH:
+            there = vertices(model, data, name)[:, 1]
+            return float(there.min()), float(there.max())
+        middle, half = float(data.geom(name).xpos[1]), float(np.abs(data.geom(name).xmat[3:6]) @ model.geom(name).size)
+        return middle - half, middle + half
+
+    assert y("can_wall") == pytest.approx((-length / 2, length / 2), abs=SINGLE * RADIUS)
+    for end in ("can_end", "can_tab", "can_mouth"):
+        assert length / 2 - 0.25 * min(RADIUS, length) < y(end)[0] < y(end)[1] < length / 2
+    assert y("can_tab")[0] < y("can_mouth")[0] < y("can_end")[1]
+    assert -length / 2 < y("can_label")[0] < 0 < y("can_label")[1] < length / 2
+    assert y("can_spot")[0] < -length / 2 < y("can_spot")[1] < -0.4 * length
+    assert y("can_mark")[0] < y("can_label")[0] < y("can_label")[1] < y("can_mark")[1] < length / 2
+    assert y("board")[1] == pytest.approx(length / 2 + 0.015)
+    assert data.camera("side").xpos[1] == pytest.approx(-length / 2 - 0.24)
+    wheel = shown(pendulum(0.0, length=length), "reduced")[0]
+    for each in ("load", "load_arm"):
+        assert -length / 2 < wheel.geom(each).pos[1] < 0
+
+
+@pytest.mark.parametrize("fill", [1e-100, 1e-9, 1e-3, 0.02, 0.5, 0.98, 1 - 1e-6, 1.0])
+@pytest.mark.parametrize("radius", [1e-4, RADIUS, 100.0])
+def test_every_fill_can_be_drawn(fill: float, radius: float) -> None:
+    """With masses that MuJoCo can take; those of so little beer it cannot."""
+    can = Can(radius, radius, 1.0, radius**2)
+    load = Load(1.0, radius * segment(fill).offset, radius**2, fill)
+    heights = vertices(*shown(Scene(can, load, 0.0), "reduced"))[:, 2] / radius
+    assert heights.min() == pytest.approx(-looks.WALL, abs=1e-3)
+    assert heights.max() == pytest.approx(2 + looks.WALL, abs=0.01)  # the mark, a hair above the wall
+
+
+@pytest.mark.parametrize("fill", [1e-3, 0.02, 0.1, 0.5, 0.9, 0.999])
+def test_the_load_is_the_true_segment_with_foam_on_it(fill: float) -> None:
+    """A vertex is on the circle; the surface is as wide and as high as eq. (32) has it; so is the centroid."""
+    model, data = shown(sliding(0.0, fill=fill), "reduced")
+    there = vertices(model, data, "load") - data.body("can").xpos
+    assert np.allclose(np.hypot(there[:, 0], there[:, 2]), RADIUS, rtol=SINGLE)
+    assert there[:, 2].max() == pytest.approx(RADIUS * (2 * fill - 1), abs=SINGLE * RADIUS)
+    assert np.ptp(there[:, 1]) == pytest.approx(LENGTH, rel=SINGLE)
+    # MuJoCo puts the mesh's frame into its centroid; a polygon of 256 edges misses 6e-4 of the arc.
+    centroid = data.geom("load").xpos - data.body("can").xpos
+    assert np.allclose(centroid, [0, 0, -RADIUS * segment(fill).offset], rtol=6e-4, atol=5e-6 * RADIUS)
+    foam = vertices(model, data, "foam") - data.body("can").xpos
+    assert foam[:, 2].min() == pytest.approx(there[:, 2].max(), abs=SINGLE * RADIUS)
+    thickness = np.ptp(foam[:, 2]) / RADIUS
+    assert thickness == pytest.approx(min(looks.FOAM, 0.5 * fill, 0.5 * (1 - fill)), abs=SINGLE)
+    assert np.hypot(foam[:, 0], foam[:, 2]).max() <= RADIUS * (1 + SINGLE)
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 0.0), (-50.0, 3.0), (0.0, 300.0)])
+def test_the_board_outlasts_the_motion_and_a_stripe_is_a_quarter_turn(low: float, high: float) -> None:
+    """And one begins at u = 0: so the can's mark comes round every four stripes."""
+    scene = frozen(can=METAL)
+    spec = compose(scene, Setting(), visuals=True)
+    looks.lengthen(spec, scene, low, high)
+    model = spec.compile()
+    middle, half = model.geom("board").pos[0], model.geom("board").size[0]
+    assert middle - half <= low - 1.5
+    assert middle + half >= high + 1.5
+    stripe = half / model.mat("planks").texrepeat[0]  # two to a repeat of the checkered texture
+    assert stripe == pytest.approx(math.pi / 2 * RADIUS, rel=1e-6)
+    start = (middle - half) / (2 * stripe)
+    assert start == pytest.approx(round(start), abs=1e-6)
+
+
+def test_marks_turn_with_the_can_or_are_not_there_and_ice_has_no_foam() -> None:
+    found = {rolling: "can_mark" in drawn(shown(pendulum(), rolling)[0]) for rolling in ROLLINGS}
+    assert found == {"reduced": False, "equality": True, "contact": True}
+    models = [shown(TEMPLATES[each])[0] for each in ("sliding", "frozen")]
+    assert ["foam" in drawn(model) for model in models] == [True, False]
+    assert [model.mat(int(model.geom("load").matid[0])).name for model in models] == ["beer", "ice"]
+    assert tuple(each for each in looks.TURNING if each in {*drawn(models[0]), "can_spokes"}) == looks.TURNING
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_the_marks_lie_on_the_bead_and_hide_no_load(name: str) -> None:
+    """Seen from the end: the spot covers the bead, and reaches a hundredth of a radius over the inside."""
+    model, data = shown(TEMPLATES[name])
+    for mark in ("can_spot", "can_mark"):
+        across = (vertices(model, data, mark) - data.body("can").xpos) / RADIUS
+        distance = np.hypot(across[:, 0], across[:, 2])
+        assert 0.98 < distance.min() < distance.max() < 1 + 1.2 * looks.WALL
+    ahead = vertices(model, data, "can_spot")[:, 1].min() - vertices(model, data, "can_wall")[:, 1].min()
+    assert -0.02 * RADIUS < ahead < 0
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+@pytest.mark.parametrize("length", [1e-4, 0.12, 1.0])
+def test_shapes_are_closed_and_face_outwards(name: str, length: float) -> None:
+    """Every edge of a face is that of another face, the other way round; and no face is flat."""
+    scene = TEMPLATES[name]
+    can = Can(RADIUS, length, 1.0, RADIUS**2)
+    for each in compose(Scene(can, scene.load, 0.0, scene.attachment), Setting(), visuals=True).meshes:
+        points, faces = np.reshape(each.uservert, (-1, 3)), np.reshape(each.userface, (-1, 3))
+        # Six digits of the files: their last one tells apart what is 1e-8 m apart.
+        near = np.round(points / (1e-7 * RADIUS) / [1, min(1, length / RADIUS), 1]).astype(int)[faces]
+        edges = Counter((tuple(face[i]), tuple(face[(i + 1) % 3])) for face in near for i in range(3))
+        assert all(edges[end, start] == count for (start, end), count in edges.items()), each.name
+        sides = points[faces]
+        cross = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
+        assert np.linalg.norm(cross, axis=1).min() > 1e-7 * RADIUS * min(RADIUS, length)
+        assert np.einsum("ij,ij->", sides[:, 0], cross) > 0
+
+
+def test_the_files_are_small_and_all_are_used() -> None:
+    files = list((looks.folder() / "assets").iterdir())
+    text = "".join(path.read_text() for path in looks.folder().glob("*.xml"))
+    assert all(f'file="{each.name}"' in text for each in files)
+    assert sum(each.stat().st_size for each in files) < 300_000
+
+
+def test_visuals_change_no_motion() -> None:
+    """With geoms to look at and the incline tilted instead of gravity, a step has the same result to rounding."""
+    for rolling in ROLLINGS:
+        found = []
+        for visuals in (False, True):
+            model = build(TEMPLATES["sliding"], rolling, visuals, phi0=0.8, phi_dot0=1.5)
+            data = mujoco.MjData(model)
+            mujoco.mj_resetDataKeyframe(model, data, 0)
+            mujoco.mj_step(model, data)
+            found.append(data.qvel.copy())
+        # A contact's normal comes from the tilt by a quaternion, and acts through a stiffness of 1e8 or so.
+        assert found[1] == pytest.approx(found[0], rel=1e-6 if rolling == "contact" else 1e-11, abs=1e-9)
