@@ -307,3 +307,11 @@ def test_what_rounding_takes_from_a_model_is_found() -> None:
     assert check.lost(model, run.scene, run.way, run.steps, exact_constraint=True) < 1e-13
     model.body_mass *= 1 + 1e-4
     assert check.lost(model, run.scene, run.way, run.steps, exact_constraint=True) > 1e-4
+
+
+@pytest.mark.parametrize("rolling", ROLLINGS)
+def test_a_run_at_the_shortest_timestep_has_its_second_run(rolling: Rolling) -> None:
+    """Whose timesteps are shorter than any that can be asked for."""
+    estimate = simulate(frozen(can=METAL), 1e-5, 1.0, rolling=rolling, timestep=1e-7).error_estimate
+    assert estimate is not None
+    assert estimate < 1e-9

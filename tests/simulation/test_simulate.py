@@ -318,7 +318,7 @@ def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch:
     timesteps: list[float] = []
 
     def count(stepped: Stepped, numbers: Numbers) -> None:
-        timesteps.append(numbers.setting.timestep)
+        timesteps.append(numbers.timestep)
         write(stepped, numbers)
 
     write = Stepped.write
