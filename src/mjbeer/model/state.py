@@ -25,7 +25,8 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     Raises:
       ParameterError: if the start is not allowed, or the model has no joint for phi.
     """
-    require.instance("scene", scene, Scene)
+    for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
+        require.instance(name, given, kind)
     values = _values(_begin(scene, *require.start(phi0, phi_dot0)))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
