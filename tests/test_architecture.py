@@ -65,6 +65,38 @@ def imported(folder: str) -> set[str]:
     return names - {folder}
 
 
+LAYERS = [
+    "exceptions", "require", "output", "theory", "predictions model", "drawing simulation", "paper", "studies", "report",
+    "cli",
+]  # fmt: skip
+"""The folders and modules from below; what has no arrow between it stands side by side."""
+LOADERS = {"import_module", "__import__", "find_spec", "resolve_name"}
+"""What imports a module by a text, which no linter follows."""
+
+
+def loaded_by_text(path: pathlib.Path) -> set[str]:
+    """The modules of mjbeer that a file names in a text, if it imports anything by a text."""
+    tree = ast.parse(path.read_text())
+    words = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    words |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    if not words & LOADERS:
+        return set()
+    texts = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    return {text for text in texts if re.fullmatch(r"mjbeer(\.\w+)+", text)}
+
+
+def test_nothing_is_imported_upward_by_a_text() -> None:
+    """Only `mjbeer` itself, above all, loads by name what it promises."""
+    height = {name: level for level, names in enumerate(LAYERS) for name in names.split()}
+    assert loaded_by_text(PACKAGE / "__init__.py") >= {"mjbeer.drawing.views", "mjbeer.simulation.simulate"}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if path.parent == PACKAGE and path.stem.startswith("__"):
+            continue
+        own = path.relative_to(PACKAGE).with_suffix("").parts[0]
+        for module in loaded_by_text(path):
+            assert height[module.split(".")[1]] <= height[own], f"{path} loads {module}"
+
+
 def test_the_document_has_the_folders_and_what_they_import() -> None:
     rows = re.findall(r"^\| `(\w+)/` \| .* \| (.*) \|$", DOCUMENT, re.MULTILINE)
     assert sorted(folder for folder, _ in rows) == FOLDERS

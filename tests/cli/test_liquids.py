@@ -30,7 +30,7 @@ def test_its_viscosity_and_density_may_be_given(capsys: pytest.CaptureFixture[st
 def test_a_thick_liquid_is_noted_in_one_line(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "liquid", "--liquid", "honey", "--duration", "0.01"]) == 0
     _, note = capsys.readouterr().err.splitlines()
-    assert note.startswith("note: honey coats the can")
+    assert note.startswith("note: honey as one lump is an order of magnitude only: it coats the can")
     path = tmp_path / "map.csv"
     words = f"sweep liquid --liquid honey --fill 0.4,0.5,0.6 --incline 5,10 --duration 0.01 --output {path}"
     assert main(words.split()) == 0

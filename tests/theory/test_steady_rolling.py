@@ -47,7 +47,7 @@ def test_nothing_accelerates(law: float | Damping, drag: float, incline: float) 
 
 def test_tilt_is_that_of_the_frozen_can_and_speed_a_closed_form() -> None:
     for can in (Can(), METAL):
-        for c in (1e-9, 1e-3, 1e6):
+        for c in (1e-9, 1e-3, 1e4):
             scene = sliding(can=can, damping=c)
             assert scene.terminal_tilt() == frozen(can=can).equilibrium()
             speed = scene.mass * 9.81 * math.sin(scene.incline) * 0.033**2 / c
@@ -139,9 +139,9 @@ def test_modes_of_weak_and_strong_damping() -> None:
     assert weak[0].real == pytest.approx(-1e-12 / (mass * a**2), rel=1e-9)
     assert weak[1].real == pytest.approx(-1e-12 * (mass * a - moment) ** 2 / (2 * mass * swinging * a**2), rel=1e-9)
     assert abs(weak[1].imag) == pytest.approx(math.sqrt(mass * k / swinging), rel=1e-12)
-    strong = sliding(can=METAL, damping=1e8).modes()
-    assert strong[0].real == pytest.approx(-1e8 * stiff / (a**2 * swinging), rel=1e-12)
-    assert strong[1].real == pytest.approx(-(a**2) * k * (mass * a - moment) ** 2 / (2 * 1e8 * stiff**2), rel=1e-12)
+    strong = sliding(can=METAL, damping=1e4).modes()
+    assert strong[0].real == pytest.approx(-1e4 * stiff / (a**2 * swinging), rel=1e-12)
+    assert strong[1].real == pytest.approx(-(a**2) * k * (mass * a - moment) ** 2 / (2 * 1e4 * stiff**2), rel=1e-12)
     assert abs(strong[1].imag) == pytest.approx(math.sqrt(k / stiff), rel=1e-12)
 
 
@@ -153,7 +153,7 @@ def test_frequency_between_sliding_and_frozen(can: Can) -> None:
     )
     for incline in (0.0, 0.2):
         ice = frozen(incline, can=can).frequency()
-        assert sliding(incline, can=can, damping=1e9).frequency() == pytest.approx(ice, rel=1e-12)
+        assert sliding(incline, can=can, damping=1e4).frequency() == pytest.approx(ice, rel=1e-12)
 
 
 def test_the_massless_can_s_numbers() -> None:
