@@ -149,7 +149,7 @@ def test_damping_is_continuous_towards_level_ground() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_damping_goes_one_way_with_the_incline(name: str) -> None:
-    """Steady rolling is the faster the steeper, and a step of the incline by 5 % changes no damping by more than 7 %."""
+    """Steady rolling is the faster the steeper, and a step of the incline by 5 % changes the damping by 7 % at most."""
     laws = [liquid_in(name, incline=incline).damping for incline in np.geomspace(1e-9, 0.3, 400)]
     linear = np.array([law.linear for law in laws])
     speeds = [liquid(name, incline=incline).terminal_speed() for incline in np.geomspace(1e-9, 0.3, 400)]

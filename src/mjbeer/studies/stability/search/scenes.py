@@ -111,7 +111,7 @@ def damped(pick: Pick, scene: Scene) -> Scene:
     Raises:
       ParameterError: if the load cannot slide in its can.
     """
-    radius, mass = scene.can.radius, scene.mass + scene.can.inertia / scene.can.radius**2
+    radius, mass = scene.can.radius, scene.effective_mass
     clock = slow(scene)
     linear = mass * radius**2 / clock * pick.decades(1e-6, 1e6)
     law = pick.one(
