@@ -73,17 +73,6 @@ def imported(folder: str) -> set[str]:
 
 
 LAYERS = "exceptions, require, output, theory, predictions model, drawing simulation, paper, studies, report, cli"
-    "exceptions",
-    "require",
-    "output",
-    "theory",
-    "predictions model",
-    "drawing simulation",
-    "paper",
-    "studies",
-    "report",
-    "cli",
-]
 """The folders and modules from below; what has no arrow between it stands side by side."""
 LOADERS = {"import_module", "__import__", "find_spec", "resolve_name"}
 """What imports a module by a text, which no linter follows."""
