@@ -117,7 +117,8 @@ def methods(name: str, kind: type, owner: object) -> Iterator[tuple[str, Callabl
 CASES = {
     f"{name}, {parameter}": (name, function, parameter)
     for name, function in public()
-    for parameter in inspect.signature(function).parameters
+    for parameter, each in inspect.signature(function).parameters.items()
+    if each.kind is not each.VAR_KEYWORD
 } | {"sweep, fill": ("sweep", mjbeer.sweep, "fill")}
 
 

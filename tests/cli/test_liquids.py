@@ -15,7 +15,9 @@ def test_what_a_liquid_uses_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "0.1"]
     assert main([*words, "--json"]) == 0
     out, err = capsys.readouterr()
-    assert err == f"{liquid_in('olive oil', fill=0.7)}\n"
+    assert err.startswith(
+        f"{liquid_in('olive oil', fill=0.7)}\nnote: olive oil as one lump is an order of magnitude only"
+    )
     run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 0.1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
 

@@ -460,7 +460,8 @@ def liquid(
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
-    scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
+    with require.from_given(viscosity=used.viscosity):
+        scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
     try:
         reason = about_scene(used, scene.terminal_speed(), scene)
     except NoEquilibriumError:  # no terminal speed on so steep an incline
