@@ -2,13 +2,16 @@
 
 import dataclasses
 import math
+import pickle
 import re
 from collections.abc import Callable
 from functools import partial
 
+import numpy as np
 import pytest
 
-from mjbeer import Can, Damping, Load, MjbeerError, Scene, exact, frozen, hoop, pendulum, sliding
+import mjbeer
+from mjbeer import Can, Damping, Load, MjbeerError, Scene, exact, frozen, hoop, liquid, pendulum, sliding
 from mjbeer.exceptions import ParameterError
 from mjbeer.require import shown
 
@@ -144,3 +147,54 @@ def test_equal_parameters_make_equal_scenes() -> None:
     assert hash(sliding(0.1)) == hash(sliding(0.1))
     assert sliding(0.1) != frozen(0.1)
     assert hoop() != pendulum()
+
+
+@pytest.mark.parametrize(
+    ("scene", "changes", "same"),
+    [
+        (sliding(0.2), {"fill": 0.3}, sliding(0.2, 0.3)),
+        (frozen(0.1), {"incline": 0.2, "can": Can.sheet_metal()}, frozen(0.2, can=Can.sheet_metal())),
+        (
+            pendulum(),
+            {"wheel_mass": 0.3, "damping": 1e-3},
+            Scene(Can.hoop(mass=0.3), Load.point(0.1, 0.025), damping=1e-3),
+        ),
+        (liquid("beer", 0.1), {"incline": 0.2}, liquid("beer", 0.2)),
+        (Scene(Can(), BEER), {"incline": 0.2, "attachment": "frozen"}, Scene(Can(), BEER, 0.2, "frozen")),
+        (sliding().replace(fill=0.3), {"gravity": 1.6}, sliding(fill=0.3, gravity=1.6)),
+    ],
+)
+def test_one_thing_is_replaced(scene: Scene, changes: dict[str, object], same: Scene) -> None:
+    """By making the scene anew where its function knows the name: so a liquid has the damping of its incline."""
+    before = repr(scene)
+    assert scene.replace(**changes) == same
+    assert repr(scene) == before
+    assert scene.replace() == scene
+
+
+def test_what_is_no_part_of_a_scene_is_not_replaced() -> None:
+    refuses("'drag', 'load', 'attachment'; got 'fil': did you mean 'fill'?", sliding().replace, fil=0.3)
+    refuses("fill (height of the beer over the can's diameter) must be in (0, 1], got 2", sliding().replace, fill=2)
+
+
+@pytest.mark.parametrize(
+    ("scene", "text"),
+    [
+        (sliding(), "sliding()"),
+        (sliding(np.float64(0.17), fill=0.5, gravity=1.6), "sliding(incline=0.17, gravity=1.6)"),
+        (
+            liquid("beer", can=Can(0.05)),
+            "liquid(name='beer', can=Can(radius=0.05, length=0.12, mass=0.0, inertia=0.0))",
+        ),
+        (
+            Scene(Can(), BEER, damping=Damping(1e-3), attachment="sliding"),
+            "Scene(can=Can(radius=0.033, length=0.12, mass=0.0, inertia=0.0), load=Load(mass=0.2, offset=0.01, "
+            "inertia=1e-05, fill=None), damping=Damping(linear=0.001, quadratic=0.0, cubic=0.0))",
+        ),
+    ],
+)
+def test_a_scene_is_shown_as_the_call_that_makes_it(scene: Scene, text: str) -> None:
+    assert repr(scene) == text
+    assert eval(text, vars(mjbeer)) == scene
+    assert pickle.loads(pickle.dumps(scene)) == scene
+    assert repr(pickle.loads(pickle.dumps(scene))) == text

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjbeer import require
-from mjbeer.output import files
 from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import Scene, damping_in_words, in_words
 from mjbeer.theory.trajectory import Trajectory

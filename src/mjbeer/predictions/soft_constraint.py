@@ -21,7 +21,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
-from mjbeer.theory.scene import Scene
 
 
 def residual_slip(penetration: float, radius: float) -> float:
@@ -31,27 +30,6 @@ def residual_slip(penetration: float, radius: float) -> float:
     that were its radius.
     """
     return -penetration / (2 * radius)
-
-
-def diagonal_excess(scene: Scene) -> float:
-    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
-
-    MuJoCo adds the inverse inertias 1/m_u and 1/I of the two joints, which are the diagonal of M^-1, without regard to
-    metres and radians. If the joints are not coupled, the factor is (1/m_u + 1/I)/(1/m_u + a^2/I). A frozen load
-    couples them by -m b; the true diagonal is J M^-1 J^T with J = (1, -a).
-    """
-    can, load, moment = scene.can, scene.load, scene.load.mass * scene.load.offset
-    if scene.attachment == "frozen":
-        inertia = can.inertia + load.inertia + moment * load.offset
-        mass_matrix = np.array([[scene.mass, -moment], [-moment, inertia]])
-    else:
-        swing = load.inertia + moment * load.offset
-        mass_matrix = np.array(
-            [[scene.mass, -moment, -moment], [-moment, can.inertia + swing, swing], [-moment, swing, swing]]
-        )
-    inverse = np.linalg.inv(mass_matrix)[:2, :2]
-    row = np.array([1.0, -can.radius])
-    return float(np.trace(inverse) / (row @ inverse @ row))
 
 
 def reached_share(impedance: float, excess: float) -> float:

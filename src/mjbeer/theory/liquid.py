@@ -243,8 +243,8 @@ def about_scene(liquid: Liquid, speed: float, scene: "Scene") -> str | None:
 def about_run(scene: "Scene", fastest: float, lost_at: float) -> str | None:
     """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
 
-    `fastest` is the largest slip rate of the run [rad/s], and `lost_at` when it is no lump any more, as `lost_at` has
-    it [s].
+    `fastest` is the largest slip rate of the run [rad/s], and `lost_at` when it is no lump any more [s],
+    as `lump_lost_at` has it.
     """
     if scene.damping_law.holds is None:
         return None
@@ -264,7 +264,7 @@ def centrifugal(scene: "Scene", u_dot: np.ndarray | float) -> np.ndarray | float
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
 
 
-def lost_at(scene: "Scene", time: np.ndarray, u_dot: np.ndarray) -> float:
+def lump_lost_at(scene: "Scene", time: np.ndarray, u_dot: np.ndarray) -> float:
     """Return the first of the times [s] at which `centrifugal` is more than 1; infinite if there is none."""
     fast = np.flatnonzero(np.square(u_dot) > scene.can.radius * scene.gravity * math.cos(scene.incline))
     return float(time[fast[0]]) if len(fast) else math.inf
