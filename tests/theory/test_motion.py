@@ -163,7 +163,7 @@ def test_period_of_the_paper_s_scenes(scene: Scene, amplitude: float) -> None:
             replace(scene, incline=-scene.incline).period(-amplitude)
 
 
-@pytest.mark.parametrize("gap", [1e-3, pytest.param(1e-6, marks=pytest.mark.slow), 1e-10])
+@pytest.mark.parametrize("gap", [1e-3, *(pytest.param(gap, marks=pytest.mark.slow) for gap in (1e-6, 1e-10))])
 @pytest.mark.parametrize("degrees", [0, 10])
 def test_period_beside_the_separatrix(degrees: float, gap: float) -> None:
     scene, amplitude = sliding(math.radians(degrees)), math.pi - gap
@@ -263,7 +263,13 @@ TURNS = {
 }
 
 
-@pytest.mark.parametrize(("scene", "phi0", "phi_dot0"), TURNS.values(), ids=TURNS.keys())
+@pytest.mark.parametrize(
+    ("scene", "phi0", "phi_dot0"),
+    [
+        pytest.param(*each, id=name, marks=[pytest.mark.slow] if k > 0 else [])
+        for k, (name, each) in enumerate(TURNS.items())
+    ],
+)
 def test_a_hundred_turns(scene: Scene, phi0: float, phi_dot0: float) -> None:
     """Each of them is one turn lower, so that one integral over a turn has the time of all."""
     sign = math.copysign(1, phi_dot0)

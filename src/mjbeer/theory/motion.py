@@ -40,8 +40,8 @@ MOST_TURNS = 10_000
 """Most turns of a motion that passes crests."""
 MOST_PERIODS = 1_000_000
 """Most periods of a swing: after more of them rounding of the period alone is 1e-9 rad and more."""
-_BATCH = 512
-"""Most turns on one clock, so that memory does not grow with their number."""
+_FEW, _BATCH = 8, 256
+"""Turns on the first clock, on each next one four times as many, up to so many that memory does not grow with them."""
 _ON_SEPARATRIX = "lies exactly on the separatrix: the motion takes for ever to reach the unstable equilibrium"
 
 State = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -369,18 +369,18 @@ def _paths(start: Start) -> Iterator[tuple[int, Bounce | Turns, float]]:
     The turn of the start has the number 0.
     """
     form, step, rise = start.form, start.form.crest.step, start.form.crest.rise
-    level, turn, left = start.level, 0, MOST_TURNS
+    level, turn, left, batch = start.level, 0, MOST_TURNS, _FEW
     ahead = start.level_ahead if start.past > 0 else level + step  # at the crest after this turn's, to all digits
     while start.phi_dot < 0 and level > rise and left:
-        levels = level - step * np.arange(min(_BATCH, left))
-        levels = levels[levels > rise]
+        levels = level - step * np.arange(min(batch, left))
+        levels, batch = levels[levels > rise], min(4 * batch, _BATCH)
         yield turn, Turns(form, levels[::-1], uphill=True), levels[-1]
         level, ahead, turn, left = levels[-1] - step, levels[-1], turn - len(levels), left - len(levels)
     if level <= rise:
         yield turn, Bounce(start, level), min(abs(level), ahead)
         level, turn = ahead, turn + 1
     while left:
-        levels = level + step * np.arange(min(_BATCH, left))
+        levels, batch = level + step * np.arange(min(batch, left)), min(4 * batch, _BATCH)
         yield turn, Turns(form, levels), level
         level, turn, left = levels[-1] + step, turn + len(levels), left - len(levels)
 

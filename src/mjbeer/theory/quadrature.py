@@ -22,6 +22,8 @@ _TO_SERIES = 2 / (_DEGREE + 1) * _COSINES
 _TO_SERIES[:, 0] /= 2
 _TO_INTEGRAL = np.stack([np.append(chebyshev.chebint(row, lbnd=-1), 0)[: _DEGREE + 2] for row in np.eye(_DEGREE + 1)])
 _WEIGHTS = _TO_SERIES @ _TO_INTEGRAL.sum(axis=1)
+_POINTS = np.array([-1.0, *_NODES[::-1], 1.0])
+_TO_TIMES = _TO_SERIES @ _TO_INTEGRAL @ chebyshev.chebvander(_POINTS, _DEGREE + 1).T
 
 _RESOLVED = 3e-15
 """Largest last coefficient of a resolved series, relative to its largest: a few roundings."""
@@ -33,7 +35,7 @@ _FALLING = 0.1
 _MOST_PANELS = 5000
 """Most panels of one path: an ordinary one takes 10, and one that hardly passes a barrier 100."""
 _MOST_STEPS = 60
-"""Most steps of Newton's method: it takes 5, and if only bisection helps, 53 use up the digits of a double."""
+"""Most steps of Newton's method: it takes 2 or 3, and if only bisection helps, 53 use up the digits of a double."""
 _QUADRATIC = 1e-10
 """A step of Newton's method this small, in half-widths of a panel, leaves an error of its square, below rounding."""
 
@@ -81,6 +83,9 @@ class Clock:
     def _set(self, rates: np.ndarray, passages: int) -> None:
         self._rates, self._size = rates, len(rates) // passages
         self._times = np.concatenate([[0.0], np.cumsum(rates @ _WEIGHTS * self._halves)])
+        lows, halves = self._lows[:, None], self._halves[:, None]
+        self._known_times = (self._times[:-1, None] + halves * (rates @ _TO_TIMES)).ravel()
+        self._known_phases = (lows + halves * (1 + _POINTS)).ravel()
 
     @property
     def duration(self) -> float:
@@ -97,9 +102,10 @@ class Clock:
     def phase(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return psi at the times `time` [s], and in which passage that is; beyond both ends the motion stays there."""
         panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._rates) - 1)
-        half, series = self._halves[panel], self._rates[panel] @ _TO_SERIES
-        psi = self._lows[panel] + half * _invert(series, (time - self._times[panel]) / half)
-        return psi, panel // self._size
+        low, half = self._lows[panel], self._halves[panel]
+        guess = (np.interp(time, self._known_times, self._known_phases) - low) / half - 1
+        series = self._rates[panel] @ _TO_SERIES
+        return low + half * _invert(series, (time - self._times[panel]) / half, guess), panel // self._size
 
 
 def _resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
@@ -111,14 +117,14 @@ def _resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.nda
     return (tail <= _RESOLVED * size) | (stalled & (tail <= noise * size))
 
 
-def _invert(series: np.ndarray, target: np.ndarray) -> np.ndarray:
+def _invert(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
     """Return the x from 0 to 2 at which the integral of each series from -1 to x - 1 reaches its `target`.
 
-    `series` has the shape (samples, coefficients); each is positive from -1 to 1.
+    `guess` is one for x - 1. `series` has the shape (samples, coefficients); each is positive from -1 to 1.
     """
     values, integral = series.T, (series @ _TO_INTEGRAL).T
     low, high = -np.ones_like(target), np.ones_like(target)
-    x = np.clip(2 * target / integral.sum(axis=0) - 1, -1, 1)
+    x = np.clip(guess, -1, 1)
     for _ in range(_MOST_STEPS):
         excess = chebyshev.chebval(x, integral, tensor=False) - target
         low, high = np.where(excess <= 0, x, low), np.where(excess >= 0, x, high)
