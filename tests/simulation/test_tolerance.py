@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Load, Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import ToleranceError
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
