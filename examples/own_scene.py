@@ -15,21 +15,11 @@ PHI0, PHI_DOT0 = 1.0, 0.0  # the start: the angle of the beer's surface to the i
 DURATION = 2.0  # [s]
 
 
-def start(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Put the can at its start: the scene says where its axis is, and rolling how far the can has turned."""
-    u, u_dot = SCENE.start(PHI0, PHI_DOT0)
-    roll, roll_dot = u / SCENE.can.radius, u_dot / SCENE.can.radius
-    data.joint("slide").qpos, data.joint("slide").qvel = u, u_dot
-    data.joint("roll").qpos, data.joint("roll").qvel = roll, roll_dot
-    data.joint("swing").qpos, data.joint("swing").qvel = PHI0 - roll, PHI_DOT0 - roll_dot  # relative to the can
-    mujoco.mj_forward(model, data)
-
-
 def run() -> tuple[np.ndarray, np.ndarray]:
     """Return the times [s] and the angle phi [rad] of every step."""
     model = mjbeer.build(SCENE, rolling="equality")
     data = mujoco.MjData(model)
-    start(model, data)
+    mjbeer.reset(model, data, SCENE, PHI0, PHI_DOT0)
     times, phi = [], []
     for _ in range(round(DURATION / model.opt.timestep)):
         times.append(data.time)

@@ -12,13 +12,14 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, reject, settings
 from hypothesis import strategies as st
 
 import mjbeer
-from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, exact, frozen, require, simulate
+from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, build, exact, frozen, require, simulate
 from mjbeer.drawing import encoder, frames, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
@@ -97,6 +98,7 @@ VALUES: dict[str, Callable[[], object]] = {
 }
 MOTION = exact(frozen(), np.linspace(0, 0.1, 11), 1.0)
 RUN = simulate(frozen(), 0.01, 1.0)
+MODEL = build(frozen())
 GOOD: dict[str, Any] = {
     **{name: getattr(MOTION, name) for name in inspect.signature(Trajectory).parameters},
     **{"can": Can(), "load": Load(0.2, 0.01, 1e-5), "mass": 0.2, "offset": 0.01, "amplitude": 0.3},
@@ -107,6 +109,7 @@ GOOD_HERE: dict[str, dict[str, Any]] = {
     "save_frame": {"time": 0.1, "path": "can.png"},
     "frame": {"time": 0.1},
     "export": {"path": "can.xml"},
+    "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)},
 }
 """Those that are others in one function."""
 

@@ -8,9 +8,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from mjbeer.model import appearance, parts, templates
+from mjbeer.model import looks
 
-FOLDER = templates.folder()
+FOLDER = looks.folder()
 TEXT = (FOLDER / "README.md").read_text()
 NAMES = ("sliding", "frozen", "pendulum", "hoop")
 MODELS = {name: mujoco.MjModel.from_xml_path(str(FOLDER / f"{name}.xml")) for name in NAMES}
@@ -88,14 +88,6 @@ def test_joints_are_those_of_the_models() -> None:
         assert told == {model.joint(i).name: TYPES[mujoco.mjtJoint(model.jnt_type[i])] for i in range(model.njnt)}, name
 
 
-def test_constraints_are_those_of_the_models() -> None:
-    for name, model in MODELS.items():
-        found = [model.equality(i).name for i in range(model.neq)], [model.pair(i).name for i in range(model.npair)]
-        assert found == (([], ["rolling"]) if name == "hoop" else (["rolling"], []))
-    assert {MODELS["hoop"].geom(int(MODELS["hoop"].pair_geom1[0])).name,
-            MODELS["hoop"].geom(int(MODELS["hoop"].pair_geom2[0])).name} == {"can", "surface"}  # fmt: skip
-
-
 def test_cameras_are_those_of_every_model() -> None:
     told = {quoted(camera)[0]: mode for camera, mode, _ in table("Cameras")}
     for model in MODELS.values():
@@ -112,10 +104,9 @@ def test_what_is_drawn_is_what_the_models_have() -> None:
 
 def test_numbers_of_what_is_drawn_are_those_that_it_is_drawn_with() -> None:
     section = TEXT.split("\n## What is drawn\n")[1].split("\n## ")[0]
-    assert f"on {round(math.degrees(parts.SECTOR))}° of the near edge" in section
-    assert f"{100 * appearance.FOAM:g} % of the radius thick" in section
-    assert f"{100 * parts.WALL:g} % of a radius lower" in section
-    assert set(re.findall("`(\\w+)`", section.split("turned: no")[1])) == set(appearance.TURNING)
+    assert f"{100 * looks.FOAM:g} % of the radius thick" in section
+    assert f"{100 * looks.WALL:g} % of a radius lower" in section
+    assert set(re.findall("`(\\w+)`", section.split("turned: no")[1])) == set(looks.TURNING)
 
 
 def test_keyframes_are_those_of_the_models_and_start_there() -> None:
@@ -165,7 +156,3 @@ def test_every_model_is_there_and_has_a_picture() -> None:
     for name in NAMES:
         assert f"(../renders/{name}.webp)" in TEXT
         assert f"`{name}.xml`" in TEXT
-
-
-def test_the_licence_is_that_of_mjbeer() -> None:
-    assert (FOLDER / "LICENSE").read_bytes() == (FOLDER.parent / "LICENSE").read_bytes()

@@ -6,11 +6,11 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from mjbeer.model.softness import effective_softness
 
-from mjbeer import Can, Load, Scene, build, frozen, sliding
-from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model.build import compile_model, compose
+from mjbeer import build, frozen
+from mjbeer.exceptions import ParameterError
+from mjbeer.model.build import compile_model
+from mjbeer.model.check import effective_softness
 from mjbeer.model.setting import USUAL, Setting, Softness
 from mjbeer.model.state import start
 from mjbeer.require import shown
@@ -44,11 +44,6 @@ def test_either_joint_may_be_named_first() -> None:
     assert (slide.eq_data[0, 1], hinge.eq_data[0, 1]) == (radius, 1 / radius)
 
 
-def test_a_massless_can_around_a_sliding_load_is_refused() -> None:
-    with pytest.raises(UnsupportedError, match="massless"):
-        compile_model(sliding(), USUAL["contact, defaults"])
-
-
 def test_refsafe_raises_a_time_constant_under_two_timesteps() -> None:
     at = start(compile_model(frozen(), SLIDE_FIRST), frozen(), 0.3, 1.0)
     for timestep, expected in ((2e-3, 0.02), (16e-3, 0.032)):
@@ -73,52 +68,8 @@ def test_the_share_is_what_the_solver_lets_through() -> None:
     assert (held - free) / (wanted - free) == pytest.approx(soft.effective_impedance, rel=1e-9)
 
 
-def test_tuned_models_get_what_they_ask_for() -> None:
-    scene = frozen()
-    for rolling, share in (("equality", 1.0), ("contact", 0.9999)):
-        model = build(scene, rolling)
-        soft = effective_softness(model, start(model, scene, 0.3, 0.0))
-        assert soft is not None
-        assert not soft.changed
-        assert soft.effective_impedance == pytest.approx(share, abs=1e-12)
-    assert effective_softness(build(scene), np.zeros(2)) is None
-
-
-def test_in_the_air_there_is_no_softness() -> None:
-    model = compose(frozen(), Setting("contact")).compile()
-    at = start(model, frozen(), 0.3, 0.0)
-    at[model.joint("lift").qposadr[0]] = 1.0
-    assert effective_softness(model, at) is None
-
-
-@pytest.mark.parametrize("rolling", ["equality", "contact"])
-@pytest.mark.parametrize(("refsafe", "effective"), [(False, 5e-4), (True, 2e-3)])
-def test_time_constants(rolling: str, refsafe: bool, effective: float) -> None:
-    """With refsafe, MuJoCo raises what is under two timesteps to two."""
-    soft = Softness(solref=(5e-4, 1.0), impedance=(0.99, 0.99), refsafe=refsafe)
-    model = build(frozen(), rolling, softness=soft)
-    effect = effective_softness(model, start(model, frozen(), 1.0, 0.0))
-    assert effect is not None
-    assert (effect.timeconst, effect.impedance) == (5e-4, pytest.approx(0.99))
-    assert effect.effective_timeconst == pytest.approx(effective, rel=1e-9)
-
-
-def test_stiffness_is_given_directly() -> None:
-    model = build(frozen(), "equality", softness=Softness(solref=(-1e6, -2e3)))
-    assert model.eq_solref[0].tolist() == [-1e6, -2e3]
-
-
-def test_what_is_not_given_stays_as_it_is_tuned() -> None:
-    model = build(frozen(), "contact", friction=0.3, softness=Softness(impratio=7.0))
-    assert model.opt.impratio == 7.0
-    assert model.pair_friction[0, 0] == 0.3
-    assert model.pair_solref[0].tolist() == [1e-3, 1]
-    assert model.pair_solimp[0, :2].tolist() == [0.9999, 0.9999]
-    assert model.opt.disableflags & REFSAFE
-
-
 @pytest.mark.parametrize("field", ["timestep", "friction", "tolerance"])
-@pytest.mark.parametrize("bad", [0, -1, np.float64(-1.0), np.nan, np.inf, "1", True, 1e160, 1e-320])
+@pytest.mark.parametrize("bad", [0, np.float64(-1.0), np.nan, np.inf, "1", True])
 def test_a_setting_refuses_what_is_no_positive_number(field: str, bad: object) -> None:
     with pytest.raises(ParameterError, match=rf"^{field} must be .*, got {re.escape(shown(bad))}$"):
         Setting("equality", **{field: bad})
@@ -167,9 +118,19 @@ def test_the_limits_are_mujoco_s() -> None:
     assert data.contact[0].friction[0] == 1e-5
 
 
-def test_a_mass_matrix_that_mujoco_calls_singular_is_refused() -> None:
-    scene = Scene(Can(2e-10, 1, 3e3, 1.5e-16), Load(1.2e4, 3e-12, 9e9))
-    with pytest.raises(
-        UnsupportedError, match="MuJoCo cannot represent this scene: Inertia matrix is too close to singular"
-    ):
-        build(scene, "equality")
+def test_what_is_given_is_used_and_the_rest_stays_tuned() -> None:
+    """In the air there is no softness."""
+    model = build(frozen(), "contact", friction=0.3, softness=Softness(impratio=7.0))
+    assert (model.opt.impratio, model.pair_friction[0, 0]) == (7.0, 0.3)
+    assert model.pair_solref[0].tolist() == [1e-3, 1]
+    assert model.pair_solimp[0, :2].tolist() == [0.9999, 0.9999]
+    assert model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
+    at = start(model, frozen(), 0.3, 0.0)
+    soft = effective_softness(model, at)
+    assert soft is not None
+    assert not soft.changed
+    assert soft.effective_impedance == pytest.approx(0.9999, abs=1e-12)
+    at[model.joint("lift").qposadr[0]] = 1.0
+    assert effective_softness(model, at) is None
+    model = build(frozen(), "equality", softness=Softness(solref=(-1e6, -2e3)))
+    assert model.eq_solref[0].tolist() == [-1e6, -2e3]

@@ -39,20 +39,9 @@ _TURNED = [math.sqrt(0.5), 0, math.sqrt(0.5), 0]
 would move a centre of mass within 1e-6 m of the origin to the origin, and lose the weight's torque. The inertia is the
 same in both frames."""
 _DISABLE, _ENABLE = mujoco.mjtDisableBit, mujoco.mjtEnableBit
-# No scene needs these stages. Autoreset must go: it would hide a divergence by starting again.
-_UNUSED = (
-    _DISABLE.mjDSBL_AUTORESET
-    | _DISABLE.mjDSBL_CLAMPCTRL
-    | _DISABLE.mjDSBL_FRICTIONLOSS
-    | _DISABLE.mjDSBL_ISLAND
-    | _DISABLE.mjDSBL_LIMIT
-    | _DISABLE.mjDSBL_MIDPHASE
-    | _DISABLE.mjDSBL_SENSOR
-    | _DISABLE.mjDSBL_SPRING
-)
-_UNCONSTRAINED = (
-    _DISABLE.mjDSBL_CONSTRAINT | _DISABLE.mjDSBL_CONTACT | _DISABLE.mjDSBL_EQUALITY | _DISABLE.mjDSBL_WARMSTART
-)
+_UNUSED = ("AUTORESET", "CLAMPCTRL", "FRICTIONLOSS", "ISLAND", "LIMIT", "MIDPHASE", "SENSOR", "SPRING")
+"""The stages of a step that no scene needs. Autoreset must go: it would hide a divergence by starting again."""
+_UNCONSTRAINED = ("CONSTRAINT", "CONTACT", "EQUALITY", "WARMSTART")
 _SINGULAR = "Inertia matrix is too close to singular"
 """What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
 _skeletons: dict[Kind, mujoco.MjModel] = {}
@@ -167,8 +156,7 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
 
 def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -> None:
     """Add the keyframe "start" to a specification that has nothing but a scene's joints."""
-    joints = {joint.name: place for place, joint in enumerate(spec.joints)}
-    qpos, qvel = state.at(joints, scene, phi0, phi_dot0)
+    qpos, qvel = state.at([joint.name for joint in spec.joints], scene, phi0, phi_dot0)
     spec.add_key(name=START, qpos=qpos, qvel=qvel)
 
 
@@ -260,14 +248,14 @@ def _tilt(spec: mujoco.MjSpec, incline: float) -> None:
 
 
 def _disable_unused(spec: mujoco.MjSpec, kind: Kind) -> None:
-    flags = int(_UNUSED)
-    if not kind.dissipates:
-        flags |= int(_DISABLE.mjDSBL_DAMPER)
-    if kind.rolling != "contact":
-        flags |= int(_UNCONSTRAINED if kind.rolling == "reduced" else _DISABLE.mjDSBL_CONTACT)
-    if not kind.pushed:
-        flags |= int(_DISABLE.mjDSBL_ACTUATION)
-    spec.option.disableflags |= flags
+    stages = (
+        *_UNUSED,
+        *(() if kind.dissipates else ("DAMPER",)),
+        *(() if kind.pushed else ("ACTUATION",)),
+        *{"reduced": _UNCONSTRAINED, "equality": ("CONTACT",), "contact": ()}[kind.rolling],
+    )
+    for stage in stages:
+        spec.option.disableflags |= int(_DISABLE.__members__[f"mjDSBL_{stage}"])
 
 
 def _add(spec: mujoco.MjSpec, kind: Kind) -> None:

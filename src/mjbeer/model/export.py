@@ -146,7 +146,7 @@ def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> flo
         energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + 2 * oscillator.depth
         least, force, size = oscillator.base, abs(oscillator.slope), can.radius
     else:
-        mass, moment = scene.mass + can.inertia / can.radius**2, load.mass * load.offset
+        mass, moment = scene.effective_mass, load.moment
         u_dot, own = scene.start(phi0, phi_dot0)[1], load.inertia + moment * load.offset
         energy = (mass * u_dot**2 + own * phi_dot0**2) / 2 - moment * math.cos(phi0) * u_dot * phi_dot0
         energy += 2 * moment * scene.gravity

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import mujoco
 
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, TUNED, FirstJoint, Setting
+from mjbeer.model.setting import DOP853, OWN, TUNED, FirstJoint, Setting
 from mjbeer.theory.scene import Scene
 
 Made: TypeAlias = mujoco.MjSpec | mujoco.MjModel
@@ -51,15 +51,6 @@ fall with the square of gravity, or the solver would stop before it begins, and 
 the third number, gravity over standard gravity."""
 _STIFF_INTEGRATORS = ("RK4", "discrete", DOP853)
 """The integrators that are stable with a time constant of half a timestep."""
-_INTEGRATORS = {
-    "Euler": mujoco.mjtIntegrator.mjINT_EULER,
-    "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
-    "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
-    "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
-    "RK4": mujoco.mjtIntegrator.mjINT_RK4,
-    DOP853: mujoco.mjtIntegrator.mjINT_RK4,  # not used: mjbeer's own integrators step by themselves
-    GAUSS_JACKSON: mujoco.mjtIntegrator.mjINT_RK4,
-}
 
 
 class Kind(NamedTuple):
@@ -67,16 +58,16 @@ class Kind(NamedTuple):
 
     rolling: str
     joints: tuple[str, ...]
+    """In the order of qpos."""
     pushed: bool
     """Whether a constant force acts, by the actuator "weight"."""
     chord: bool
     """Whether it has the tendon "chord"."""
     damped: bool
-    """Whether there is damping between can and load."""
+    """Whether there is damping between can and load; then, or with drag, it `dissipates`."""
     dissipates: bool
-    """Whether damping or drag takes energy."""
     rigid: bool
-    """Whether its joint equality is solved exactly."""
+    """Whether its joint equality is solved exactly; the rest are flags of its softness."""
     first: FirstJoint
     refsafe: bool
     exact_diagonal: bool
@@ -100,6 +91,8 @@ class Numbers:
 
     scene: Scene
     setting: Setting
+    timestep: float
+    """Timestep of MuJoCo, to which constraints are fitted [s]."""
     tilted: bool
     """Whether gravity is tilted instead of the incline."""
     joints: tuple[str, ...]
@@ -118,8 +111,10 @@ class Numbers:
     """Armature of the tendon "chord" [kg]."""
 
     @classmethod
-    def of(cls, scene: Scene, setting: Setting, visuals: bool = False) -> "Numbers":
+    def of(cls, scene: Scene, setting: Setting, visuals: bool = False, timestep: float | None = None) -> "Numbers":
         """Return the numbers of a scene in a setting; a model with visuals keeps its masses and an upright gravity.
+
+        A `timestep` [s] is instead of the setting's.
 
         Raises:
           UnsupportedError: if MuJoCo cannot move one of the bodies.
@@ -132,7 +127,15 @@ class Numbers:
         else:
             own = _sliding(scene, unit) if scene.attachment == "sliding" else _frozen(scene, unit)
         damping = tuple(unit * each for each in scene.damping_law.coefficients)
-        return cls(scene=scene, setting=setting, tilted=not visuals, damping=damping, drag=unit * scene.drag, **own)
+        return cls(
+            scene=scene,
+            setting=setting,
+            timestep=timestep or setting.timestep,
+            tilted=not visuals,
+            damping=damping,
+            drag=unit * scene.drag,
+            **own,
+        )
 
     @cached_property
     def kind(self) -> Kind:
@@ -168,7 +171,7 @@ def mass_unit(scene: Scene) -> float:
         values = can.mass - moved, can.inertia, load.mass, load.inertia, base
     smallest = min(value for value in values if value > _NOTHING * max(values))
     up = math.ceil(math.log2(_SMALLEST / smallest))
-    down = math.floor(math.log2(_LARGEST / (scene.mass + can.inertia / can.radius**2)))
+    down = math.floor(math.log2(_LARGEST / (scene.effective_mass)))
     return 2.0 ** max(up, min(0, down))
 
 
@@ -210,7 +213,7 @@ def _frozen(scene: Scene, unit: float) -> dict[str, Any]:
     acts on the moment m b as in eq. (52), and a constant torque replaces its effect on the motion of the axis.
     """
     oscillator = scene.oscillator
-    moment = scene.load.mass * scene.load.offset
+    moment = scene.load.moment
     # Any mass with the moment m b is right. The scene's mass at its centre of mass (38) is the natural choice. Where it
     # would have more than half of the inertia, a larger mass on a shorter arm is chosen that has exactly half.
     mass, offset = scene.mass, scene.centre_of_mass
@@ -238,10 +241,7 @@ def _constrained(scene: Scene, unit: float, rolling: str) -> dict[str, Any]:
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
                 'use rolling="reduced", or give the can mass'
             )
-        return {
-            "joints": joints,
-            "bodies": {"can": _scaled(unit, Inertial(scene.mass, scene.centre_of_mass, inertia))},
-        }
+        return {"joints": joints, "bodies": {"can": _scaled(unit, Inertial(scene.mass, scene.centre_of_mass, inertia))}}
     if can.mass == 0:
         raise UnsupportedError(
             'a massless can with a sliding load exists only in rolling="reduced": MuJoCo has no massless moving body; '
@@ -254,10 +254,7 @@ def _constrained(scene: Scene, unit: float, rolling: str) -> dict[str, Any]:
         )
     moved = _moved_to_point(scene)
     bodies = {"can": Inertial(can.mass - moved, 0.0, can.inertia), "load": _load_with(scene, moved)}
-    return {
-        "joints": (*joints, "swing"),
-        "bodies": {name: _scaled(unit, body) for name, body in bodies.items()},
-    }
+    return {"joints": (*joints, "swing"), "bodies": {name: _scaled(unit, body) for name, body in bodies.items()}}
 
 
 def _moved_to_point(scene: Scene) -> float:
@@ -273,8 +270,8 @@ def _load_with(scene: Scene, moved: float) -> Inertial:
     """Return the load with the mass `moved` [kg] from the can to it, as a point on the axis."""
     load = scene.load
     mass = load.mass + moved
-    inertia = load.inertia + load.mass * load.offset**2 * moved / mass
-    return Inertial(mass, load.mass * load.offset / mass, inertia)
+    inertia = load.inertia + load.moment * load.offset * moved / mass
+    return Inertial(mass, load.moment / mass, inertia)
 
 
 def _frozen_inertia(scene: Scene) -> float:
@@ -291,7 +288,9 @@ def write(numbers: Numbers, made: Made) -> None:
     """Write all numbers into a specification that has the elements of their kind, or a model compiled from it."""
     scene, setting = numbers.scene, numbers.setting
     option = made.opt if isinstance(made, mujoco.MjModel) else made.option
-    option.timestep, option.integrator = setting.timestep, int(_INTEGRATORS[setting.integrator])
+    integrator = "RK4" if setting.integrator in OWN else setting.integrator  # mjbeer's own step by themselves
+    option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
+    option.timestep = numbers.timestep
     tilt = scene.incline if numbers.tilted else 0.0
     option.gravity = [scene.gravity * math.sin(tilt), 0, -scene.gravity * math.cos(tilt)]
     for name, body in numbers.bodies.items():
@@ -303,8 +302,8 @@ def write(numbers: Numbers, made: Made) -> None:
         made.actuator("weight").biasprm[0] = numbers.force
     if numbers.chord > 0:
         _write_tendon(made, "chord", armature=numbers.chord)
-    # MuJoCo's polynomials of a rate v: d1 v + d2 v |v| + d3 v^3.
-    if numbers.kind.dissipates and "slide" in numbers.joints:  # also 0, over that of a scene before
+    # MuJoCo's polynomials of a rate v: d1 v + d2 v |v| + d3 v^3. A drag of 0 may follow another one in a model.
+    if numbers.kind.dissipates:
         _write_damping(made, "slide", (0.0, numbers.drag, 0.0))
     if any(numbers.damping):
         if "swing" in numbers.joints:
@@ -314,18 +313,19 @@ def write(numbers: Numbers, made: Made) -> None:
     if setting.rolling == "equality":
         rolling, radius = made.equality("rolling"), scene.can.radius
         rolling.data[:5] = [0, radius if setting.softness.first == "slide" else 1 / radius, 0, 0, 0]
-        _write_softness(rolling, setting)
+        _write_softness(rolling, numbers)
     elif setting.rolling == "contact":
-        _write_contact(made, option, scene, setting)
+        _write_contact(made, option, numbers)
 
 
-def _write_contact(made: Made, option: Any, scene: Scene, setting: Setting) -> None:
+def _write_contact(made: Made, option: Any, numbers: Numbers) -> None:
+    scene, setting = numbers.scene, numbers.setting
     radius, half = scene.can.radius, scene.can.length / 2
     made.body("can").pos = [0, 0, radius]
     made.geom("can").size = [radius, half, 0]
     rolling = made.pair("rolling")
     rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
-    _write_softness(rolling, setting)
+    _write_softness(rolling, numbers)
     option.impratio = setting.softness.impratio or _FRICTION_HARDNESS
     weight = max(scene.gravity / _STANDARD_GRAVITY, _WEIGHTLESS)
     option.tolerance = _TOLERANCE * min(1.0, weight) ** 2
@@ -334,11 +334,12 @@ def _write_contact(made: Made, option: Any, scene: Scene, setting: Setting) -> N
         made.geom_aabb[made.geom("can").id] = [0, 0, 0, radius, radius, half]
 
 
-def _write_softness(rolling: Any, setting: Setting) -> None:
+def _write_softness(rolling: Any, numbers: Numbers) -> None:
     """Write the softness of the row of a joint equality, or of a contact's rows."""
-    softness, contact = setting.softness, setting.rolling == "contact"
+    setting, softness = numbers.setting, numbers.setting.softness
     rolling.solimp = [*(softness.impedance or _IMPEDANCE), *_WIDTH]
-    rolling.solref = softness.solref or (stiffest(setting.integrator, setting.timestep, contact=contact), 1)
+    fastest = stiffest(setting.integrator, numbers.timestep, contact=setting.rolling == "contact")
+    rolling.solref = softness.solref or (fastest, 1)
 
 
 def _write_damping(made: Made, joint: str, damping: tuple[float, ...]) -> None:

@@ -1,7 +1,6 @@
 """Converts between a scene's coordinates and the joints of its model, which are addressed by name."""
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
@@ -26,8 +25,9 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     Raises:
       ParameterError: if the start is not allowed, or the model has no joint for phi.
     """
-    require.instance("scene", scene, Scene)
-    values = _at_start(scene, *require.start(phi0, phi_dot0))
+    for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
+        require.instance(name, given, kind)
+    values = _values(_begin(scene, *require.start(phi0, phi_dot0)))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
         raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
@@ -44,46 +44,40 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
 
 def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
-    return np.concatenate(at(places(model), scene, phi0, phi_dot0))
+    return write(model, _begin(scene, phi0, phi_dot0))[0]
 
 
-def at(joints: Mapping[str, int], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return qpos and qvel of a start, for the places of the joints, as the rows of one array."""
-    state = np.zeros(2 * len(joints))
-    _assemble(joints, _at_start(scene, phi0, phi_dot0), state)
-    return state.reshape(2, -1)
-
-
-def _at_start(scene: Scene, phi0: float, phi_dot0: float) -> dict[str, tuple[float, float]]:
-    u, u_dot = scene.start(phi0, phi_dot0)
-    roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
-    return {
-        "slide": (u, u_dot),
-        "lift": (-START_DEPTH * scene.can.radius, 0.0),
-        "roll": (roll, roll_dot),
-        "swing": (phi0 - roll, phi_dot0 - roll_dot),
-        "phi": (phi0, phi_dot0),
-    }
+def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+    """Return the positions and the rates of joints at a start, shape (2, joints)."""
+    values = _values(_begin(scene, phi0, phi_dot0))
+    return np.array([values[name] for name in joints])[..., 0].T
 
 
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion: the inverse of `read`."""
-    values = {
+    values, states = _values(motion), np.zeros((len(motion.time), model.nq + model.nv))
+    for name, place in places(model).items():
+        states[:, place], states[:, model.nq + place] = values[name]
+    return states
+
+
+def _begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
+    """Return a start as a motion of one sample."""
+    (u, u_dot), radius = scene.start(phi0, phi_dot0), scene.can.radius
+    values = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0
+    names = "time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot"
+    return Coordinates(**{name: np.array([value]) for name, value in zip(names, values, strict=True)})
+
+
+def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Return the positions and rates of all joints that a model may have, by name."""
+    return {
         "slide": (motion.u, motion.u_dot),
         "lift": (motion.lift, motion.lift_dot),
         "roll": (motion.roll, motion.roll_dot),
         "swing": (motion.phi - motion.roll, motion.phi_dot - motion.roll_dot),
         "phi": (motion.phi, motion.phi_dot),
     }
-    states = np.zeros((len(motion.time), model.nq + model.nv))
-    _assemble(places(model), values, states)
-    return states
-
-
-def _assemble(joints: Mapping[str, int], values: Mapping[str, tuple[Any, Any]], states: np.ndarray) -> None:
-    """Write the positions and rates of the joints into `states`, shape (..., 2 * joints)."""
-    for name, place in joints.items():
-        states[..., place], states[..., len(joints) + place] = values[name]
 
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:

@@ -4,7 +4,6 @@ import math
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager
-from dataclasses import replace
 
 import numpy as np
 
@@ -123,5 +122,6 @@ def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
     """Return what is to be written into the model of a scene."""
     if setting.tolerance is not None:
         timestep = tuning(scene, setting.rolling, setting.timestep)
-        return Numbers.of(scene, replace(setting, integrator=DOP853, timestep=timestep))
-    return Numbers.of(scene, replace(setting, timestep=_step(setting, uneven)))
+    else:
+        timestep = _step(setting, uneven)
+    return Numbers.of(scene, setting, timestep=timestep)
