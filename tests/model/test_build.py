@@ -305,9 +305,9 @@ def test_what_rounding_takes_from_a_model_is_found() -> None:
     """As a mass 1e13 times that of the load does, beyond any can; and what a wrong mass would do."""
     run = simulate(frozen(), 1.0, 1.0)
     model = build(frozen())
-    assert check.lost(model, run.scene, run.way, run.steps, exact_constraint=True) < 1e-13
+    assert check.lost(model, run.scene, run.spread, run.record, exact_constraint=True) < 1e-13
     model.body_mass *= 1 + 1e-4
-    assert check.lost(model, run.scene, run.way, run.steps, exact_constraint=True) > 1e-4
+    assert check.lost(model, run.scene, run.spread, run.record, exact_constraint=True) > 1e-4
 
 
 @pytest.mark.parametrize("rolling", ROLLINGS)

@@ -1,6 +1,10 @@
 """The compiled integrator: against SciPy's on the same equations, its continuous output, its limits."""
 
 import math
+import os
+import pathlib
+import subprocess
+import sys
 
 import mujoco
 import numpy as np
@@ -13,6 +17,7 @@ from mjbeer.model.build import build
 from mjbeer.model.state import read, start
 from mjbeer.simulation import dop853_kernel
 from mjbeer.simulation.dop853 import Integrator, integrate
+from mjbeer.simulation.stepping import _COMPILING
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
@@ -154,3 +159,27 @@ def test_no_clock_is_read_while_stepping() -> None:
     timers = integrator._data.timer
     assert timers[mujoco.mjtTimer.mjTIMER_VELOCITY].number > 100
     assert timers[mujoco.mjtTimer.mjTIMER_VELOCITY].duration == 0
+
+
+RUN = """
+from mjbeer import frozen, simulate
+simulate(frozen(), 0.1, 1.0)
+simulate(frozen(), 0.1, 1.0, integrator="DOP853", timestep=0.01)
+simulate(frozen(), 0.1, 1.0, tolerance=1e-6)
+"""
+
+
+@pytest.mark.slow
+def test_it_is_said_once_on_a_terminal_that_loops_are_compiled(tmp_path: pathlib.Path) -> None:
+    """And a loop that is in the cache is not compiled."""
+    settings = {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "TERM": "xterm", "COLUMNS": "200"}
+    for said in (f"{_COMPILING}\r\nend", "end"):
+        reader, writer = os.openpty()
+        subprocess.run([sys.executable, "-c", RUN], env=os.environ | settings, stderr=writer, check=True)
+        os.write(writer, b"end")  # reading a terminal waits for something
+        os.close(writer)
+        text = b""
+        with open(reader, "rb", buffering=0) as stream:
+            while not text.endswith(b"end"):  # a terminal may hand over less than was written
+                text += stream.read(10_000)
+        assert text.decode() == said

@@ -20,10 +20,8 @@ SETTINGS = [
 ]
 SCENES = [sliding(can=METAL), sliding(0.3, 0.2, can=METAL), frozen(0.2), frozen(0.3, 0.8, can=METAL), pendulum()]
 DAMPED = [
-    sliding(can=METAL, damping=1e-4, drag=0.1),
-    sliding(0.3, can=METAL, damping=1e-3),
-    sliding(can=METAL, drag=0.2),
-]
+    sliding(can=METAL, damping=1e-4, drag=0.1), sliding(0.3, can=METAL, damping=1e-3), sliding(can=METAL, drag=0.2)
+]  # fmt: skip
 TIMES = np.linspace(0, 0.4, 5)
 
 

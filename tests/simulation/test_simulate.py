@@ -258,22 +258,6 @@ def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(roll
     assert 1.2 * error(run) < run.error_estimate < 3.3 * error(run)
 
 
-def test_the_second_run_is_made_once_and_not_before_it_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    timesteps: list[float] = []
-
-    def count(stepped: Stepped, numbers: Numbers) -> None:
-        timesteps.append(numbers.timestep)
-        write(stepped, numbers)
-
-    write = Stepped.write
-    monkeypatch.setattr(Stepped, "write", count)
-    run = simulate(frozen(), 0.1, 1.0)
-    assert timesteps == [1e-3]
-    assert run.trusted
-    assert run.error_estimate == run.error_estimate
-    assert timesteps == pytest.approx([1e-3, (math.sqrt(5) - 1) / 2 * 1e-3], rel=1e-15)
-
-
 def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
     run, solve = simulate(frozen(), 0.1, 1.0), Prepared.solve
 

@@ -303,7 +303,7 @@ def write(numbers: Numbers, made: Made) -> None:
     if numbers.chord > 0:
         _write_tendon(made, "chord", armature=numbers.chord)
     # MuJoCo's polynomials of a rate v: d1 v + d2 v |v| + d3 v^3. A drag of 0 may follow another one in a model.
-    if numbers.kind.dissipates and "slide" in numbers.joints:
+    if numbers.kind.dissipates:
         _write_damping(made, "slide", (0.0, numbers.drag, 0.0))
     if any(numbers.damping):
         if "swing" in numbers.joints:

@@ -46,7 +46,8 @@ of 2,000 runs was 7.5 times as far from the exact motion as from the other run."
 _RATIO = 8.0
 """Local tolerance of one run over that of the next. At order 8 the next one takes 1.3 times the evaluations."""
 _SMALLEST = 1e-16
-"""Local tolerance below which the error of a step is rounding."""
+"""Local tolerance below which the error of a step is rounding. Where more is lost it is larger, but leaves two finer
+runs: the distance of the first two runs is that of the nudge."""
 _STALLED = 0.75
 """Distance of two runs over that of the two runs before, above which the finer runs were no progress."""
 _PATIENCE = 2
@@ -136,7 +137,7 @@ class Solver:
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
         rounding = max(1.0, _CANCELLED * form.swing / form.base)
-        self._nudge, self._smallest = _NUDGE * rounding, _SMALLEST * rounding
+        self._nudge, self._smallest = _NUDGE * rounding, _SMALLEST * max(1.0, rounding / _RATIO**2)
         try:
             self._gauss_jackson: GaussJackson | None = GaussJackson(model, self._dop853)
         except UnsupportedError:

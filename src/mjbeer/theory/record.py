@@ -168,7 +168,7 @@ class Record:
 
         Unlike the error itself, neither drift grows where only the phase is off. With damping or drag it is 0.
         """
-        return max(self.swing_error, self.axis_error)
+        return float(np.maximum(self.swing_error, self.axis_error))
 
     @property
     def swing_error(self) -> float:
@@ -269,4 +269,4 @@ def _largest(so_far: float, values: np.ndarray | float) -> float:
 
 
 def _ratio(change: float, scale: float) -> float:
-    return change / scale if scale > 0 else 0.0
+    return 0.0 if scale == 0 else change / scale  # NaN stays

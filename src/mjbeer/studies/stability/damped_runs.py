@@ -59,7 +59,7 @@ class Ended:
     error: float = math.inf
     """Largest error of phi and u/a at the samples [rad], relative beyond 1 rad."""
     implied: float = math.inf
-    """The error that the drift of its energy and momentum implies [rad], relative beyond 1 rad."""
+    """The error that the run itself estimates [rad], relative beyond 1 rad."""
 
 
 class DampedRuns:
@@ -87,7 +87,7 @@ class DampedRuns:
             outcome = EXPLODED if explodes(run, self._kinetic) else right
         else:
             outcome = TRUSTED if error <= ERROR else SILENT
-        return Ended(outcome, error, run.record.implied_error)
+        return Ended(outcome, error, run.error_estimate or 0.0)
 
     def explodes(self, timestep: float) -> bool:
         """Simulate with any timestep [s], and return whether the run explodes."""
