@@ -207,24 +207,30 @@ def _stretched(points: np.ndarray, size: float, length: float) -> np.ndarray:
 
 
 def _fit_mesh(element: mujoco.MjsMesh, place: pathlib.Path, size: float, length: float) -> None:
-    """Stretch a mesh of the template, so that the model needs no file; one that is not mjbeer's keeps its proportions.
+    """Stretch a mesh of the template, so that no file is needed; one that is not as mjbeer's keeps its proportions."""
+    path = place / element.file
+    if path.suffix == ".obj" and path.is_file() and (shape := _triangles(path, path.stat().st_mtime_ns)):
+        vertices, places, faces = shape
+        element.usertexcoord = places
+        _reshape(element, (_stretched(vertices * element.scale, size, length), faces))
+    else:
+        element.scale = np.array(element.scale) * size  # if the file is missing, MuJoCo says so
+
+
+@functools.lru_cache(maxsize=32)
+def _triangles(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Return vertices, their places in a texture as one row, and faces of a file as mjbeer's are, None for another one.
 
     mjbeer's files have triangles, and as many places in a texture as vertices, or none.
     """
-    path = place / element.file
-    element.scale = np.array(element.scale) * size
-    if path.suffix != ".obj" or not path.is_file():
-        return  # if it is missing, MuJoCo says so
     rows = [line.split() for line in path.read_text().splitlines()]
     vertices, places, faces = ([row[1:] for row in rows if row[:1] == [kind]] for kind in ("v", "vt", "f"))
-    corner = "{0}/{0}".format if places else "{}".format
-    if any(len(face) != 3 or any(each != corner(each.split("/")[0]) for each in face) for face in faces):
-        return
-    if places:
-        element.usertexcoord = np.array(places, float).ravel()
-    points = np.array(vertices, float) * element.scale / size
-    numbers = np.array([[int(each.split("/")[0]) - 1 for each in face] for face in faces])
-    _reshape(element, (_stretched(points, size, length), numbers))
+    corners = [each.split("/") for face in faces for each in face]
+    alike = len(places) in (0, len(vertices)) and all(len(set(each)) == 1 for each in corners)
+    if not alike or any(len(face) != 3 for face in faces):
+        return None
+    numbers = np.array([int(first) - 1 for first, *_ in corners]).reshape(-1, 3)
+    return np.array(vertices, float), np.array(places, float).ravel(), numbers
 
 
 def _reshape(element: mujoco.MjsMesh, shape: Mesh) -> None:
