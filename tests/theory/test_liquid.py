@@ -173,7 +173,7 @@ def test_the_law_says_where_it_holds() -> None:
     assert liquid_in("honey").damping.holds == pytest.approx((0.0, 217), rel=0.01)
     lowest, highest = liquid_in("water", incline=0.0).damping.holds or (0, 0)
     assert lowest == 0
-    assert highest == pytest.approx(1.39 * 37, rel=0.01)  # a swing of two radians, of 18 rad/s
+    assert highest == pytest.approx(1.39 * 37.5, rel=0.01)  # a swing of two radians, of 18 rad/s
 
 
 WARNED = {

@@ -251,8 +251,8 @@ def about_run(scene: "Scene", fastest: float, spread_at: float) -> str | None:
     reasons = []
     if spread_at < math.inf:
         reasons.append(
-            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which spreads "
-            "it round the can"
+            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
+            "spreads it round the can"
         )
     if outside := _outside(scene, fastest):
         reasons.append(f"the run is not what {outside}")
