@@ -86,7 +86,7 @@ class Crest:
         return max(0.0, -float(self.below(self.begins)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
-        """Return by how much V is less `x` [rad] past the crest than there [J]; y past the rest it is below(-y) more."""
+        """Return by how much V is less `x` [rad] past the crest [J]; y past the rest it is more by below(-y)."""
         return self.excess * x + self.ramp * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
 
     def torque(self, x: np.ndarray | float) -> np.ndarray:
