@@ -86,7 +86,7 @@ class Crest:
         return max(0.0, -float(self.below(self.begins)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
-        """Return by how much V is less `x` [rad] past the crest [J]; y past the rest it is more by below(-y)."""
+        """Return by how much V is less `x` [rad] past the crest [J]; it is as much more -x past the rest."""
         return self.excess * x + self.ramp * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
 
     def torque(self, x: np.ndarray | float) -> np.ndarray:
