@@ -398,7 +398,7 @@ def test_beside_the_steepest_incline(count: int) -> None:
         time = slowness * np.sort(pick.uniform(0, 2, 3))
         cases.append(taylor.Case(made, float(phi0), float(phi_dot0), time))
     found = errors(cases, steps=1000)
-    assert len(found) > 0.6 * len(cases)  # others turn so often that the witness takes more steps
+    assert len(found) > 0.5 * len(cases)  # others turn so often that the witness takes more steps
     assert found.max() < UNCERTAIN
     assert np.quantile(found, 0.9) < BESIDE_STEEPEST
 
