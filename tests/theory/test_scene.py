@@ -114,6 +114,13 @@ def test_something_has_to_resist_rotation(attachment: str, offset: float) -> Non
         Scene(Can.massless(), Load.point(0.2, offset), 0.1, attachment)
 
 
+def test_a_point_frozen_to_the_rim_holds_on_any_incline() -> None:
+    """Rounding of m b/m would make b/a more than 1."""
+    for radius in (0.9821718891880378, 0.033, 0.1):
+        scene = Scene(Can(radius), Load(1e-9, radius, 1e-9 * radius**2), 0.0, "frozen")
+        assert scene.largest_incline() == math.pi / 2
+
+
 def test_frozen_point_off_the_rim_needs_no_can() -> None:
     assert Scene(Can.massless(), Load.point(0.2, 0.02), 0.1, "frozen").frequency() > 0
 
