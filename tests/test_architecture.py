@@ -28,6 +28,7 @@ IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.let
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 HEAVY = {"mujoco", "numba", "llvmlite", "matplotlib", "mediapy", "OpenGL"}
 """What takes most of the time to import: the simulator, the compiler, and what draws."""
+DRAWING = HEAVY | {"pandas", "rich"}
 
 
 def loaded(code: str) -> set[str]:
@@ -48,6 +49,12 @@ def test_theory_needs_numpy_and_scipy_alone(code: str) -> None:
     assert loaded(code) <= {"numpy", "scipy"}
 
 
+def test_a_file_of_numbers_needs_no_plots(tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "run.csv"
+    assert loaded(f"{USE}; mjbeer.exact(mjbeer.frozen(), [0.0], 0.5).to_csv({str(path)!r})").isdisjoint(DRAWING)
+    assert path.read_text().startswith("time [s],u [m],")
+
+
 def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
     """Without this, a misspelt name or a blind test would pass the two above."""
     assert loaded("import mjbeer.simulation.simulate, matplotlib, mediapy, OpenGL") >= HEAVY
@@ -63,6 +70,35 @@ def imported(folder: str) -> set[str]:
             elif isinstance(node, ast.ImportFrom) and (module := node.module or "").startswith("mjbeer."):
                 names.add(module.split(".")[1])
     return names - {folder}
+
+
+LAYERS = "exceptions, require, output, theory, predictions model, drawing simulation, paper, studies, report, cli"
+"""The folders and modules from below; what has no arrow between it stands side by side."""
+LOADERS = {"import_module", "__import__", "find_spec", "resolve_name"}
+"""What imports a module by a text, which no linter follows."""
+
+
+def loaded_by_text(path: pathlib.Path) -> set[str]:
+    """The modules of mjbeer that a file names in a text, if it imports anything by a text."""
+    tree = ast.parse(path.read_text())
+    words = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    words |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    if not words & LOADERS:
+        return set()
+    texts = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    return {text for text in texts if re.fullmatch(r"mjbeer(\.\w+)+", text)}
+
+
+def test_nothing_is_imported_upward_by_a_text() -> None:
+    """Only `mjbeer` itself, above all, loads by name what it promises."""
+    height = {name: level for level, names in enumerate(LAYERS.split(", ")) for name in names.split()}
+    assert loaded_by_text(PACKAGE / "__init__.py") >= {"mjbeer.drawing.views", "mjbeer.simulation.simulate"}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if path.parent == PACKAGE and path.stem.startswith("__"):
+            continue
+        own = path.relative_to(PACKAGE).with_suffix("").parts[0]
+        for module in loaded_by_text(path):
+            assert height[module.split(".")[1]] <= height[own], f"{path} loads {module}"
 
 
 def test_the_document_has_the_folders_and_what_they_import() -> None:

@@ -8,8 +8,6 @@ import inspect
 import math
 import pathlib
 from collections.abc import Callable, Iterator
-from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -30,10 +28,7 @@ from mjbeer.theory.scene import ATTACHMENTS
 VALUES: dict[str, Callable[[], object]] = {
     "None": lambda: None,
     "text": lambda: "0.5",
-    "empty text": lambda: "",
-    "bytes": lambda: b"1",
     "True": lambda: True,
-    "NumPy's True": lambda: np.True_,
     "nan": lambda: math.nan,
     "inf": lambda: math.inf,
     "-inf": lambda: -math.inf,
@@ -42,45 +37,26 @@ VALUES: dict[str, Callable[[], object]] = {
     "-0.0": lambda: -0.0,
     "0.3": lambda: 0.3,
     "huge": lambda: 1e160,
-    "tiny": lambda: 1e-320,
-    "largest": lambda: 1e50,
-    "smallest": lambda: 1e-50,
     "long integer": lambda: 10**5000,
     "complex": lambda: 1 + 2j,
-    "decimal": lambda: Decimal("0.3"),
-    "decimal NaN": lambda: Decimal("sNaN"),
-    "fraction": lambda: Fraction(1, 3),
     "single precision": lambda: np.float32(0.3),
-    "half precision": lambda: np.float16(0.3),
-    "long double": lambda: np.longdouble("1e400"),
-    "NumPy's complex": lambda: np.complex128(1),
-    "duration": lambda: np.timedelta64(1, "s"),
-    "array without dimensions": lambda: np.array(0.3),
-    "masked": lambda: np.ma.masked,
     "list": lambda: [0.1, 0.2],
     "empty list": list,
-    "list of one": lambda: [0.3],
     "list with None": lambda: [0.0, None],
     "list of texts": lambda: ["0", "0.1"],
     "list with NaN": lambda: [0.0, math.nan],
     "list from the future": lambda: [0.0, 1e160],
-    "list of complex": lambda: [0.0, 1j],
-    "list of booleans": lambda: [False, True],
     "list in reverse": lambda: [0.2, 0.1],
     "list before the start": lambda: [-0.1, 0.1],
     "ragged list": lambda: [[0.0], [0.0, 0.1]],
     "list of lists": lambda: [[0.0, 0.1]],
-    "list of decimals": lambda: [Decimal(0), Fraction(1, 10)],
     "generator": lambda: (each for each in (0.0, 0.1)),
-    "range": lambda: range(1),
     "dict": lambda: {0.0: 0.1},
     "set": lambda: {0.1},
     "object": object,
-    "class": lambda: Scene,
     "function": lambda: frozen,
     "array": lambda: np.array([0.0, 0.1]),
     "empty array": lambda: np.array([]),
-    "array of one": lambda: np.array([0.0]),
     "two-dimensional array": lambda: np.zeros((2, 2)),
     "complex array": lambda: np.array([0.0, 1j]),
     "boolean array": lambda: np.array([False, True]),
@@ -88,7 +64,6 @@ VALUES: dict[str, Callable[[], object]] = {
     "array of objects": lambda: np.array([0.0, None]),
     "single-precision array": lambda: np.array([0.0, 0.1], np.float32),
     "masked array": lambda: np.ma.array([0.0, 0.1], mask=[False, True]),
-    "masked array without a mask": lambda: np.ma.array([0.0, 0.1]),
     "can": Can,
     "load": lambda: Load(0.2, 0.01, 1e-5),
     "scene": frozen,
@@ -111,7 +86,7 @@ GOOD_HERE: dict[str, dict[str, Any]] = {
 """Those that are others in one function."""
 
 
-NOT_ASKED = ("start", "plot", "to_csv", "to_dataframe", "video")
+NOT_ASKED = ("start", "replace", "plot", "to_csv", "to_dataframe", "video")
 """Methods with arguments, or which draw or write: they are called by themselves."""
 
 
@@ -142,7 +117,8 @@ def methods(name: str, kind: type, owner: object) -> Iterator[tuple[str, Callabl
 CASES = {
     f"{name}, {parameter}": (name, function, parameter)
     for name, function in public()
-    for parameter in inspect.signature(function).parameters
+    for parameter, each in inspect.signature(function).parameters.items()
+    if each.kind is not each.VAR_KEYWORD
 } | {"sweep, fill": ("sweep", mjbeer.sweep, "fill")}
 
 
@@ -186,7 +162,6 @@ def undrawn(monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.filterwarnings("ignore::mjbeer.exceptions.LiquidWarning")
 @pytest.mark.parametrize("case", CASES)
 def test_a_result_or_an_error_that_says_what_came(case: str) -> None:
     name, function, parameter = CASES[case]
@@ -204,29 +179,40 @@ def test_a_result_or_an_error_that_says_what_came(case: str) -> None:
             pytest.fail(f"{label}: {error!r}")
 
 
-MAGNITUDES = st.floats(-50, 50).map(lambda exponent: 10.0**exponent)
-EITHER_SIGN = st.tuples(st.sampled_from([-1.0, 1.0]), MAGNITUDES).map(math.prod)
-OR_ZERO = st.one_of(st.just(0.0), MAGNITUDES)
-STARTS = st.one_of(st.sampled_from([0.0, 1.0, math.pi]), EITHER_SIGN)
+def decades(lowest: float, highest: float) -> st.SearchStrategy[float]:
+    """Magnitudes evenly over their decades, and both ends of them."""
+    inside = st.floats(math.log10(lowest), math.log10(highest)).map(lambda exponent: 10.0**exponent)
+    return st.one_of(inside, st.sampled_from([lowest, highest]))
+
+
+def either_sign(highest: float) -> st.SearchStrategy[float]:
+    return st.tuples(st.sampled_from([-1.0, 1.0]), decades(1e-20, highest)).map(math.prod)
+
+
+RATIO = decades(1 / require.RATIO, require.RATIO)
+ANGLES = st.one_of(st.sampled_from([0.0, 1.0, math.pi]), either_sign(require.ANGLE))
+RATES = st.one_of(st.just(0.0), either_sign(require.RATE))
 
 
 @st.composite
 def extreme(draw: st.DrawFn) -> Scene:
-    """Any scene of numbers over a hundred decades, drawn until there is one."""
-    radius, mass = draw(MAGNITUDES), draw(OR_ZERO)
-    inertia = draw(st.one_of(OR_ZERO, st.just(mass * radius**2))) if mass else 0.0
-    offset = draw(st.one_of(st.floats(0, 1).map(lambda share: share * radius), st.just(radius)))
+    """Any scene in the domain, drawn until there is one."""
+    radius, mass = draw(decades(*require.SIZE)), draw(decades(*require.MASS))
+    can_mass = draw(st.one_of(st.just(0.0), RATIO)) * mass
+    offset = draw(st.one_of(st.floats(0, 1), st.just(1.0), decades(1e-14, 1))) * radius
+    inertias = [draw(st.one_of(st.just(0.0), decades(1e-12, require.RATIO))) * radius**2 for _ in range(2)]
     try:
-        can, load = Can(radius, radius, mass, inertia), Load(draw(MAGNITUDES), offset, draw(OR_ZERO))
+        can, load = Can(radius, radius, can_mass, can_mass * inertias[0]), Load(mass, offset, mass * inertias[1])
         incline = draw(st.one_of(st.floats(-1.5, 1.5), st.sampled_from([0.0, -1e-9, 1e-40])))
-        return Scene(can, load, incline, draw(st.sampled_from(ATTACHMENTS)), draw(OR_ZERO))
+        gravity = draw(st.one_of(st.just(0.0), decades(*require.GRAVITY)))
+        return Scene(can, load, incline, draw(st.sampled_from(ATTACHMENTS)), gravity)
     except ParameterError:
         reject()
 
 
 @pytest.mark.slow
 @settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(extreme(), STARTS, STARTS, MAGNITUDES)
+@given(extreme(), ANGLES, RATES, decades(1e-6, 1e6))
 def test_exact_theory_answers_or_refuses(scene: Scene, phi0: float, phi_dot0: float, end: float) -> None:
     """Whatever the sizes: no overflow, no warning, no NaN, and no memory that runs out."""
     use(scene)
@@ -238,12 +224,12 @@ def test_exact_theory_answers_or_refuses(scene: Scene, phi0: float, phi_dot0: fl
 @settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(
     extreme(),
-    STARTS,
-    STARTS,
-    MAGNITUDES,
+    ANGLES,
+    RATES,
+    decades(*require.TIMESTEP),
     st.sampled_from(ROLLINGS),
     st.sampled_from((*INTEGRATORS, *OWN)),
-    MAGNITUDES,
+    decades(1e-5, 1e5),
 )
 def test_a_simulation_answers_or_refuses(
     scene: Scene,

@@ -46,7 +46,7 @@ class UntrustedWarning(UserWarning):
 
 
 class LiquidWarning(UserWarning):
-    """A liquid is so thick that its damping by the laws of one lump is an order of magnitude only."""
+    """A liquid is no lump, or slips at rates that its damping is not for: the motion is an order of magnitude only."""
 
 
 class TemplateError(MjbeerError):

@@ -15,7 +15,9 @@ def test_what_a_liquid_uses_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "0.1"]
     assert main([*words, "--json"]) == 0
     out, err = capsys.readouterr()
-    assert err == f"{liquid_in('olive oil', fill=0.7)}\n"
+    assert err.startswith(
+        f"{liquid_in('olive oil', fill=0.7)}\nnote: olive oil as one lump is an order of magnitude only"
+    )
     run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 0.1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
 
@@ -30,7 +32,7 @@ def test_its_viscosity_and_density_may_be_given(capsys: pytest.CaptureFixture[st
 def test_a_thick_liquid_is_noted_in_one_line(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "liquid", "--liquid", "honey", "--duration", "0.01"]) == 0
     _, note = capsys.readouterr().err.splitlines()
-    assert note.startswith("note: honey coats the can")
+    assert note.startswith("note: honey as one lump is an order of magnitude only: it coats the can")
     path = tmp_path / "map.csv"
     words = f"sweep liquid --liquid honey --fill 0.4,0.5,0.6 --incline 5,10 --duration 0.01 --output {path}"
     assert main(words.split()) == 0

@@ -2,17 +2,15 @@
 
 import math
 import pathlib
-import sys
 
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
 import mjbeer
-from mjbeer import MjbeerError, exact, frozen, simulate, sliding
+from mjbeer import exact, frozen, simulate, sliding
 from mjbeer.drawing.overlay.charts import charts
 from mjbeer.drawing.overlay.look import Look
-from mjbeer.exceptions import OutputError
 
 
 def test_a_plot_shows_the_motion_over_theory() -> None:
@@ -31,27 +29,6 @@ def test_a_plot_without_theory_has_one_line() -> None:
     above, _ = exact(sliding(), np.linspace(0, 1, 11), 0.5).plot()
     assert len(above.get_lines()) == 1
     plt.close(above.figure)
-
-
-def test_a_table_and_a_file_have_the_same_columns(tmp_path: pathlib.Path) -> None:
-    run = simulate(frozen(), 0.1, 1.0)
-    table, path = run.to_dataframe(), tmp_path / "run.csv"
-    run.to_csv(path)
-    assert path.read_text().splitlines()[0] == ",".join(table.columns)
-    assert np.array_equal(np.loadtxt(path, delimiter=",", skiprows=1), table.to_numpy())
-    assert np.array_equal(table["phi [rad]"], run.phi)
-
-
-def test_a_file_that_cannot_be_written_is_an_error(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").touch()
-    with pytest.raises(OutputError, match="file"):
-        simulate(frozen(), 0.1, 1.0).to_csv(tmp_path / "file" / "run.csv")
-
-
-def test_without_pandas_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(MjbeerError, match="pip install pandas"):
-        simulate(frozen(), 0.1, 1.0).to_dataframe()
 
 
 def test_what_cannot_happen_is_dotted() -> None:

@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console, RenderableType
 
 from mjbeer import Scene, simulate
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
 from mjbeer.studies.check import Result

@@ -6,7 +6,7 @@ import pytest
 from rich.console import Console
 
 from mjbeer.output import terminal
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 
 ONE = Table("One", ("name", "value"), [("phi", "1.5"), ("u", "2")])
 OTHER = Table("Other", ("name",), [("F",)])

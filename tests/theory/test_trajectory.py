@@ -1,6 +1,8 @@
 """What a trajectory says about itself: nothing against an exact one, and the truth about one that was tampered with."""
 
 import math
+import pathlib
+import sys
 from collections.abc import Callable
 from dataclasses import fields, replace
 
@@ -9,11 +11,12 @@ import pytest
 from scipy.optimize import brentq
 
 from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.exceptions import OutputError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import Record, axis_drift
-from mjbeer.theory.trajectory import turning_times
+from mjbeer.theory.trajectory import csv, turning_times
 from mjbeer.theory.trust import ERROR, LIFT, SLIP, doubts
 from tests.support.scenes import METAL, SCENES
 
@@ -275,3 +278,25 @@ def test_three_samples_a_period_are_enough(gap: float) -> None:
     period = scene.period(0.5)
     motion = exact(scene, np.arange(0, 60 * period, gap * period), scene.equilibrium() + 0.5)
     assert motion.frequency() * period / (2 * math.pi) == pytest.approx(1, abs=(2 * math.pi * gap) ** 4 / 384 / 60)
+
+
+@pytest.mark.parametrize(("scene", "start"), [(sliding(), 0.014 * math.sin(1)), (frozen(), 0.033), (hoop(), 0.033)])
+def test_the_distance_is_counted_from_the_start_and_u_is_not(scene: Scene, start: float) -> None:
+    """u starts at b sin(phi0) with b = 4a/3pi, or at a phi0; what matters is time 0, whether it has a sample or not."""
+    motion = exact(scene, [0.3, 0.0, 0.2], 1.0)
+    assert motion.u[1] == pytest.approx(start, rel=1e-3)
+    assert motion.distance[1] == 0
+    assert motion.distance == pytest.approx(motion.u - motion.u[1], abs=0)
+    assert exact(scene, [0.3], 1.0).distance == pytest.approx(motion.distance[:1], rel=1e-12)
+
+
+def test_a_table_needs_pandas_and_a_file_does_not(monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path) -> None:
+    motion = exact(frozen(), [0.0, 0.1], 1.0)
+    assert motion.to_dataframe()["u [m]"].tolist() == motion.u.tolist()
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MjbeerError, match="to_dataframe needs pandas: pip install pandas"):
+        motion.to_dataframe()
+    motion.to_csv(tmp_path / "new" / "run.csv")
+    assert (tmp_path / "new" / "run.csv").read_text() == csv(motion)
+    with pytest.raises(OutputError, match="it is a folder"):
+        motion.to_csv(tmp_path)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from mjbeer.cli.arguments import SCENES, otherwise
 from mjbeer.output import terminal
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 
 _UNIT = re.compile(r" \[(?P<unit>.*?)\]")
 _COLUMNS = ("option", "default", "unit", "meaning")

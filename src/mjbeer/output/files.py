@@ -15,12 +15,11 @@ from mjbeer.exceptions import OutputError
 def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     """Yield a new hidden file beside `path` to write to; at the end it replaces `path`, or is deleted after an error.
 
-    Enter this block before a long run, so that a path that cannot be written fails at once. The data are on the disk
-    before the file is renamed: if the machine stops, `path` is either the complete new file or the old one.
+    Enter this block before a long run, so that a path that cannot be written fails at once. If the machine stops,
+    `path` is either the complete new file or the old one.
 
     Raises:
-      OutputError: if `path` is a folder, a device or read-only, if its folder cannot be created or written to, or if
-        the disk is full.
+      OutputError: if `path` cannot be written: a folder, a device, read-only, or on a full disk.
     """
     target = pathlib.Path(os.path.realpath(path))  # a link is kept, and the file that it points to is replaced
     temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
@@ -46,8 +45,7 @@ def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
 def locked(folder: pathlib.Path) -> Generator[None]:
     """Lock a folder while the block runs, so that no other command changes the study in it meanwhile.
 
-    The folder is created if it does not exist. The system releases the lock when the process ends, even if it is
-    killed; the hidden file of the lock stays.
+    The system releases the lock when the process ends, even if it is killed; the hidden file of the lock stays.
 
     Raises:
       OutputError: if another command holds the lock, or the folder cannot be created or written to.

@@ -31,8 +31,7 @@ ACCURACY = 1e-2
 _CLASSICAL = np.array([[0, 0, 0, 0], [1 / 2, 0, 0, 0], [0, 1 / 2, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6
 _TABLEAUS = {"RK4": _CLASSICAL, "DOP853": (np.asarray(DOP853.A[:12, :12]), np.asarray(DOP853.B))}
 _RATIO = 1.02
-"""Ratio of two successive values in the search for the first one that fails. It would miss a window of stability that
-is narrower, but there is none."""
+"""Ratio of two successive values in the search for the first one that fails."""
 
 
 def polynomial(integrator: str) -> np.ndarray:
@@ -86,10 +85,9 @@ def growth(integrator: str, swing: float) -> float:
 def error(integrator: str, swing: float, drift: float = 0.0, pace: float = 1.0) -> float:
     """Return the largest error, as in `ACCURACY`, of a swing from rest with omega h = `swing` over `ACCURATE_PERIODS`.
 
-    For small h it is omega h/2 under semi-implicit Euler: its ellipse in the phase plane leans, which outweighs the
-    frequency error (omega h)^2/24. RK4 has a phase error of (omega h)^4/120 and a damping of (omega h)^5/144 per
-    radian. A model that differs from the scene has its equilibrium off by `drift`, in amplitudes, and `pace` times
-    the scene's frequency.
+    For small h it is omega h/2 under semi-implicit Euler, whose ellipse in the phase plane leans, and (omega h)^4/120 a
+    radian under RK4. A model that differs from the scene has its equilibrium off by `drift`, in amplitudes, and `pace`
+    times the scene's frequency.
     """
     steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
     states = motion(amplification(integrator, (pace * swing) ** 2), np.array([1.0 - drift, 0.0]), steps)

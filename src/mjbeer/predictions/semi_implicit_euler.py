@@ -36,9 +36,8 @@ def distance_excess(timestep: float, duration: float) -> float:
 def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> np.ndarray:
     """Return the error of phi over the timestep [rad/s] at `times` [s], in the limit of small timesteps.
 
-    By backward error analysis the method follows q' = v + h/2 a, v' = a - h/2 (a_q v + a_v a) up to h^2 (E. Hairer,
-    C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX). The error is the perturbation of order h,
-    carried along by the linearized motion. This holds for models of which phi is a coordinate, as the reduced ones.
+    By backward error analysis a reduced model follows q' = v + h/2 a, v' = a - h/2 (a_q v + a_v a) up to h^2
+    (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX). This is the linearized effect of h.
     """
 
     def slopes(_: float, state: np.ndarray) -> np.ndarray:
@@ -53,8 +52,7 @@ def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 
 def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: str, phi0: float) -> np.ndarray:
     """Return phi [rad] at `times` [s] of the motion from rest that semi-implicit Euler follows, up to h^2.
 
-    It solves the perturbed equations of `euler_error` without linearizing them, and so holds even where the error is
-    as large as the motion. With "implicit" the term a_v a has the opposite sign.
+    These are the perturbed equations of `euler_error`, not linearized. With "implicit" a_v a has the opposite sign.
     """
     sign, half = _SIGN[integrator], timestep / 2
 
@@ -80,10 +78,8 @@ def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator
     """Return the energy that a swing gains in each period over its energy, to first order in the timestep.
 
     With the perturbation of `euler_error`, dE/dt = -h J d(v a)/dt / 2. Over a period this leaves h/2 times the
-    integral of J' v^2 dv, which is that of J' sqrt(w) w' / 2 over the swing with w = v^2. It is zero where J is
-    constant, for there the method is symplectic. "implicit" treats the forces proportional to v^2 implicitly, which
-    changes the sign. For methods of higher order the result is None. The turning points must lie symmetrically about
-    the equilibrium, `amplitude` [rad] away.
+    integral of J' v^2 dv, that of J' sqrt(w) w' / 2 over the swing with w = v^2: 0 where J is constant. For methods of
+    higher order the result is None. The swing is symmetric about the equilibrium, with an `amplitude` [rad].
     """
     sign = _SIGN.get(integrator)
     if sign is None:

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
-from mjbeer.theory.scene import Scene
 
 
 def residual_slip(penetration: float, radius: float) -> float:
@@ -31,27 +30,6 @@ def residual_slip(penetration: float, radius: float) -> float:
     that were its radius.
     """
     return -penetration / (2 * radius)
-
-
-def diagonal_excess(scene: Scene) -> float:
-    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
-
-    MuJoCo adds the inverse inertias 1/m_u and 1/I of the two joints, which are the diagonal of M^-1, without regard to
-    metres and radians. If the joints are not coupled, the factor is (1/m_u + 1/I)/(1/m_u + a^2/I). A frozen load
-    couples them by -m b; the true diagonal is J M^-1 J^T with J = (1, -a).
-    """
-    can, load, moment = scene.can, scene.load, scene.load.mass * scene.load.offset
-    if scene.attachment == "frozen":
-        inertia = can.inertia + load.inertia + moment * load.offset
-        mass_matrix = np.array([[scene.mass, -moment], [-moment, inertia]])
-    else:
-        swing = load.inertia + moment * load.offset
-        mass_matrix = np.array(
-            [[scene.mass, -moment, -moment], [-moment, can.inertia + swing, swing], [-moment, swing, swing]]
-        )
-    inverse = np.linalg.inv(mass_matrix)[:2, :2]
-    row = np.array([1.0, -can.radius])
-    return float(np.trace(inverse) / (row @ inverse @ row))
 
 
 def reached_share(impedance: float, excess: float) -> float:
@@ -106,8 +84,7 @@ def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
 def refsafe_timeconst(timeconst: float, timestep: float) -> float:
     """Return the time constant [s] that MuJoCo's refsafe uses instead of `timeconst` [s]: at least two timesteps.
 
-    Refsafe looks only at solref's first number. Under semi-implicit Euler a damping ratio below 0.354 is unstable even
-    at a time constant of two timesteps, and a direct (negative) solref is not changed.
+    Under semi-implicit Euler a damping ratio below 0.354 is unstable even so. A direct solref is not changed.
     """
     return max(timeconst, 2 * timestep)
 
@@ -115,8 +92,7 @@ def refsafe_timeconst(timeconst: float, timestep: float) -> float:
 def discrete_refsafe_timeconst(timeconst: float, dampratio: float, impedance: float, timestep: float) -> float:
     """Return the time constant [s] that refsafe uses for a contact under "discrete": at least h/(zeta sqrt(d)).
 
-    At that limit k h^2 = 1, and the row corrects all of its residual in one step. MuJoCo's manual gives the limit
-    tau zeta = h, without the impedance, but this is what MuJoCo solves.
+    At that limit k h^2 = 1: one step corrects all of the residual. MuJoCo's manual leaves out the impedance.
     """
     return max(timeconst, timestep / (dampratio * math.sqrt(impedance)))
 
@@ -153,9 +129,7 @@ def stable_slip(integrator: str) -> float:
     """Return the largest h/timeconst with a bounded friction row, which has a damping and no stiffness.
 
     It is 1 under semi-implicit Euler, and half of the stability limit on the negative real axis under a Runge-Kutta
-    method, 1.393 for RK4: with RK4 a contact is stable up to half of the timestep of an equality. This is for an
-    impedance of 1. A friction row that `impratio` makes much harder than its contact reaches all of its reference
-    acceleration, b = 2/(d tau), and is stable up to d times the limit.
+    method, 1.393 for RK4, for an impedance d of 1; for a row that `impratio` makes much harder it is d times as much.
     """
     if integrator == "discrete":
         return math.inf

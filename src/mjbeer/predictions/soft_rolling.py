@@ -79,13 +79,10 @@ def by_coordinates(scene: Scene, angle: float) -> System:
 
     `angle` is phi [rad], about which the load moves.
     """
-    load, radius = scene.load, scene.can.radius
-    mass = scene.mass + scene.can.inertia / radius**2
-    moment, inertia = load.mass * load.offset * math.cos(angle), load.inertia + load.mass * load.offset**2
-    ahead = np.array([-1 / radius, 1.0])
+    moment, ahead = scene.load.moment * math.cos(angle), np.array([-1 / scene.can.radius, 1.0])
     return System(
         coordinates=("slide", "phi"),
-        mass=np.array([[mass, -moment], [-moment, inertia]]),
+        mass=np.array([[scene.effective_mass, -moment], [-moment, scene.load.axis_inertia]]),
         gravity=np.diag([0.0, _stiffness(scene, angle)]),
         damping=scene.damping_law.linear * np.outer(ahead, ahead),
         by_tendon=True,
@@ -105,6 +102,18 @@ def by_equality(scene: Scene, excess: float = 1.0, angle: float = 0.0) -> System
     )
 
 
+def diagonal_excess(scene: Scene) -> float:
+    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
+
+    MuJoCo adds the inverse inertias 1/m_u and 1/I of the two joints, which are the diagonal of M^-1, without regard to
+    metres and radians. If the joints are not coupled, the factor is (1/m_u + 1/I)/(1/m_u + a^2/I). A frozen load
+    couples them by -m b; the true diagonal is J M^-1 J^T with J = (1, -a).
+    """
+    _, mass, _, _ = _matrices(scene, 0.0)
+    inverse, row = np.linalg.inv(mass)[:2, :2], np.array([1.0, -scene.can.radius])
+    return float(np.trace(inverse) / (row @ inverse @ row))
+
+
 def by_contact(scene: Scene, depth: float, points: int, impratio: float, angle: float = 0.0) -> System:
     """Return the system of a load in a cylinder on a plane, which touches at several `points`, about an `angle`.
 
@@ -117,7 +126,7 @@ def by_contact(scene: Scene, depth: float, points: int, impratio: float, angle: 
     mass, gravity, damping = np.zeros((3, count, count))
     mass[others], gravity[others], damping[others] = inertias, stiffness, between
     mass[1, 1] = scene.mass
-    mass[1, 2:] = mass[2:, 1] = scene.load.mass * scene.load.offset * math.sin(angle)
+    mass[1, 2:] = mass[2:, 1] = scene.load.moment * math.sin(angle)
     normal, sliding = np.zeros(count), np.zeros(count)
     normal[1] = 1.0
     sliding[[0, 2]] = -1.0, scene.can.radius - depth / 2
@@ -128,8 +137,7 @@ def by_contact(scene: Scene, depth: float, points: int, impratio: float, angle: 
 
 def _matrices(scene: Scene, angle: float) -> tuple[tuple[str, ...], np.ndarray, np.ndarray, np.ndarray]:
     """Return the joints of a can and its load, and the matrices of mass, gravity and damping."""
-    can, load = scene.can, scene.load
-    moment, inertia = load.mass * load.offset * math.cos(angle), load.inertia + load.mass * load.offset**2
+    can, moment, inertia = scene.can, scene.load.moment * math.cos(angle), scene.load.axis_inertia
     stiffness = _stiffness(scene, angle)
     if scene.attachment == "frozen":
         mass = np.array([[scene.mass, -moment], [-moment, can.inertia + inertia]])
@@ -144,4 +152,4 @@ def _matrices(scene: Scene, angle: float) -> tuple[tuple[str, ...], np.ndarray, 
 
 def _stiffness(scene: Scene, angle: float) -> float:
     """Return the stiffness of gravity against a turn of the load about an angle phi [N m]."""
-    return scene.load.mass * scene.load.offset * scene.gravity * math.cos(scene.incline + angle)
+    return scene.load.moment * scene.gravity * math.cos(scene.incline + angle)

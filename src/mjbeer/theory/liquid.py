@@ -240,19 +240,19 @@ def about_scene(liquid: Liquid, speed: float, scene: "Scene") -> str | None:
     return _order_of_magnitude(liquid.name, reasons)
 
 
-def about_run(scene: "Scene", fastest: float, lost_at: float) -> str | None:
+def about_run(scene: "Scene", fastest: float, spread_at: float) -> str | None:
     """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
 
-    `fastest` is the largest slip rate of the run [rad/s], and `lost_at` when it is no lump any more, as `lost_at` has
-    it [s].
+    `fastest` is the largest slip rate of the run [rad/s], and `spread_at` when it is no lump any more [s],
+    as `lost_at` has it.
     """
     if scene.damping_law.holds is None:
         return None
     reasons = []
-    if lost_at < math.inf:
+    if spread_at < math.inf:
         reasons.append(
-            f"from t = {lost_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which spreads "
-            "it round the can"
+            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
+            "spreads it round the can"
         )
     if outside := _outside(scene, fastest):
         reasons.append(f"the run is not what {outside}")

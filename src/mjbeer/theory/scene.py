@@ -198,12 +198,10 @@ class Scene:
         """Return the angle phi of stable equilibrium [rad]: eq. (53) for a frozen load, with the can's mass included.
 
         For a sliding load it is the angle at which the can accelerates steadily, tan phi =
-        (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4; it is zero for a massless can. With damping or drag it
-        is `terminal_tilt`.
+        (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4. With damping or drag it is `terminal_tilt`.
 
         Raises:
-          NoEquilibriumError: if there is none; for a frozen load, and with damping or drag, the message names the
-            largest incline that has one.
+          NoEquilibriumError: if there is none; the message names the largest incline that has one.
         """
         if self.dissipates:
             return self.terminal_tilt()
@@ -219,16 +217,15 @@ class Scene:
             ) from error
 
     def largest_incline(self) -> float:
-        """Return the largest incline with an equilibrium [rad]: the text below eq. (53).
+        """Return the largest incline with an equilibrium [rad]: the text below eq. (53); pi/2 for a sliding load.
 
-        A sliding load has an equilibrium on every incline, so that the limit is pi/2. With damping the limit is that of
-        a frozen load, which drag makes larger: beyond it there is no steady rolling.
+        With damping it is that with steady rolling: that of a frozen load, which drag makes larger.
         """
         if self.dissipates:
             return steady.largest_incline(self)
         if self.attachment == "sliding":
             return math.pi / 2
-        return math.asin(self.centre_of_mass / self.can.radius)
+        return math.asin(self.load.moment / (self.mass * self.can.radius))  # in this order no more than 1
 
     def frequency(self) -> float:
         """Return the angular frequency of small swings about the equilibrium [rad/s]: eq. (10), eq. (55) corrected.
@@ -252,7 +249,6 @@ class Scene:
         """Return the period [s] of the swing released from rest `amplitude` [rad] away from the equilibrium.
 
         Raises:
-          ParameterError: if `amplitude` is not finite.
           NoEquilibriumError: if there is no equilibrium.
           NoLibrationError: if `amplitude` is at or beyond the separatrix, or within the rounding of it.
           ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
@@ -312,8 +308,8 @@ class Scene:
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
 
-        It is steady in the mean if the load stands still, and also if it loops with a rate that is periodic in phi. The
-        variance of the slip rate is then D times the load's mean rate.
+        The load may stand still, or loop with a rate that is periodic in phi; then the variance of the slip rate is D
+        times the load's mean rate.
 
         Raises:
           DissipationError: if the damping is not linear, or there is none, or there is drag.
@@ -334,13 +330,12 @@ class Scene:
         return self.load.offset * math.sin(phi0), self.load.offset * math.cos(phi0) * phi_dot0
 
     def acceleration(self) -> float:
-        """Return the acceleration of the axis down the incline [m/s^2] when it is steady.
+        """Return the acceleration of the axis down the incline [m/s^2] when it is steady: footnote 4, or eq. (1).
 
-        With a sliding load it is steady at the equilibrium: footnote 4, or eq. (1) for a massless can. A frozen load
-        has none; what is returned is the acceleration as if the load were balanced about the axis with the same
-        inertia, (2/3) g sin(alpha) for half a massless can of beer (A.3). In the long run the unbalanced load rolls
-        down faster, by the factor mean(J) / mean(sqrt(J))^2. With damping or drag the speed is bounded, and the
-        acceleration 0, in the long run; only a balanced load without drag lets the can go ever faster, as a frozen one.
+        A frozen load has none; returned is that of a load that is balanced with the same inertia about the axis,
+        (2/3) g sin(alpha) for half a massless can of beer (A.3). In the long run the unbalanced one rolls down faster,
+        by the factor mean(J) / mean(sqrt(J))^2. With damping or drag the speed is bounded and the acceleration 0, but
+        for a balanced load without drag, which ends as a frozen one.
         """
         if self.dissipates and (self.load.offset > 0 or self.drag > 0):
             return 0.0
@@ -465,7 +460,8 @@ def liquid(
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
-    scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
+    with require.from_given(viscosity=used.viscosity):
+        scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
     try:
         reason = about_scene(used, scene.terminal_speed(), scene)
     except NoEquilibriumError:  # no terminal speed on so steep an incline

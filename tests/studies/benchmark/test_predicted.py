@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, sliding
-from mjbeer.predictions import semi_implicit_euler, soft_constraint
+from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.studies.benchmark.predicted import predictions, table
 from mjbeer.studies.cases import CASES
 
@@ -63,7 +63,7 @@ def test_the_motion_of_euler_is_right_to_second_order(integrator: str) -> None:
 def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
     """A can of radius 1 m."""
     scene = sliding(can=Can.hoop(1.0, 1.0, 2.0))
-    assert soft_constraint.diagonal_excess(scene) == pytest.approx(1, rel=1e-12)
+    assert soft_rolling.diagonal_excess(scene) == pytest.approx(1, rel=1e-12)
     assert soft_constraint.reached_share(0.9, 1.0) == pytest.approx(0.9, rel=1e-15)
 
 

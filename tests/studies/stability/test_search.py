@@ -26,7 +26,6 @@ from mjbeer.studies.stability.search.pick import Pick
 from mjbeer.studies.stability.search.random_run import RandomRun
 from mjbeer.studies.stability.search.regions import REGIONS, random_run
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import Damping
 from mjbeer.theory.load import Load
 
 pytestmark = pytest.mark.slow
@@ -59,7 +58,7 @@ def test_a_number_makes_the_same_run_every_time() -> None:
 
 def test_a_run_can_be_pasted() -> None:
     names = {"simulate": lambda scene, **setting: (scene, setting), "np": np, "Can": Can, "Load": Load, "Scene": Scene}
-    names["Damping"] = Damping
+    names |= {each: getattr(mjbeer, each) for each in ("Damping", "sliding", "frozen", "pendulum", "hoop")}
     for run in RUNS[:100]:
         assert "\n" not in str(run)
         scene, setting = eval(str(run), names)
@@ -113,20 +112,20 @@ def test_regions_reach_their_extremes() -> None:
     assert min(frictions) < 0.02
     assert max(frictions) > 5
     ratios = [run.scene.can.mass / run.scene.load.mass for run in of("mass ratios")]
-    assert min(ratios) < 1e-18
-    assert max(ratios) > 1e18
+    assert min(ratios) < 1e-5
+    assert max(ratios) > 1e5
     assert max(run.timestep * run.steps for run in of("long")) > 150
-    assert max(abs(run.phi0) for run in of("far angles")) > 5e8
-    assert max(abs(run.phi_dot0) for run in of("far angles")) > 1e8
+    assert max(abs(run.phi0) for run in of("far angles")) > 5e3
+    assert max(abs(run.phi_dot0) for run in of("far angles")) > 1e5
     inclines = [math.degrees(run.scene.incline) for run in of("steep")]
     assert min(inclines) < -89.99
     assert max(inclines) > 89.99
     gravities = [run.scene.gravity for run in of("weak or strong gravity")]
     assert 0 in gravities
-    assert max(gravities) > 5e4
-    assert min(1 - run.scene.load.fill for run in of("thin or full") if run.scene.load.fill) < 1e-12
+    assert max(gravities) > 5e2
+    assert min(1 - run.scene.load.fill for run in of("thin or full") if run.scene.load.fill) < 1e-7
     anything = [run.scene for run in of("anything")]
-    assert min(scene.can.radius for scene in anything) < 1e-5
+    assert min(scene.can.radius for scene in anything) < 1e-3
     assert max(scene.can.radius for scene in anything) > 10
     assert any(scene.load.offset == 0 for scene in anything)
     assert any(scene.load.inertia == 0 and scene.load.offset == scene.can.radius for scene in anything)
@@ -248,7 +247,7 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
     assert [each["number"] - SIZE for each in found["needless"]] == [7]
     assert found["false alarms"] == {"off by": 2, "drifts by": 1}
     assert found["refusals"] == {"tolerance": 1}
-    assert found["never"][0]["call"].startswith("simulate(Scene(")
+    assert found["never"][0]["call"].startswith("simulate(")
     by_region = tables.by_region([found, found])
     everything = dict(zip(by_region.columns, by_region.rows[-1], strict=True))
     assert everything == {

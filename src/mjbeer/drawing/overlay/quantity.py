@@ -48,7 +48,7 @@ def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
         scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
     u, u_dot = motion.u[0], motion.u_dot[0]
     if scene.attachment == "sliding":
-        swing = scene.load.mass * scene.load.offset / (scene.mass + scene.can.inertia / scene.can.radius**2)
+        swing = scene.load.moment / scene.effective_mass
         u = u - swing * (math.sin(motion.phi[0]) - math.sin(scene.equilibrium()))
         u_dot = u_dot - swing * math.cos(motion.phi[0]) * motion.phi_dot[0]
     since = time - motion.time[0]
@@ -62,7 +62,7 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
     motion: a stiff contact trembles, which a single step would show and an eye would not. The friction is positive up
     the incline.
     """
-    load, heavy = scene.load.mass * scene.load.offset, scene.mass * scene.gravity
+    load, heavy = scene.load.moment, scene.mass * scene.gravity
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
     along = scene.mass * motion.u_dot - load * np.cos(motion.phi) * motion.phi_dot
     half = np.ptp(motion.time) / _INTERVALS / 2

@@ -66,7 +66,7 @@ def equilibrium_53(scene: Scene) -> float:
     Raises:
       ValueError: if the incline is too steep for an equilibrium.
     """
-    sine = scene.mass * scene.can.radius * math.sin(scene.incline) / (scene.load.mass * scene.load.offset)
+    sine = scene.mass * scene.can.radius * math.sin(scene.incline) / scene.load.moment
     return math.asin(sine) - scene.incline
 
 

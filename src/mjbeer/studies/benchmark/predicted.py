@@ -8,8 +8,8 @@ import numpy as np
 from mjbeer.model.build import compile_model
 from mjbeer.model.setting import TUNED, USUAL
 from mjbeer.model.softness import effective_softness
-from mjbeer.output.table import Table
-from mjbeer.predictions import semi_implicit_euler, soft_constraint
+from mjbeer.output.terminal import Table
+from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.cases import CASES, Case
 from mjbeer.theory.can import Can
@@ -83,7 +83,7 @@ def _shares() -> Iterator[Prediction]:
         yield Prediction(
             what="share of the force of an equality of d = 0.9",
             of=f"{name}, slide first",
-            predict=lambda scene=scene: soft_constraint.reached_share(0.9, soft_constraint.diagonal_excess(scene)),
+            predict=lambda scene=scene: soft_constraint.reached_share(0.9, soft_rolling.diagonal_excess(scene)),
             measure=lambda scene=scene: _share(scene),
         )
 

@@ -4,7 +4,7 @@ import pathlib
 from collections.abc import Sequence
 
 from mjbeer.output import files
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.benchmark import overview, plots, predicted, tables
 from mjbeer.studies.benchmark.points import Benchmark
 

@@ -3,7 +3,7 @@
 import math
 
 from mjbeer.model.setting import DOP853, ROLLINGS, USUAL
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.benchmark import frontier
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve, aligned
 from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.stability.damped_runs import EXPLODED, MEANINGS, SILENT, WARNED, DampedRuns
 from mjbeer.studies.stability.maps import boundary, difference
 from mjbeer.studies.study import Task

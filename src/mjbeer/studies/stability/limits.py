@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.studies.cases import CASES

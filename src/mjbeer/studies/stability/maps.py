@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer.model.setting import DOP853, INTEGRATORS
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.stability.short_runs import UNSTABLE, Plan, ShortRuns
 from mjbeer.studies.study import Task
 

@@ -6,7 +6,7 @@ from collections import Counter
 from typing import Any
 
 from mjbeer.model.setting import ROLLINGS
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.stability import damped_maps, limits, maps
 from mjbeer.studies.stability.outcome import ACCURATE, VERDICTS
 from mjbeer.studies.stability.run import Stability

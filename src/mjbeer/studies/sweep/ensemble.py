@@ -59,7 +59,7 @@ def ensemble(scenes: Sequence[Scene], phi0: float, duration: float, tolerance: f
 
 
 def _parameters(scene: Scene) -> list[float]:
-    form, moment = scene.oscillator, scene.load.mass * scene.load.offset
-    arm = moment / (scene.mass + scene.can.inertia / scene.can.radius**2)
+    form, moment = scene.oscillator, scene.load.moment
+    arm = moment / scene.effective_mass
     along, normal = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
     return [form.base, form.swing, along, normal, scene.acceleration(), arm]

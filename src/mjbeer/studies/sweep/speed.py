@@ -17,7 +17,7 @@ from mjbeer.exceptions import ToleranceError
 from mjbeer.model import state
 from mjbeer.model.build import build
 from mjbeer.output import processes, terminal
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.sweep.ensemble import Propagate, ensemble, installed
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.exact import exact

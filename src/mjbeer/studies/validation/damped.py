@@ -14,7 +14,7 @@ from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.validation import loops, modes
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
-from mjbeer.theory.scene import Scene, frozen, liquid, sliding
+from mjbeer.theory.scene import Scene, frozen, liquid_in, sliding
 
 CANS = {"massless can": Can(), "metal can": Can.sheet_metal()}
 """The cans of the paper's sections 2 and 3."""
@@ -94,10 +94,11 @@ def _steady_rolling() -> Iterator[Check]:
 
 def _trajectories() -> Iterator[Check]:
     metal = CANS["metal can"]
+    water = liquid_in("water", can=metal)
     scenes = {f"massless can, {c:g} N m s": sliding(damping=c) for c in (1e-5, 1e-3, 0.1, 10.0)}
     scenes |= {
         "metal can, 1e-3 N m s": sliding(can=metal, damping=1e-3),
-        "metal can, water": liquid("water", can=metal),
+        "metal can, water": sliding(can=metal, density=water.density, damping=water.damping),
     }
     for name, scene in scenes.items():
         yield Check(

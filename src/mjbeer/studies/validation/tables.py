@@ -6,7 +6,7 @@ import math
 from importlib.metadata import version
 from typing import Any
 
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, LIMIT, Finding
 from mjbeer.studies.check import Result
 from mjbeer.studies.validation.run import Validation

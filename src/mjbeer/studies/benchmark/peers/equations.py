@@ -77,8 +77,8 @@ def _sliding(scene: Scene, sin: Callable[[Any], Any], cos: Callable[[Any], Any])
     p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
     base, swing = form.base, form.swing
     effective_mass = scene.mass + can.inertia / can.radius**2
-    steady = scene.mass * scene.gravity * math.sin(scene.incline) / effective_mass
-    share = load.mass * load.offset / effective_mass
+    steady = scene.drive / effective_mass
+    share = load.moment / effective_mass
     damping, radius = scene.damping_law.linear, can.radius
     lever, pull = share / radius, 1 / (effective_mass * radius)
 

@@ -100,7 +100,7 @@ def _model(scene: Scene, phi0: float, phi_dot0: float) -> tuple[Any, tuple[Any, 
         sensor = SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=coordinates)
         return system.AddMarker(MarkerBodyRigid(bodyNumber=number)), system.AddSensor(sensor)
 
-    axial = load.inertia + load.mass * load.offset**2
+    axial = load.axis_inertia
     if scene.attachment == "frozen":
         rolling, sensor = body(phi0, phi_dot0, scene.mass, can.inertia + axial, scene.centre_of_mass)
         sensors = sensor, sensor

@@ -110,8 +110,8 @@ def _axis(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return u [m] and u' [m/s] above a sliding load: M u - m b sin(phi) falls freely from its value at the start."""
     can, load = scene.can, scene.load
-    rim = can.mass + can.inertia / can.radius**2
-    total, moment = load.mass + rim, load.mass * load.offset
+    rim = can.effective_mass
+    total, moment = load.mass + rim, load.moment
     fall = (load.mass + can.mass) * scene.gravity * math.sin(scene.incline)
     place, speed = rim * load.offset * math.sin(phi0), rim * load.offset * math.cos(phi0) * phi_dot0
     u = (place + speed * time + fall * time**2 / 2 + moment * np.sin(phi)) / total

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import DOP853
 from mjbeer.studies.stability.search import paces, samples, scenes, settings, starts
@@ -96,6 +97,9 @@ def random_run(number: int) -> RandomRun:
     pick, region = Pick(number), REGIONS[number % len(REGIONS)]
     while True:
         try:
-            return region.draw(pick)
-        except ParameterError:  # no such scene: choose again
+            run = region.draw(pick)
+            require.start(run.phi0, run.phi_dot0)
+            require.within("timestep", run.timestep, *require.TIMESTEP)
+            return run
+        except ParameterError:  # outside the domain: choose again
             pass

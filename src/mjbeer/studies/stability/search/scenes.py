@@ -49,7 +49,7 @@ def steady_or_ordinary(pick: Pick) -> Scene:
 
 def fills(pick: Pick) -> Scene:
     """Return a scene with a film of beer, or with a can that is nearly full."""
-    fill = pick.one(pick.decades(1e-9, 0.1), 1 - pick.decades(1e-14, 0.1))
+    fill = pick.one(pick.decades(1e-5, 0.1), 1 - pick.decades(1e-9, 0.1))
     can = pick.one(Can.massless, Can.sheet_metal)
     return pick.one(sliding, frozen)(math.radians(pick.between(-20, 20)), fill, can())
 
@@ -63,8 +63,8 @@ def steep(pick: Pick) -> Scene:
 
 
 def gravity(pick: Pick) -> Scene:
-    """Return a scene in no gravity, on an asteroid, or near a white dwarf."""
-    return replace(ordinary(pick), gravity=pick.one(0.0, pick.decades(1e-9, 1), pick.decades(20, 1e5)))
+    """Return a scene in no gravity, on an asteroid, or on a star."""
+    return replace(ordinary(pick), gravity=pick.one(0.0, pick.decades(1e-3, 1), pick.decades(20, 1e3)))
 
 
 def ratios(pick: Pick) -> Scene:
@@ -74,10 +74,10 @@ def ratios(pick: Pick) -> Scene:
       ParameterError: if they make a scene that cannot be.
     """
     radius, load_mass = pick.one(0.033, pick.decades(1e-3, 10)), pick.one(0.1, pick.decades(1e-6, 1e3))
-    mass = load_mass * pick.decades(1e-20, 1e20)
-    can = Can(radius, 3 * radius, mass, mass * radius**2 * pick.one(0.5, 1.0, pick.decades(1e-20, 1)))
+    mass = load_mass * pick.decades(1e-6, 1e6)
+    can = Can(radius, 3 * radius, mass, mass * radius**2 * pick.one(0.5, 1.0, pick.decades(1e-12, 1)))
     offset = radius * pick.one(1.0, pick.between(0, 1), 1 - pick.decades(1e-15, 1), pick.decades(1e-12, 1))
-    load = Load(load_mass, offset, load_mass * radius**2 * pick.one(0.0, 0.3, pick.decades(1e-20, 1)))
+    load = Load(load_mass, offset, load_mass * radius**2 * pick.one(0.0, 0.3, pick.decades(1e-12, 1)))
     return Scene(can, load, math.radians(pick.between(-20, 20)), pick.one(*ATTACHMENTS))
 
 
@@ -89,7 +89,7 @@ def anything(pick: Pick) -> Scene:
     Raises:
       ParameterError: if the choices make a scene that cannot be.
     """
-    radius, load_mass = pick.decades(1e-6, 100), pick.decades(1e-9, 1e6)
+    radius, load_mass = pick.decades(1e-4, 33), pick.decades(1e-9, 1e6)
     mass = pick.one(0.0, load_mass * pick.decades(1e-6, 1e6))
     can = Can(radius, 3 * radius, mass, mass * radius**2 * pick.one(0.0, 0.5, 1.0, pick.between(0, 1)))
     fill = pick.one(1e-6, 1 - 1e-6, 1.0, 0.5, pick.between(1e-6, 1))
@@ -98,7 +98,7 @@ def anything(pick: Pick) -> Scene:
     inertia = load_mass * radius**2 * pick.one(0.0, pick.decades(1e-12, 1), pick.between(0, 1))
     load = pick.one(segment, Load(load_mass, offset, inertia))
     incline = pick.one(0.0, 1e-8, 10.0, 89.9, pick.between(-30, 30), pick.between(-89.9, 89.9))
-    weight = pick.one(GRAVITY, GRAVITY, GRAVITY, 0.0, pick.decades(1e-6, 1e6))
+    weight = pick.one(GRAVITY, GRAVITY, GRAVITY, 0.0, pick.decades(1e-3, 1e3))
     return Scene(can, load, math.radians(incline), pick.one(*ATTACHMENTS), weight)
 
 
@@ -111,7 +111,7 @@ def damped(pick: Pick, scene: Scene) -> Scene:
     Raises:
       ParameterError: if the load cannot slide in its can.
     """
-    radius, mass = scene.can.radius, scene.mass + scene.can.inertia / scene.can.radius**2
+    radius, mass = scene.can.radius, scene.effective_mass
     clock = slow(scene)
     linear = mass * radius**2 / clock * pick.decades(1e-6, 1e6)
     law = pick.one(

@@ -25,8 +25,8 @@ def fast(pick: Pick, scene: Scene) -> Start:
 
 def far(pick: Pick, scene: Scene) -> Start:
     """Return a start many turns away, at rest, slow, or so fast that seconds take it many turns away."""
-    phi0 = pick.sign() * pick.decades(1e2, 1e9)
-    rate = pick.one(0.0, pick.between(-3, 3) / slow(scene), pick.sign() * pick.decades(1e2, 1e9))
+    phi0 = pick.sign() * pick.decades(1e2, 1e4)
+    rate = pick.one(0.0, pick.between(-3, 3) / slow(scene), pick.sign() * pick.decades(1e2, 1e6))
     return phi0, rate
 
 

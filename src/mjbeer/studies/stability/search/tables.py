@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import Any
 
-from mjbeer.output.table import Table
+from mjbeer.output.terminal import Table
 from mjbeer.studies.stability.outcome import (
     ACCURATE,
     INACCURATE,

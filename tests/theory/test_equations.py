@@ -125,10 +125,10 @@ def falling(scene: Scene, phi: float) -> float:
 
 def test_littlewood_s_hoop_lifts_off_when_its_load_is_level() -> None:
     """A.4. For M = 0 the energy above gives phi_dot^2 = (g/a) cot^2(phi/2), and with it N = -m g cos(phi)."""
-    scene = hoop(hoop_mass=1e-9 * 0.2, load_mass=0.2)
+    scene = hoop(hoop_mass=1e-6 * 0.2, load_mass=0.2)
     for phi in (3.0, 2.5, 2.0, 1.6, 1.5, 1.2):
-        assert falling(scene, phi) == pytest.approx(-math.cos(phi), abs=2e-8)  # (M/m) / sin^2(phi/2), times a few
-    assert math.degrees(brentq(lambda phi: falling(scene, phi), 1.0, 3.0)) == pytest.approx(90, abs=1e-6)
+        assert falling(scene, phi) == pytest.approx(-math.cos(phi), abs=2e-5)  # (M/m) / sin^2(phi/2), times a few
+    assert math.degrees(brentq(lambda phi: falling(scene, phi), 1.0, 3.0)) == pytest.approx(90, abs=1e-3)
 
 
 def test_hoop_hops_only_below_a_thirteenth() -> None:
