@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from mjbeer import Can
-from mjbeer.exceptions import ParameterError
 from mjbeer.theory.liquid import LIQUIDS
 from tests.support.full_can import FullCan, _terms
 
@@ -59,10 +58,3 @@ def test_water_in_a_can_of_12_oz() -> None:
     assert FULL.acceleration(np.array([*known])) / full == pytest.approx([*known.values()], abs=6e-4)
     roots, _ = _terms(2 * FULL.liquid_mass / FULL.first_mass)
     assert FULL.can.radius**2 / (1e-6 * roots[0] ** 2) == pytest.approx(61.5, abs=0.05)  # with this viscosity
-
-
-def test_what_is_not_allowed() -> None:
-    with pytest.raises(ParameterError, match="viscosity must be greater than 0"):
-        FullCan(Can.sheet_metal(), viscosity=0.0)
-    with pytest.raises(ParameterError, match="time"):
-        FULL.way(np.array([-1.0]))

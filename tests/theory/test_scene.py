@@ -1,4 +1,4 @@
-"""What a can, a load and a scene refuse, and that all within the domain is taken."""
+"""What a can, a load and a scene refuse and take, how scenes vary, and how they are shown and told in words."""
 
 import dataclasses
 import math
@@ -14,6 +14,7 @@ import mjbeer
 from mjbeer import Can, Damping, Load, MjbeerError, Scene, exact, frozen, hoop, liquid, pendulum, sliding
 from mjbeer.exceptions import ParameterError
 from mjbeer.require import shown
+from mjbeer.theory.scene import damping_in_words, in_degrees, in_words
 
 BEER = Load(0.2, 0.01, 1e-5)
 
@@ -113,6 +114,13 @@ def test_something_has_to_resist_rotation(attachment: str, offset: float) -> Non
         Scene(Can.massless(), Load.point(0.2, offset), 0.1, attachment)
 
 
+def test_a_point_frozen_to_the_rim_holds_on_any_incline() -> None:
+    """Rounding of m b/m would make b/a more than 1."""
+    for radius in (0.9821718891880378, 0.033, 0.1):
+        scene = Scene(Can(radius), Load(1e-9, radius, 1e-9 * radius**2), 0.0, "frozen")
+        assert scene.largest_incline() == math.pi / 2
+
+
 def test_frozen_point_off_the_rim_needs_no_can() -> None:
     assert Scene(Can.massless(), Load.point(0.2, 0.02), 0.1, "frozen").frequency() > 0
 
@@ -198,3 +206,43 @@ def test_a_scene_is_shown_as_the_call_that_makes_it(scene: Scene, text: str) -> 
     assert eval(text, vars(mjbeer)) == scene
     assert pickle.loads(pickle.dumps(scene)) == scene
     assert repr(pickle.loads(pickle.dumps(scene))) == text
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        (frozen(), "half-full massless can, beer frozen, incline 10°"),
+        (sliding(math.radians(-2.5), 0.37, Can.sheet_metal()), "37 % full can of 8.57 g, beer sliding, incline −2.5°"),
+        (frozen(0.0, 1.0), "full massless can, beer frozen, level ground"),
+        (pendulum(), "wheel with a pendulum, M = 200 g, m = 100 g, incline 10°"),
+        (hoop(), "hoop with a weight on its rim, M = 10 g, m = 200 g, level ground"),
+        (sliding(damping=1e-3), "half-full massless can, beer sliding, damping 0.001 N m s, incline 10°"),
+        (
+            sliding(damping=Damping(1e-5, 1e-6), drag=2e-4),
+            "half-full massless can, beer sliding, damped, drag 0.0002 kg/m, incline 10°",
+        ),
+        (
+            Scene(Can.massless(), Load(0.2, 0.01, 1e-5), 0.0),
+            "massless can, load sliding, its centre of mass 10 mm from the axis, level ground",
+        ),
+    ],
+)
+def test_a_scene_in_words(scene: Scene, words: str) -> None:
+    assert in_words(scene) == words
+
+
+def test_what_varies_is_left_out() -> None:
+    assert in_words(frozen(), {"incline"}) == "half-full massless can, beer frozen"
+    assert in_words(frozen(), {"fill", "can", "load"}) == "can, incline 10°"
+    assert in_words(hoop(), {"load", "incline"}) == "hoop with a weight on its rim"
+    assert in_words(sliding(damping=1e-3, drag=1e-3), {"damping"}) == in_words(sliding())
+
+
+def test_damping_in_words() -> None:
+    assert damping_in_words(sliding(damping=Damping(1e-5, 0.0, 2e-8))) == "1e-05 N m s w + 2e-08 N m s^3 w^3"
+    assert damping_in_words(sliding(damping=Damping(0.0, 3e-6))) == "3e-06 N m s^2 w|w|"
+    assert damping_in_words(sliding()) == "0"
+
+
+def test_degrees_are_rounded_to_a_tenth() -> None:
+    assert [in_degrees(angle) for angle in (1.0, -math.pi, 0.0)] == ["57.3°", "−180°", "0°"]

@@ -7,8 +7,13 @@ where the damping is strong and w small. Divided by M a^2, with M = m + m_can + 
     inertia(phi) phi_ddot = -depth sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
                             + (1 - beta cos(phi)) torque(w) - beta cos(phi) drag roll_dot |roll_dot|.
 
-Each step is a collocation polynomial whose last terms are below rounding. |w| and |roll_dot| have a corner at zero:
-they are taken as w and roll_dot times a sign that a step keeps, so that it is smooth, and ends where that is wrong.
+Each step is a collocation polynomial whose last terms are below rounding, through the equations at the Radau points of
+the step, whose last one is its end: the Radau IIA method of order 2s - 1. It is L-stable: what decays at once, however
+fast, takes no small steps once it is gone. Polynomials are kept as sums of Legendre polynomials over the step, x = -1
+to 1. (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, IV.5.)
+
+|w| and |roll_dot| have a corner at zero: they are taken as w and roll_dot times a sign that a step keeps, so that it is
+smooth, and ends where that is wrong.
 """
 
 import math
@@ -18,11 +23,12 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.collocation import FRACTIONS, INTEGRALS, MATRIX, STAGES, series
 from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Start
 from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.scene import Scene
 
+_STAGES = 19
+"""Number of stages s. The method is of order 37, and a swing takes some five steps a period to rounding."""
 _STEPS = 10_000
 """Largest number of steps."""
 _ITERATIONS = 12
@@ -38,9 +44,43 @@ _REJECTED = 0.8
 _CORNER = 1e-10
 """How far w or roll_dot may pass zero within a step, relative to itself. The error that this makes is its square."""
 _TINY = np.finfo(float).tiny
-_EYE = np.eye(STAGES)
-_GRID = np.linspace(-1, 1, 4 * STAGES + 1)
-_GRID_VALUES = legendre.legvander(_GRID, STAGES)
+
+
+def _points() -> np.ndarray:
+    """Return the Radau points, the roots of P_s - P_(s-1), of which the last is 1."""
+    series = np.zeros(_STAGES + 1)
+    series[-2:] = -1, 1
+    rough = np.sort(legendre.legroots(series).real)
+    points = rough - legendre.legval(rough, series) / legendre.legval(rough, legendre.legder(series))
+    points[-1] = 1.0
+    return points
+
+
+_POINTS = _points()
+_FRACTIONS = (1 + _POINTS) / 2
+"""Where in the step the stages are, from 0 to 1."""
+_COEFFICIENTS = np.linalg.inv(legendre.legvander(_POINTS, _STAGES - 1))
+"""The coefficients P_0 to P_(s-1) of the polynomial through the values at the stages."""
+_INTEGRALS = legendre.legint(_COEFFICIENTS, lbnd=-1) / 2
+"""The coefficients P_0 to P_s of the integral of that polynomial, from the start of a step of length 1."""
+_MATRIX = legendre.legvander(_POINTS, _STAGES) @ _INTEGRALS
+"""That integral at the stages, a_ij of the method."""
+_AT_START = (-1.0) ** np.arange(_STAGES)
+_VANISHING = np.zeros(_STAGES + 1)
+_VANISHING[-2:] = np.array([-1, 1]) * (-1) ** _STAGES / 2
+
+
+def _series(start: np.ndarray, stages: np.ndarray) -> np.ndarray:
+    """Return the coefficients P_0 to P_s of the polynomials through values at the start, (n,), and stages, (s, n)."""
+    coefficients = np.zeros((_STAGES + 1, stages.shape[1]))
+    coefficients[:_STAGES] = _COEFFICIENTS @ stages
+    # A multiple of P_s - P_(s-1), which vanishes at the stages, brings the polynomial to its start.
+    return coefficients + np.outer(_VANISHING, start - _AT_START @ coefficients[:_STAGES])
+
+
+_EYE = np.eye(_STAGES)
+_GRID = np.linspace(-1, 1, 4 * _STAGES + 1)
+_GRID_VALUES = legendre.legvander(_GRID, _STAGES)
 
 Sides = tuple[float, float]
 """The signs of w and of roll_dot."""
@@ -147,7 +187,7 @@ def _follow(equations: Equations, time: np.ndarray, phi0: float, phi_dot: float,
         then = now + step.length
         until = int(np.searchsorted(time, then, "right"))
         if until > done:
-            values = legendre.legvander(2 * (time[done:until] - now) / step.whole - 1, STAGES)
+            values = legendre.legvander(2 * (time[done:until] - now) / step.whole - 1, _STAGES)
             samples[:, done:until] = (values @ step.series).T + np.array([[*turned, 0.0, 0.0]]).T
         phi, phi_dot, slip = reduced(phi + step.ends[0]), *step.ends[2:].tolist()
         turned = turned + step.ends[:2]
@@ -168,7 +208,7 @@ def _follow(equations: Equations, time: np.ndarray, phi0: float, phi_dot: float,
 
 
 @dataclass(frozen=True)
-class Step:
+class _Step:
     """A step that satisfies the equations at all of its stages, up to its end or to a corner."""
 
     whole: float
@@ -203,10 +243,10 @@ class Step:
 
     def transfer(self, change: np.ndarray) -> np.ndarray:
         """Return the change of phi, phi_dot, w and roll at the end that follows from one at the start."""
-        given = self.whole * change[0] * self.slopes[:, 0] @ MATRIX.T + change[1:3, np.newaxis]
-        by_start = np.linalg.solve(self.matrix, given.ravel()).reshape(2, STAGES).T
-        turned, slipped = legendre.legval(self.end, self.whole * INTEGRALS @ by_start)
-        rates = legendre.legval(self.end, series(change[1:3], by_start))
+        given = self.whole * change[0] * self.slopes[:, 0] @ _MATRIX.T + change[1:3, np.newaxis]
+        by_start = np.linalg.solve(self.matrix, given.ravel()).reshape(2, _STAGES).T
+        turned, slipped = legendre.legval(self.end, self.whole * _INTEGRALS @ by_start)
+        rates = legendre.legval(self.end, _series(change[1:3], by_start))
         return np.array([change[0] + turned, *rates, change[3] + turned + slipped])
 
 
@@ -220,8 +260,8 @@ def _first_length(equations: Equations, phi: float, phi_dot: float, slip: float)
 
 
 def _advance(
-    equations: Equations, state: tuple[float, float, float], now: float, length: float, before: Step | None
-) -> tuple[Step, float]:
+    equations: Equations, state: tuple[float, float, float], now: float, length: float, before: _Step | None
+) -> tuple[_Step, float]:
     """Return the next step from phi, phi_dot and w, and a length [s] for the one after it."""
     sides, flipped = equations.sides(*state), False
     phi, phi_dot, slip = (np.array(each) for each in state)
@@ -254,18 +294,18 @@ def _attempt(
     state: tuple[float, float, float],
     length: float,
     sides: Sides,
-    before: Step | None,
+    before: _Step | None,
     scales: np.ndarray,
-) -> Step | None:
+) -> _Step | None:
     """Return the step of so many seconds, by Newton's method for all stages at once; None if that does not find it.
 
     `scales` has the rates [rad/s] beside which corrections of phi_dot and w are small.
     """
-    s, reach, begin, last = STAGES, length * MATRIX, np.array(state[1:])[:, np.newaxis], math.inf
+    s, reach, begin, last = _STAGES, length * _MATRIX, np.array(state[1:])[:, np.newaxis], math.inf
     if before is None or length > 1.5 * before.whole:
         stages = np.repeat(begin, s, axis=1)
     else:  # as the step before goes on
-        stages = legendre.legval(before.end + 2 * FRACTIONS * (length / before.whole), before.series[:, 2:])
+        stages = legendre.legval(before.end + 2 * _FRACTIONS * (length / before.whole), before.series[:, 2:])
     matrix = np.empty((2 * s, 2 * s))
     for _ in range(_ITERATIONS):
         rates, slopes = equations.rates(state[0] + reach @ stages[0], stages[0], stages[1], sides)
@@ -283,24 +323,24 @@ def _attempt(
         if not size < 1e6:
             return None
         if last < _QUADRATIC:
-            turned = length * INTEGRALS @ stages.T
-            rates = series(begin[:, 0], stages.T)
-            return Step(length, stages, np.column_stack([turned[:, 0], turned.sum(axis=1), rates]), slopes, matrix)
+            turned = length * _INTEGRALS @ stages.T
+            rates = _series(begin[:, 0], stages.T)
+            return _Step(length, stages, np.column_stack([turned[:, 0], turned.sum(axis=1), rates]), slopes, matrix)
         last = size
     return None
 
 
-def _factor(step: Step, scales: np.ndarray) -> float:
+def _factor(step: _Step, scales: np.ndarray) -> float:
     """Return by what factor the step might be longer, from how fast the terms of its polynomials fall."""
-    sizes = np.abs(step.series[:STAGES, 2:]) / np.maximum(scales, np.abs(step.stages).max(axis=1))
+    sizes = np.abs(step.series[:_STAGES, 2:]) / np.maximum(scales, np.abs(step.stages).max(axis=1))
     tails = np.maximum.accumulate(sizes.max(axis=1)[::-1])[::-1]
     small = np.flatnonzero(tails <= _TAIL)
     if not len(small):
-        return 0.9 * float((_TAIL / tails[-1]) ** (1 / STAGES))
-    return min(_GROWTH, 0.95 * STAGES / max(float(small[0]), 1.0))
+        return 0.9 * float((_TAIL / tails[-1]) ** (1 / _STAGES))
+    return min(_GROWTH, 0.95 * _STAGES / max(float(small[0]), 1.0))
 
 
-def _corner(equations: Equations, step: Step, sides: Sides) -> tuple[float, int] | None:
+def _corner(equations: Equations, step: _Step, sides: Sides) -> tuple[float, int] | None:
     """Return where in the step, from -1 to 1, w (0) or roll_dot (1) gets another sign than its own, if it has one."""
     found = []
     rates = step.series[:, 2:]

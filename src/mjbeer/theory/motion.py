@@ -40,6 +40,7 @@ MOST_TURNS = 10_000
 """Most turns of a motion that passes crests."""
 MOST_PERIODS = 1_000_000
 """Most periods of a swing: after more of them rounding of the period alone is 1e-9 rad and more."""
+_TURNS, _PERIODS = f"{MOST_TURNS} turns", f"{MOST_PERIODS} periods"
 _FEW, _BATCH = 8, 256
 """Turns on the first clock, on each next one four times as many, up to so many that memory does not grow with them."""
 _ON_SEPARATRIX = "lies exactly on the separatrix: the motion takes for ever to reach the unstable equilibrium"
@@ -182,14 +183,15 @@ class Start:
             return _roll(self, time)
         if self.level_ahead == 0:
             raise NoLibrationError(_ON_SEPARATRIX)
+        latest = float(np.max(time, initial=0.0))
         if self.tiny:
             omega = self.form.frequency()
-            _require_periods(time, TURN / omega)
+            _require_until(latest, MOST_PERIODS * TURN / omega, _PERIODS)
             cos, sin = np.cos(omega * time), np.sin(omega * time)
             turned = self.from_rest * (cos - 1) + self.phi_dot / omega * sin
             return turned, self.phi_dot * cos - self.from_rest * omega * sin, -self.level_ahead
         swing = Swing(self)
-        _require_periods(time, swing.period)
+        _require_until(latest, MOST_PERIODS * swing.period, _PERIODS)
         return *swing.move(time), -self.level_ahead
 
     def doubt(self, margin: float, latest: float) -> float:
@@ -391,8 +393,7 @@ def _roll(start: Start, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, float
     if start.form.slope == 0:  # all turns are alike
         path = Turns(start.form, np.array([start.level]))
         turn, since = np.divmod(time + path.begin(start), path.duration)
-        if latest > MOST_TURNS * path.duration:
-            raise _too_many_turns(MOST_TURNS * path.duration, latest)
+        _require_until(latest, MOST_TURNS * path.duration, _TURNS)
         _, x, phi_dot = path.state(since)
         return TURN * turn + (x - start.past), phi_dot, start.level
     turned, phi_dot, begun, ended = np.empty_like(time), np.empty_like(time), None, -math.inf
@@ -405,21 +406,13 @@ def _roll(start: Start, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, float
             turned[now] = TURN * (first + turn) + (x - start.past)
         margin = min(margin, level)
         if ended > latest:
-            return turned, phi_dot, margin
-    raise _too_many_turns(ended, latest)
+            break
+    _require_until(latest, ended, _TURNS)
+    return turned, phi_dot, margin
 
 
-def _too_many_turns(end: float, latest: float) -> ParameterError:
-    return ParameterError(
-        f"an exact motion has at most {MOST_TURNS} turns, which end at {end:.6g} s: time must be at most that, "
-        f"got {latest:g} s"
-    )
-
-
-def _require_periods(time: np.ndarray, period: float) -> None:
-    latest = float(np.max(time, initial=0.0))
-    if not latest <= MOST_PERIODS * period:
+def _require_until(latest: float, end: float, most: str) -> None:
+    if not latest <= end:
         raise ParameterError(
-            f"an exact motion has at most {MOST_PERIODS:g} periods, of {period:.6g} s each: time must be at most "
-            f"{MOST_PERIODS * period:.6g} s, got {latest:g} s"
+            f"an exact motion has at most {most}, which end at {end:.6g} s: time must be at most that, got {latest:g} s"
         )

@@ -229,7 +229,7 @@ class Scene:
             return steady.largest_incline(self)
         if self.attachment == "sliding":
             return math.pi / 2
-        return math.asin(self.centre_of_mass / self.can.radius)
+        return math.asin(self.load.moment / (self.mass * self.can.radius))  # in this order no more than 1
 
     def frequency(self) -> float:
         """Return the angular frequency of small swings about the equilibrium [rad/s]: eq. (10), eq. (55) corrected.

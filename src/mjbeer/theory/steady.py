@@ -71,7 +71,7 @@ def steady_rolling(scene: "Scene") -> SteadyRolling:
 def largest_incline(scene: "Scene") -> float:
     """Return the largest incline on which a dissipating scene rolls steadily [rad]; pi/2 if it does on every one."""
     radius, weight = scene.can.radius, scene.load.moment * scene.gravity
-    sine = scene.centre_of_mass / radius
+    sine = scene.load.moment / (scene.mass * radius)
     if scene.drag > 0 and scene.gravity > 0:
         slip = liquid.root(scene.damping_law.coefficients, weight)
         sine += scene.drag * (radius * slip) ** 2 / (scene.mass * scene.gravity)
