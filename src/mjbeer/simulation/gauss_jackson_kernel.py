@@ -83,6 +83,7 @@ _PREDICT_RATE, _PREDICT = weights(1, -1), weights(2, -1)
 _CORRECT_RATE, _CORRECT = weights(1, 0), weights(2, 0)
 _MIDDLE = COUNT // 2
 _MIDDLE_RATE, _MIDDLE_PLACE = weights(1, _MIDDLE), weights(2, _MIDDLE)
+_READ_RATE, _READ_PLACE = weights(1, LAG), weights(2, LAG)
 _BETWEEN_RATE, _BETWEEN_PLACE = _between(1), _between(2)
 
 
@@ -209,12 +210,14 @@ def _read(sums, history, end, back, step, rate_weights, place_weights, out):
     The weights are work space of shape (COUNT,).
     """
     x = back - LAG - 0.5
-    for k in range(COUNT):
-        rate_weights[k] = place_weights[k] = 0.0
-    for power in range(COUNT + 1, -1, -1):
-        for k in range(COUNT):
-            rate_weights[k] = rate_weights[k] * x + _BETWEEN_RATE[power, k]
-            place_weights[k] = place_weights[k] * x + _BETWEEN_PLACE[power, k]
+    if back == LAG:
+        rate_weights[:], place_weights[:] = _READ_RATE, _READ_PLACE
+    else:
+        rate_weights[:] = place_weights[:] = 0.0
+        for power in range(COUNT + 1, -1, -1):
+            for k in range(COUNT):
+                rate_weights[k] = rate_weights[k] * x + _BETWEEN_RATE[power, k]
+                place_weights[k] = place_weights[k] * x + _BETWEEN_PLACE[power, k]
     size = sums.shape[1]
     for i in range(size):
         place = _sum(place_weights, history[i], end) - (1 + back) * sums[0, i]

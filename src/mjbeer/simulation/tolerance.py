@@ -52,6 +52,9 @@ _STALLED = 0.75
 """Distance of two runs over that of the two runs before, above which the finer runs were no progress."""
 _PATIENCE = 2
 """Number of times in a row that finer runs may be no progress: with too large steps their distance is arbitrary."""
+_EVERY = 2
+"""Runs of DOP853 are compared at the end of every second step. Each that is looked at takes three evaluations of the
+next run, and what is brief takes some steps."""
 _EVALUATIONS = 5_000_000
 """Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
 _STABLE = 6.4 / 12
@@ -112,7 +115,7 @@ class _Ends:
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """A run that is compared with the one before: at all samples, and at the ends of the steps of the one before.
+    """A run that is compared with the one before: at all samples, and at the ends of steps of the one before.
 
     The motion is looked at everywhere in this way, whatever samples were asked for: what is brief takes short steps.
     """
@@ -274,7 +277,7 @@ class Solver:
         times: np.ndarray,
         before: _Run | None = None,
         friction: float | None = None,
-        stride: int = 1,
+        stride: int = _EVERY,
     ) -> _Run:
         """Return a run by a method, compared with the run `before`; with a record if there is a `friction`.
 
@@ -292,9 +295,9 @@ class Solver:
             distance = self._distance(before.states, states, start)
             if len(at_ends):
                 distance = max(distance, self._distance(before.at_ends, at_ends, start))
-        ends, record = watch.times[stride::stride], None if recorder is None else recorder.record
-        count = int(np.searchsorted(ends, times[-1]))
-        return _Run(states, ends[:count], watch.states[stride::stride][:count], record, distance)
+        ends, record = watch.times, None if recorder is None else recorder.record
+        chosen = slice(stride, int(np.searchsorted(ends, times[-1])), stride)
+        return _Run(states, ends[chosen], watch.states[chosen], record, distance)
 
     def _integrate(
         self,

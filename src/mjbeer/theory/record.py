@@ -72,6 +72,7 @@ class Record:
         self._kinetic = self._energy_change = self._work = 0.0
         self._swing_drift = self._largest_swing_drift = 0.0
         self._first: Coordinates | None = None
+        self._energy = np.zeros(1)
         self._last: Coordinates | None = None
         self._before: tuple[float, float] | None = None
         self._all_steps = True
@@ -97,6 +98,7 @@ class Record:
         scene, radius = self.scene, self.scene.can.radius
         if self._first is None or self._last is None:
             self._first = self._last = _piece(motion, 0)
+            self._energy = energy(scene, self._first)
         first, last = self._first, self._last
         slid = (motion.u - first.u) - radius * (motion.roll - first.roll)
         self.slip, self.lift = _largest(self.slip, slid), _largest(self.lift, motion.lift)
@@ -108,7 +110,7 @@ class Record:
         kinetic, form = kinetic_energy(scene, motion), scene.oscillator
         swing = form.inertia(motion.phi) * motion.phi_dot**2 / 2
         self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
-        self._last, change = _piece(motion, -1), kinetic + potential_energy(scene, motion) - energy(scene, first)
+        self._last, change = _piece(motion, -1), kinetic + potential_energy(scene, motion) - self._energy
         if scene.dissipates:
             self._add_losses(motion, last, change)
             return

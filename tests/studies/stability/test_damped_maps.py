@@ -73,14 +73,6 @@ def test_a_wrong_run_that_is_trusted_is_seen(monkeypatch: pytest.MonkeyPatch) ->
     assert not result["agrees"]
 
 
-def test_an_accurate_run_that_warns_is_kept() -> None:
-    """First-order integrators drift in energy by more than their error."""
-    result = damped_maps.measure("reduced", "discrete", (2, 2))
-    assert result["measured"][0][0] == WARNED
-    worst = result["warned"]
-    assert worst["error"] <= 0.01 < worst["implied"]
-
-
 def test_plot_and_table_are_drawn(
     measured: list[dict], tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -28,9 +28,9 @@ from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene, sliding
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)
-"""Outcomes of a run, as numbers for the cells of a map. It exploded, or was refused; its error is above `trust.ERROR`,
+"""Outcomes of a run, as numbers for the cells of a map. It exploded, or was refused; its error is above `record.ERROR`,
 and it says so; it is accurate, and warns nevertheless; it is accurate and trusted. The last must not occur: its error
-is above `trust.ERROR`, and it is trusted."""
+is above `record.ERROR`, and it is trusted."""
 MEANINGS = ("exploded", "inaccurate, and says so", "accurate, but warns", "accurate and trusted", "wrong and silent")
 """The outcomes in words."""
 START = 1.0

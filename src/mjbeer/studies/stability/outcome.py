@@ -51,7 +51,7 @@ class Outcome:
 def judge(simulate: Callable[[], Run]) -> Outcome:
     """Simulate a motion, and return how that ended.
 
-    A run is accurate if the error of phi and u/a is at most `trust.ERROR`, the limit for trusted runs as well.
+    A run is accurate if the error of phi and u/a is at most `record.ERROR`, the limit for trusted runs as well.
 
     Raises:
       MjbeerError: if the run cannot even be tried, as when its template is missing.
