@@ -11,13 +11,9 @@ import numpy as np
 
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
-from mjbeer.theory.conserved import kinetic_energy
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene, damping_in_words
 from mjbeer.theory.trajectory import Trajectory
-
-_BALANCED = 1e-6
-"""Share of the kinetic energy up to which the swing's may be rounding: a million times that of a double or more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +57,7 @@ class Figures:
             "samples": f"{len(trajectory.time)} to t = {trajectory.time[-1]:.6g} s",
             "phi at the end": f"{math.degrees(trajectory.phi[-1]):.9g} degrees",
             "u at the end": f"{trajectory.u[-1]:.9g} m",
-            "energy drift": "{:.2e} of the {}".format(*_drift(trajectory)),
+            "energy drift": f"{trajectory.energy_drift:.2e} of {_scale(trajectory.scene)}",
             "slip, largest and final": f"{np.abs(slip).max():.2e}, {slip[-1]:.2e} radii",
             "lift, lowest and highest": f"{lift.min():.2e}, {lift.max():.2e} radii",
             "normal force needed": f"{normal.min():.4g} to {normal.max():.4g} N",
@@ -87,7 +83,7 @@ class Figures:
             "end [s]": trajectory.time[-1],
             "phi at the end [degrees]": math.degrees(trajectory.phi[-1]),
             "u at the end [m]": trajectory.u[-1],
-            "energy drift": _drift(trajectory)[0],
+            "energy drift": trajectory.energy_drift,
             "largest slip [radii]": np.abs(slip).max(),
             "final slip [radii]": slip[-1],
             "lowest lift [radii]": lift.min(),
@@ -113,18 +109,9 @@ class Figures:
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
-def _drift(trajectory: Trajectory) -> tuple[float, str]:
-    """Return the largest change of energy over another energy, and what that is.
-
-    A balanced load, as in a full can, does not swing by itself, and its swing's energy may be nothing but rounding. The
-    scale is then the largest kinetic energy of the whole motion: from rest, what gravity has given, m g u sin(alpha).
-    """
-    scene, record = trajectory.scene, trajectory.record
-    kinetic = float(kinetic_energy(scene, trajectory).max())
-    if scene.dissipates or scene.load.offset or record.swing > _BALANCED * kinetic:
-        return trajectory.energy_drift, "swing's largest kinetic energy"
-    change = float(np.abs(trajectory.energy - trajectory.energy[0]).max())
-    return change / kinetic if kinetic else 0.0, "largest kinetic energy"
+def _scale(scene: Scene) -> str:
+    """Return the energy with which `energy_drift` is compared."""
+    return "the swing's largest kinetic energy" if scene.load.offset else "the largest kinetic energy"
 
 
 def _in_the_end(scene: Scene) -> dict[str, str]:

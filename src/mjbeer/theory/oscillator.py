@@ -86,7 +86,7 @@ class Crest:
         return max(0.0, -float(self.below(self.begins)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
-        """Return the height V(crest) - V(crest + x) [J], for any `x` [rad]; V(rest + y) - V(rest) is below(-y)."""
+        """Return V(crest) - V(crest + x) [J] for `x` [rad] of either sign; at x = -y it is V(rest + y) - V(rest)."""
         return self.excess * x + self.ramp * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
 
     def torque(self, x: np.ndarray | float) -> np.ndarray:

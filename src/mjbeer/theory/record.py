@@ -156,11 +156,12 @@ class Record:
         With damping or drag it is the change of the energy and the work that they have taken together, and needs a
         record of all steps. It includes slip and lift, and is what users see; the implied error rests on the energy of
         the swing instead, where that of a can that runs away down the incline cannot hide a drift. The denominator is
-        at least `_SMALL_SWING` of the well's depth, and at least `_ROUNDING` of the kinetic energy, which matters for a
-        balanced load.
+        at least `_SMALL_SWING` of the well's depth. A balanced load, as in a full can, has no well and no swing of its
+        own: there the denominator is the largest kinetic energy of all that moves, from rest m g u sin(alpha).
         """
-        depth = self.scene.oscillator.depth
-        return _ratio(self._energy_change, max(self.swing, _SMALL_SWING * depth, _ROUNDING * self._kinetic))
+        balanced = self.scene.load.offset == 0
+        swing = max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
+        return _ratio(self._energy_change, self._kinetic if balanced else max(swing, _ROUNDING * self._kinetic))
 
     @property
     def implied_error(self) -> float:
