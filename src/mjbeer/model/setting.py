@@ -29,40 +29,7 @@ _IMPEDANCES = (1e-4, 0.9999)
 FirstJoint = Literal["slide", "hinge"]
 
 
-def _checked_solref(solref: tuple[float, float]) -> tuple[float, float]:
-    """Return solref as two floats, in one of the two forms that MuJoCo does not replace by its default.
-
-    Raises:
-      ParameterError: if it is neither.
-    """
-    first, second = _pair("solref", solref)
-    if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):
-        raise ParameterError(
-            "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness [1/s^2] and a "
-            f"damping [1/s], both negated, got {require.shown(solref)}"
-        )
-    return first, second
-
-
-def _checked_impedance(impedance: tuple[float, float]) -> tuple[float, float]:
-    """Return dmin and dmax of solimp as two floats.
-
-    Raises:
-      ParameterError: if one is not in the range of MuJoCo.
-    """
-    low, high = _IMPEDANCES
-    pair = _pair("impedance", impedance)
-    if not low <= min(pair) <= max(pair) <= high:
-        raise ParameterError(f"impedance must be two numbers from {low:g} to {high:g}, got {require.shown(impedance)}")
-    return pair
-
-
 def _pair(name: str, value: tuple[float, float]) -> tuple[float, float]:
-    """Return two numbers as two floats.
-
-    Raises:
-      ParameterError: if `value` is no list or tuple of two finite numbers.
-    """
     if not isinstance(value, (list, tuple)) or len(value) != 2:
         raise ParameterError(f"{name} must be two numbers, got {require.shown(value)}")
     return require.number(f"{name}[0]", value[0]), require.number(f"{name}[1]", value[1])
@@ -93,9 +60,17 @@ class Softness:
 
     def __post_init__(self) -> None:
         if self.solref is not None:
-            require.store(self, solref=_checked_solref(self.solref))
+            require.store(self, solref=_pair("solref", self.solref))
+            first, second = self.solref
+            if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):  # others MuJoCo replaces by its default
+                raise ParameterError(
+                    "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness "
+                    f"[1/s^2] and a damping [1/s], both negated, got {require.shown(self.solref)}"
+                )
         if self.impedance is not None:
-            require.store(self, impedance=_checked_impedance(self.impedance))
+            require.store(self, impedance=_pair("impedance", self.impedance))
+            for place, share in enumerate(self.impedance):
+                require.within(f"impedance[{place}]", share, *_IMPEDANCES)
         if self.impratio is not None:
             require.store(self, impratio=require.positive("impratio", self.impratio))
         for name in ("refsafe", "exact_diagonal", "elliptic"):
