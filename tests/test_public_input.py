@@ -121,14 +121,15 @@ CASES = {
     f"{name}, {parameter}": (name, function, parameter)
     for name, function in public()
     for parameter, each in inspect.signature(function).parameters.items()
-    if each.kind is not each.VAR_KEYWORD
+    if each.kind not in (each.VAR_KEYWORD, each.VAR_POSITIONAL)
 } | {"sweep, fill": ("sweep", mjbeer.sweep, "fill")}
 
 
 def good(name: str, function: Callable[..., object]) -> dict[str, Any]:
     """Good arguments for the parameters without a default."""
     parameters = inspect.signature(function).parameters.values()
-    needed = [each.name for each in parameters if each.default is each.empty and each.kind is not each.VAR_KEYWORD]
+    several = inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL
+    needed = [each.name for each in parameters if each.default is each.empty and each.kind not in several]
     return {each: (GOOD | GOOD_HERE.get(name, {}))[each] for each in needed}
 
 

@@ -137,9 +137,9 @@ def test_what_a_still_camera_does_not_draw_anew_is_the_same() -> None:
 
 
 @pytest.mark.draws
-@pytest.mark.parametrize("radius", [1e-6, 100.0])
+@pytest.mark.parametrize("radius", [1e-4, 25.0])
 def test_size_does_not_show(radius: float) -> None:
-    """A can of 1 um looks as one of 100 m does, but for the time and the distances."""
+    """A can of 0.1 mm looks as one of 25 m does, but for the time and the distances."""
     shown = []
     for size in (RADIUS, radius):
         scene = frozen(can=Can.massless(size, 4 * size))
@@ -208,7 +208,7 @@ def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
         simulate(frozen(gravity=0.0), 0.5, 1.0, 1.0, rolling="contact"),
         exact(sliding(), np.linspace(0, 0.5, 51), 1.0, 1e4),
         exact(frozen(), np.linspace(0, 1e-9, 20), 1.0),
-        exact(frozen(), np.linspace(0, 1e6, 2000), 1.0),
+        exact(frozen(), np.linspace(0, 1e5, 2000), 1.0),
         exact(frozen(), np.linspace(1, 2, 20), 1.0),
     ],
     ids=["weightless", "fast", "short", "long", "late"],

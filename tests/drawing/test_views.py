@@ -125,5 +125,5 @@ def test_a_damped_run_is_drawn_with_its_speed_and_without_a_ghost() -> None:
 
 def test_help_says_what_the_coordinates_are() -> None:
     text = mjbeer.Trajectory.__doc__ or ""
-    for word in ("`u`", "`phi`", "`roll`", "`lift`", "[m]", "[rad]", "positive downhill", "eq. 12"):
+    for word in ("`u`", "`phi`", "`roll`", "`lift`", "[m]", "[rad]", "eq. 12"):
         assert word in text

@@ -20,8 +20,8 @@ _GENTLE = math.radians(5)
 """Incline of the race of beer [rad]: gentle enough for the frozen can to finish without leaving the board."""
 _FILL = 0.75
 """How full the cans are that are neither full nor empty."""
-_EMPTY = 1e-6
-"""Fill of the empty can: its beer weighs a ten millionth of the can."""
+_EMPTY = 1e-5
+"""Fill of the empty can: its beer weighs some millionths of the can."""
 _STEEPER = math.radians(7.1)
 """Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
 honey, the thickest of the liquids, from 7.38."""

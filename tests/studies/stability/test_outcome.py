@@ -79,7 +79,7 @@ def test_no_run_is_judged_where_theories_differ(monkeypatch: pytest.MonkeyPatch)
         made = exact(*arguments)
         return replace(made, phi=made.phi * 1.001)
 
-    monkeypatch.setattr(truth, "exact", other)
+    monkeypatch.setattr(truth, "solution", other)
     outcome = judge(lambda: simulate(frozen(), 1, 1.0))
     assert outcome.verdict == THEORIES
     assert outcome.apart == pytest.approx(1e-3, rel=0.1)
