@@ -51,7 +51,7 @@ EDGES = [
 """Names, ends of their ranges, and what takes them."""
 
 
-@pytest.mark.parametrize(("name", "lowest", "highest", "make"), EDGES, ids=lambda value: str(value)[:30])
+@pytest.mark.parametrize(("name", "lowest", "highest", "make"), EDGES, ids=[name for name, *_ in EDGES])
 def test_the_domain_has_its_edges_and_nothing_beyond(
     name: str, lowest: float | None, highest: float, make: Callable[[float], object]
 ) -> None:
