@@ -144,7 +144,10 @@ class _Painter:
         return pictures
 
     def end(self) -> None:
-        """End the process, and remove what it leaves unfinished."""
+        """End the process and the ffmpeg that it has started, and remove what they leave unfinished."""
+        if self._process.pid is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self._process.pid, signal.SIGKILL)
         self._process.kill()
         self._process.join()
         self.pipe.close()
@@ -162,6 +165,7 @@ def _told(status: int) -> str:
 
 def _paint(pipe: Connection) -> None:
     """Write the films that come through a pipe, and answer with a word for each picture and at the end of each film."""
+    os.setpgrp()  # one group with its ffmpeg, to be ended together
     processes.follow_parent()
     warnings.simplefilter("ignore", UntrustedWarning)  # films show on purpose what cannot be trusted
     while True:

@@ -44,7 +44,7 @@ def test_an_error_of_one_theory_is_seen(monkeypatch: pytest.MonkeyPatch) -> None
         made = exact(*arguments)
         return replace(made, phi=made.phi + 2e-10 * (made.time > 1))
 
-    monkeypatch.setattr(truth, "exact", wrong)
+    monkeypatch.setattr(truth, "solution", wrong)
     found = true(frozen(), 1.0)
     assert found.apart is not None
     assert 1e-10 < found.apart <= 2e-10  # relative, as the load has turned by more than a radian
@@ -56,7 +56,7 @@ def test_one_theory_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
         raise NoLibrationError
 
     whole = true(frozen(), 1.0)
-    monkeypatch.setattr(truth, "exact", separatrix)
+    monkeypatch.setattr(truth, "solution", separatrix)
     alone = true(frozen(), 1.0)
     assert (alone.apart, alone.explained) == (None, True)
     assert whole.off(alone.motions[0].phi, alone.motions[0].roll) < 1e-12
@@ -72,12 +72,12 @@ def test_one_theory_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_beside_a_separatrix_each_start_that_doubles_confuse_is_right(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On the top at rest the load may fall either way, if `exact` does not say that it stays."""
+    """On the top at rest the load may fall either way, if `solution` does not say that it stays."""
 
     def separatrix(*_: object, **__: object) -> Trajectory:
         raise NoLibrationError
 
-    monkeypatch.setattr(truth, "exact", separatrix)
+    monkeypatch.setattr(truth, "solution", separatrix)
     found = true(pendulum(0.0), math.pi)
     ends = [motion.phi[-1] - math.pi for motion in found.motions]
     assert min(ends) < -1

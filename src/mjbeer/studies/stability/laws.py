@@ -22,8 +22,8 @@ _BESIDE_FOLD = np.array([1e-6, 1e-7, 1e-8])
 """Relative distances of sin(alpha) from that of the steepest incline with an equilibrium, the fold."""
 _BESIDE_SEPARATRIX = np.array([1e-4, 1e-6, 1e-8, 1e-10])
 """Distances [rad] of the start from the end of the largest swing, the separatrix."""
-_SIZES = (1e-6, 1e-3, 100.0)
-_GRAVITIES = (1e-6, 1e6)
+_SIZES = (2e-4, 1e-3, 25.0)
+_GRAVITIES = (1e-3, 1e3)
 """Radii [m] and gravities [m/s^2] at which the scaled motion must be the same."""
 
 
@@ -68,7 +68,7 @@ def laws() -> Iterator[Check]:
         )
     for make, name in ((sliding, "sliding"), (frozen, "frozen")):
         yield Check(
-            "similarity: phi over t sqrt(g/a), cans of 1 um to 100 m, 1e-6 to 1e6 m/s^2",
+            "similarity: phi over t sqrt(g/a), cans of 0.2 mm to 25 m, 1e-3 to 1e3 m/s^2",
             f"{name}, metal can, reduced, DOP853",
             bound=1e-10,
             unit="rad",

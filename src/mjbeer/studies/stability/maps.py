@@ -19,8 +19,8 @@ SPANS = {
     "equality": ((1e-4, 1.0), (1e-4, 1e-1)),
     "direct": ((1e-5, 1.0), (1e2, 1e10)),
     "contact": ((1e-4, 1e-1), (1e-4, 1e-1)),
-    "gravity": ((1e-4, 10.0), (1e-2, 1e6)),
-    "spring": ((1e-4, 10.0), (1e-2, 1e6)),
+    "gravity": ((1e-3, 10.0), (1e-3, 1e3)),
+    "spring": ((1e-3, 10.0), (1e-3, 1e3)),
 }
 """Ranges of a map, by family: timesteps [s], and time constants [s], stiffnesses [1/s^2] or gravities [m/s^2]."""
 _MOSTLY = ("Euler", "implicitfast", "discrete", "RK4")
