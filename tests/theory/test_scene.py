@@ -240,7 +240,7 @@ def test_what_varies_is_left_out() -> None:
 
 def test_damping_in_words() -> None:
     assert damping_in_words(sliding(damping=Damping(1e-5, 0.0, 2e-8))) == "1e-05 N m s + 2e-08 N m s^3 w^2"
-    assert damping_in_words(sliding(damping=Damping(0.0, 3e-6))) == "3e-06 N m s^2 w|w|"
+    assert damping_in_words(sliding(damping=Damping(0.0, 3e-6))) == "3e-06 N m s^2 |w|"
     assert damping_in_words(sliding()) == "0"
 
 

@@ -268,7 +268,7 @@ class Solver:
             return 0.0
         gap = _FAR * record.to_barrier
         share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST
-        return max(_DRIFT * share * record.swing_error, record.axis_error)
+        return max(_DRIFT * share * record.swing_error_at_most, record.axis_error)
 
     def _take(
         self,

@@ -70,7 +70,7 @@ class Record:
         self.axis_drift = 0.0
         """Largest distance of the axis from where the momentum at the start has it [m]; 0 with damping or drag."""
         self._kinetic = self._energy_change = self._work = 0.0
-        self._swing_drift = self._largest_swing_drift = 0.0
+        self._swing_drift = self._largest_swing_drift = self._swing_change = 0.0
         self._first: Coordinates | None = None
         self._energy = np.zeros(1)
         self._last: Coordinates | None = None
@@ -116,6 +116,7 @@ class Record:
             return
         self._energy_change = _largest(self._energy_change, change)
         swing -= form.inertia(first.phi) * first.phi_dot**2 / 2 + form.drop(motion.phi, first.phi)
+        self._swing_change = _largest(self._swing_change, swing)
         drift = self._swing_drift + np.cumsum(swing * covered)
         self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
         self.axis_drift = _largest(self.axis_drift, axis_drift(scene, motion, first))
@@ -162,8 +163,8 @@ class Record:
         own: there the denominator is the largest kinetic energy of all that moves, from rest m g u sin(alpha).
         """
         balanced = self.scene.load.offset == 0
-        swing = max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
-        return _ratio(self._energy_change, self._kinetic if balanced else max(swing, _ROUNDING * self._kinetic))
+        swing = max(self._least_swing, _ROUNDING * self._kinetic)
+        return _ratio(self._energy_change, self._kinetic if balanced else swing)
 
     @property
     def implied_error(self) -> float:
@@ -180,8 +181,19 @@ class Record:
         A relative error of the swing's energy is about as large a relative error of its speed or its period, and so of
         the path that phi covers meanwhile.
         """
-        least = max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
-        return _ratio(self._largest_swing_drift, least) / max(1.0, self.turned)
+        return _ratio(self._largest_swing_drift, self._least_swing) / max(1.0, self.turned)
+
+    @property
+    def swing_error_at_most(self) -> float:
+        """Return `swing_error` as it would be if the largest drift, whatever its sign, had been there all the time.
+
+        A step that misses a brief event may bring a drift that the next one takes away, and leave the phase wrong.
+        """
+        return _ratio(self._swing_change, self._least_swing) * self.path / max(1.0, self.turned)
+
+    @property
+    def _least_swing(self) -> float:
+        return max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
 
     @property
     def axis_error(self) -> float:
