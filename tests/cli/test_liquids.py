@@ -2,12 +2,15 @@
 
 import json
 import pathlib
+import warnings
 
 import numpy as np
 import pytest
 
 import mjbeer
 from mjbeer.cli.app import main
+from mjbeer.cli.studies import Paper
+from mjbeer.exceptions import LiquidWarning
 from mjbeer.theory.scene import liquid_in
 
 
@@ -79,3 +82,15 @@ def test_a_damped_scene_is_exported(tmp_path: pathlib.Path) -> None:
     words = f"export sliding --damping 1e-3 --can metal --rolling equality --output {path}"
     assert main(words.split()) == 0
     assert 'damping="0.001"' in path.read_text()
+
+
+def test_a_study_is_not_interrupted_by_what_it_says_of_liquids_elsewhere(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run(_: Paper) -> int:
+        warnings.warn("no lump", LiquidWarning, stacklevel=2)
+        return 0
+
+    monkeypatch.setattr(Paper, "run", run)
+    assert main(["paper"]) == 0
+    assert capsys.readouterr().err == ""

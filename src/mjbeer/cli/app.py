@@ -61,7 +61,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
             warnings.simplefilter("ignore", AngleWarning)  # angles are in degrees here
-            warnings.simplefilter("always", LiquidWarning)
+            # A study goes where a liquid is no lump on purpose, and its documents say so.
+            warnings.simplefilter("always" if hasattr(command, "scene") else "ignore", LiquidWarning)
             cast("Any", warnings).showwarning = functools.partial(_show, warnings.showwarning)
             return command.run()
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes

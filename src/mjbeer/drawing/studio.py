@@ -17,7 +17,7 @@ from PIL import Image
 
 from mjbeer.drawing import video
 from mjbeer.drawing.film import Film
-from mjbeer.exceptions import RenderingError, UntrustedWarning
+from mjbeer.exceptions import LiquidWarning, RenderingError, UntrustedWarning
 from mjbeer.output import files, processes
 from mjbeer.output.terminal import progress_bar
 
@@ -167,7 +167,8 @@ def _paint(pipe: Connection) -> None:
     """Write the films that come through a pipe, and answer with a word for each picture and at the end of each film."""
     os.setpgrp()  # one group with its ffmpeg, to be ended together
     processes.follow_parent()
-    warnings.simplefilter("ignore", UntrustedWarning)  # films show on purpose what cannot be trusted
+    for kind in (UntrustedWarning, LiquidWarning):  # films show on purpose what cannot be trusted
+        warnings.simplefilter("ignore", kind)
     while True:
         order: Order = pipe.recv()
         try:
