@@ -29,6 +29,7 @@ from mjbeer.model.build import build, compose
 from mjbeer.model.check import effective_softness
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
+from mjbeer.theory.equations import kinetic_energy, potential_energy
 from mjbeer.theory.liquid import Damping
 from tests.support import others
 from tests.support.others import BY_NAME, FRICTION, START
@@ -254,7 +255,7 @@ def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[
 
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
-    """And energies, from the height of the load and of the can, or none: where a constant force stands for a weight."""
+    """And energies, or none where a constant force stands for a weight."""
     scene = SCENES[name]
     model, (phi, phi_dot) = present(scene, Setting(rolling), 0.0, 0.0).compile(), (1.1, -7.0)
     found, (u, u_dot) = at(model, scene, phi, phi_dot), scene.start(phi, phi_dot)
@@ -264,13 +265,10 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
     if rolling == "contact":
         expected["lift"] = -1e-9 * scene.can.radius
     if not model.nu:
-        can, load, tilt = scene.can, scene.load, scene.incline
-        along, across = u_dot - load.offset * math.cos(phi) * phi_dot, load.offset * math.sin(phi) * phi_dot
-        kinetic = can.mass * u_dot**2 + can.inertia * (u_dot / can.radius) ** 2
-        kinetic += load.mass * (along**2 + across**2) + load.inertia * phi_dot**2
-        fall = scene.mass * u * math.sin(tilt) + load.mass * load.offset * (math.cos(phi + tilt) - math.cos(tilt))
-        level = at(model, scene, 0.0, 0.0)["potential_energy"]
-        expected |= {"potential_energy": level - scene.gravity * fall, "kinetic_energy": kinetic / 2}
+        moved, below = (exact(scene, [0.0], *start) for start in ((phi, phi_dot), (0.0, 0.0)))
+        raised = potential_energy(scene, moved) - potential_energy(scene, below)
+        expected["potential_energy"] = at(model, scene, 0.0, 0.0)["potential_energy"] + float(raised[0])
+        expected["kinetic_energy"] = float(kinetic_energy(scene, moved)[0])
     assert found.keys() == expected.keys()
     scale = max(abs(value) for value in expected.values())
     # A can in contact starts 1e-9 radii deep.
