@@ -127,8 +127,9 @@ def test_misprints_and_limits_of_the_physics_are_those_of_the_audit() -> None:
     named = {each for row in rows("physics.md", "| where | claim | holds |") for each in row[0].split(", ")}
     assert named == {each for claim in claims if claim.verdict == LIMIT for each in claim.equation.split(", ")}
     tests = "".join(path.read_text() for path in (CHECKOUT / "tests").rglob("test_*.py"))
-    text = "".join(path.read_text() for path in DOCUMENTS)
-    assert not [name for name in re.findall(r"`(test_\w+)`", text) if f"def {name}(" not in tests]
+    shown = re.findall(r"`(test_\w+)`", (CHECKOUT / "docs" / "physics.md").read_text())
+    assert len(shown) > 20
+    assert not [name for name in shown if f"def {name}(" not in tests]
 
 
 def test_the_version_is_that_of_the_citation_and_of_the_newest_entry_of_the_changelog() -> None:
