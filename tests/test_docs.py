@@ -1,8 +1,9 @@
-"""The documents keep their word: their Python runs, their commands exist, their table is the program's."""
+"""The documents keep their word: their Python runs, their commands exist, their tables are the program's."""
 
 import pathlib
 import re
 import shlex
+import tomllib
 from dataclasses import dataclass
 
 import pytest
@@ -10,9 +11,6 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CORRECTED, LIMIT
-from mjbeer.paper.stories import letters
-from mjbeer.studies.benchmark import advice, overview, tables
-from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.validation import motions
 from tests.support import stubs
 
@@ -53,37 +51,18 @@ BLOCKS = [block for path in DOCUMENTS for block in blocks(path)]
 COMMANDS = list(dict.fromkeys(command for block in BLOCKS if block.language in SHELLS for command in block.commands))
 
 
-def test_every_block_says_its_language() -> None:
-    assert not [f"{block.path.name}:{block.line}" for block in BLOCKS if not block.language]
-
-
-def test_the_readme_shows_both_ways_to_use_it() -> None:
-    languages = {block.language for block in blocks(README)}
-    assert "python" in languages
-    assert languages & set(SHELLS)
-
-
-@pytest.fixture
-def names(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, object]:
-    """What the README's Python leaves behind, run block after block as a reader would; videos are not drawn."""
+def test_python_runs_and_has_what_the_text_names(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Block after block, as a reader would run it; videos are not drawn."""
     monkeypatch.chdir(tmp_path)
     stubs.draw(monkeypatch)
-    found: dict[str, object] = {}
+    names: dict[str, object] = {}
     for block in BLOCKS:
         if block.language == "python":
-            exec(compile("\n" * (block.line - 1) + block.text, str(block.path), "exec"), found)
-    return found
-
-
-def test_python_runs_and_has_what_the_text_names(names: dict[str, object]) -> None:
+            exec(compile("\n" * (block.line - 1) + block.text, str(block.path), "exec"), names)
     spans = [each.split(".") for each in re.findall(r"`(\w+\.\w+)[^`]*`", README.read_text())]
     named = [(owner, attribute) for owner, attribute in spans if owner in names]
     assert named
     assert not [(owner, attribute) for owner, attribute in named if not hasattr(names[owner], attribute)]
-
-
-def test_no_command_is_left_out_below() -> None:
-    assert {shlex.split(command)[0] for command in COMMANDS} == {"mjbeer", "make"}
 
 
 @pytest.mark.slow
@@ -103,11 +82,13 @@ def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.
     assert status == 0
 
 
-@pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "make"])
-def test_targets_of_make_exist(command: str) -> None:
+def test_targets_of_make_exist_and_there_are_no_other_commands() -> None:
     makefile = (CHECKOUT / "Makefile").read_text()
-    targets = [word for word in shlex.split(command, comments=True)[1:] if "=" not in word]
-    assert all(re.search(rf"^{re.escape(target)}:", makefile, re.MULTILINE) for target in targets)
+    for command in COMMANDS:
+        program, *words = shlex.split(command, comments=True)
+        assert program in ("mjbeer", "make"), command
+        targets = [word for word in words if program == "make" and "=" not in word]
+        assert all(re.search(rf"^{re.escape(target)}:", makefile, re.MULTILINE) for target in targets), command
 
 
 def test_links_and_paths_lead_somewhere() -> None:
@@ -119,73 +100,39 @@ def test_links_and_paths_lead_somewhere() -> None:
         assert not [named for named in paths if not (CHECKOUT / named).exists()], path
 
 
-def test_run_times_are_those_of_the_study_that_comes_with_mjbeer() -> None:
-    stored, text = Benchmark.load(advice.SHIPPED), (CHECKOUT / "docs" / "benchmark.md").read_text()
-    cheapest = tables.cheapest(stored, "frozen")
-    for table in (cheapest, tables.others(stored), tables.tolerances(stored), tables.usual(stored)):
-        assert table.markdown(title=False).strip() in text, table.title
-
-
-def test_the_small_diagram_is_drawn_from_the_study_that_comes_with_mjbeer(tmp_path: pathlib.Path) -> None:
-    overview.draw(Benchmark.load(advice.SHIPPED), tmp_path / "overview")
-    assert (tmp_path / "overview.svg").read_bytes() == (CHECKOUT / "renders" / "overview.svg").read_bytes()
-
-
-def test_the_sketch_is_drawn_by_the_program(tmp_path: pathlib.Path) -> None:
-    letters.draw(tmp_path / "letters")
-    assert (tmp_path / "letters.svg").read_bytes() == (CHECKOUT / "docs" / "figures" / "letters.svg").read_bytes()
+def rows(document: str, head: str) -> list[list[str]]:
+    """Return the cells of the table with a head, in a document of the folder docs."""
+    _, start, after = (CHECKOUT / "docs" / document).read_text().partition(head)
+    assert start, head
+    return [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()[2:]]
 
 
 def test_the_table_of_the_validation_is_that_of_the_program() -> None:
-    text = (CHECKOUT / "docs" / "validation.md").read_text()
-    _, start, after = text.partition(
-        "| check | by | error | at most | what dominates the error |\n|---|---|---:|---:|---|\n"
-    )
-    table = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()]
-    rows = motions.checks()
-    bounds = [f"{row.bound:.1e} {row.unit}".strip() for row in rows]
-    assert start
-    assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in table] == [
-        (row.quantity, row.by, bound, row.reason) for row, bound in zip(rows, bounds, strict=True)
+    """An error of today's differs in its digits, not in its being within the bound."""
+    checks, told = motions.checks(), rows("validation.md", "| check | by | error | at most |")
+    bounds = [f"{check.bound:.1e} {check.unit}".strip() for check in checks]
+    assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in told] == [
+        (check.quantity, check.by, bound, check.reason) for check, bound in zip(checks, bounds, strict=True)
     ]
-    # An error of today's differs in its digits, not in its being within the bound.
-    assert all(float(error) <= row.bound for (_, _, error, *_), row in zip(table, rows, strict=True))
-    assert f"these {len(rows)} rows" in text
+    assert all(float(row[2]) <= check.bound for row, check in zip(told, checks, strict=True))
 
 
-PHYSICS = CHECKOUT / "docs" / "physics.md"
-
-
-def test_the_misprints_of_the_physics_are_those_of_the_audit() -> None:
-    """Row by row, with what they miss by; and the tests that are named exist."""
-    _, _, after = PHYSICS.read_text().partition("| equation | printed | right | misses by | derived or shown in |\n")
-    rows = [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()[1:]]
-    claims = [each for each in chapters.claims() if each.verdict == CORRECTED]
-    told = sorted((row[0], float(row[3])) for row in rows)
-    assert told == sorted((each.equation, float(each.misses_by or 0)) for each in claims)
+def test_misprints_and_limits_of_the_physics_are_those_of_the_audit() -> None:
+    """With what each misprint misses by; and the tests that are named exist."""
+    claims, told = chapters.claims(), rows("physics.md", "| equation | printed | right | misses by |")
+    corrected = [each for each in claims if each.verdict == CORRECTED]
+    assert sorted((row[0], float(row[3])) for row in told) == sorted(
+        (each.equation, float(each.misses_by or 0)) for each in corrected
+    )
+    named = {each for row in rows("physics.md", "| where | claim | holds |") for each in row[0].split(", ")}
+    assert named == {each for claim in claims if claim.verdict == LIMIT for each in claim.equation.split(", ")}
     tests = "".join(path.read_text() for path in (CHECKOUT / "tests").rglob("test_*.py"))
-    assert not [row[4] for row in rows if f"def {row[4].strip('`')}(" not in tests]
+    shown = re.findall(r"`(test_\w+)`", (CHECKOUT / "docs" / "physics.md").read_text())
+    assert len(shown) > 20
+    assert not [name for name in shown if f"def {name}(" not in tests]
 
 
-def test_tests_that_the_physics_names_exist() -> None:
-    tests = "".join(path.read_text() for path in (CHECKOUT / "tests").rglob("test_*.py"))
-    named = set(re.findall(r"`(test_\w+)`", PHYSICS.read_text()))
-    assert len(named) > 20
-    assert not [name for name in named if f"def {name}(" not in tests]
-
-
-def test_every_figure_is_in_a_document() -> None:
-    texts = "".join(each.read_text() for each in CHECKOUT.glob("docs/*.md"))
-    shown = set(re.findall(r"\(figures/([\w-]+)\.svg\)", texts))
-    assert shown == {each.stem for each in (CHECKOUT / "docs" / "figures").iterdir()}
-
-
-def test_the_limits_of_the_physics_are_those_of_the_audit() -> None:
-    _, _, after = PHYSICS.read_text().partition("| where | claim | holds | beyond that |\n")
-    named = {
-        each
-        for line in after.partition("\n\n")[0].splitlines()[1:]
-        for each in line.split(" | ")[0].strip("| ").split(", ")
-    }
-    limits = {each for claim in chapters.claims() if claim.verdict == LIMIT for each in claim.equation.split(", ")}
-    assert named == limits
+def test_the_version_is_that_of_the_citation_and_of_the_newest_entry_of_the_changelog() -> None:
+    version = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"\nversion: {version}\n" in (CHECKOUT / "CITATION.cff").read_text()
+    assert re.findall(r"^## (\S+)", (CHECKOUT / "CHANGELOG.md").read_text(), re.MULTILINE)[0] == version

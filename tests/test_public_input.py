@@ -21,56 +21,30 @@ from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, build, exact, froz
 from mjbeer.drawing import encoder, frames, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, Softness
 from mjbeer.paper.looping import loop
 from mjbeer.require import shown
 from mjbeer.theory.scene import ATTACHMENTS
 
 VALUES: dict[str, Callable[[], object]] = {
-    "None": lambda: None,
-    "text": lambda: "0.5",
-    "True": lambda: True,
-    "nan": lambda: math.nan,
-    "inf": lambda: math.inf,
-    "-inf": lambda: -math.inf,
-    "-1": lambda: -1,
-    "0": lambda: 0,
-    "-0.0": lambda: -0.0,
-    "0.3": lambda: 0.3,
-    "huge": lambda: 1e160,
-    "long integer": lambda: 10**5000,
-    "complex": lambda: 1 + 2j,
-    "single precision": lambda: np.float32(0.3),
-    "list": lambda: [0.1, 0.2],
-    "empty list": list,
-    "list with None": lambda: [0.0, None],
-    "list of texts": lambda: ["0", "0.1"],
-    "list with NaN": lambda: [0.0, math.nan],
-    "list from the future": lambda: [0.0, 1e160],
-    "list in reverse": lambda: [0.2, 0.1],
-    "list before the start": lambda: [-0.1, 0.1],
-    "ragged list": lambda: [[0.0], [0.0, 0.1]],
-    "list of lists": lambda: [[0.0, 0.1]],
-    "generator": lambda: (each for each in (0.0, 0.1)),
-    "dict": lambda: {0.0: 0.1},
-    "set": lambda: {0.1},
-    "object": object,
-    "function": lambda: frozen,
-    "array": lambda: np.array([0.0, 0.1]),
-    "empty array": lambda: np.array([]),
-    "two-dimensional array": lambda: np.zeros((2, 2)),
-    "complex array": lambda: np.array([0.0, 1j]),
-    "boolean array": lambda: np.array([False, True]),
-    "text array": lambda: np.array(["0", "1"]),
-    "array of objects": lambda: np.array([0.0, None]),
-    "single-precision array": lambda: np.array([0.0, 0.1], np.float32),
+    "None": lambda: None, "text": lambda: "0.5", "True": lambda: True, "complex": lambda: 1 + 2j,
+    "nan": lambda: math.nan, "inf": lambda: math.inf, "-inf": lambda: -math.inf, "huge": lambda: 1e160,
+    "-1": lambda: -1, "0": lambda: 0, "-0.0": lambda: -0.0, "0.3": lambda: 0.3, "long integer": lambda: 10**5000,
+    "list": lambda: [0.1, 0.2], "empty list": list, "list of lists": lambda: [[0.0, 0.1]],
+    "ragged list": lambda: [[0.0], [0.0, 0.1]], "list with None": lambda: [0.0, None],
+    "list of texts": lambda: ["0", "0.1"], "list with NaN": lambda: [0.0, math.nan],
+    "list from the future": lambda: [0.0, 1e160], "list in reverse": lambda: [0.2, 0.1],
+    "list before the start": lambda: [-0.1, 0.1], "generator": lambda: (each for each in (0.0, 0.1)),
+    "dict": lambda: {0.0: 0.1}, "set": lambda: {0.1}, "object": object, "function": lambda: frozen,
+    "array": lambda: np.array([0.0, 0.1]), "empty array": lambda: np.array([]),
+    "two-dimensional array": lambda: np.zeros((2, 2)), "complex array": lambda: np.array([0.0, 1j]),
+    "boolean array": lambda: np.array([False, True]), "text array": lambda: np.array(["0", "1"]),
+    "array of objects": lambda: np.array([0.0, None]), "single precision": lambda: np.float32(0.3),
     "masked array": lambda: np.ma.array([0.0, 0.1], mask=[False, True]),
-    "can": Can,
-    "load": lambda: Load(0.2, 0.01, 1e-5),
-    "scene": frozen,
-    "softness": Softness,
+    "single-precision array": lambda: np.array([0.0, 0.1], np.float32),
+    "can": Can, "load": lambda: Load(0.2, 0.01, 1e-5), "scene": frozen, "softness": Softness,
     "path": lambda: pathlib.Path("somewhere"),
-}
+}  # fmt: skip
 MOTION = exact(frozen(), np.linspace(0, 0.1, 11), 1.0)
 RUN = simulate(frozen(), 0.01, 1.0)
 MODEL = build(frozen())
@@ -81,14 +55,10 @@ GOOD: dict[str, Any] = {
 }
 """Good arguments, by the names of the parameters."""
 GOOD_HERE: dict[str, dict[str, Any]] = {
-    "save_frame": {"time": 0.1, "path": "can.png"},
-    "frame": {"time": 0.1},
-    "export": {"path": "can.xml"},
+    "save_frame": {"time": 0.1, "path": "can.png"}, "frame": {"time": 0.1}, "export": {"path": "can.xml"},
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)},
-}
+}  # fmt: skip
 """Those that are others in one function."""
-
-
 NOT_ASKED = ("start", "replace", "plot", "to_csv", "to_dataframe", "video")
 """Methods with arguments, or which draw or write: they are called by themselves."""
 
@@ -214,8 +184,11 @@ def extreme(draw: st.DrawFn) -> Scene:
         reject()
 
 
+SEARCH = settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+
+
 @pytest.mark.slow
-@settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@SEARCH
 @given(extreme(), ANGLES, RATES, decades(1e-6, 1e6))
 def test_exact_theory_answers_or_refuses(scene: Scene, phi0: float, phi_dot0: float, end: float) -> None:
     """Whatever the sizes: no overflow, no warning, no NaN, and no memory that runs out."""
@@ -225,25 +198,12 @@ def test_exact_theory_answers_or_refuses(scene: Scene, phi0: float, phi_dot0: fl
 
 
 @pytest.mark.slow
-@settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
-@given(
-    extreme(),
-    ANGLES,
-    RATES,
-    decades(*require.TIMESTEP),
-    st.sampled_from(ROLLINGS),
-    st.sampled_from((*INTEGRATORS, *OWN)),
-    decades(1e-5, 1e5),
-)
+@SEARCH
+@given(extreme(), st.tuples(ANGLES, RATES), decades(*require.TIMESTEP), decades(1e-5, 1e5), st.data())
 def test_a_simulation_answers_or_refuses(
-    scene: Scene,
-    phi0: float,
-    phi_dot0: float,
-    timestep: float,
-    rolling: Rolling,
-    integrator: Integrator,
-    friction: float,
+    scene: Scene, start: tuple[float, float], timestep: float, friction: float, data: st.DataObject
 ) -> None:
     """A few steps of whatever size, of whatever scene: no warning, no NaN, and no fault of MuJoCo's that gets out."""
+    how = data.draw(st.sampled_from(ROLLINGS)), data.draw(st.sampled_from((*INTEGRATORS, *OWN)))
     with contextlib.suppress(MjbeerError):
-        use(simulate(scene, 5 * timestep, phi0, phi_dot0, rolling, integrator, timestep, friction=friction))
+        use(simulate(scene, 5 * timestep, *start, *how, timestep, friction=friction))

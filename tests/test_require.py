@@ -11,7 +11,8 @@ from mjbeer import require
 from mjbeer.exceptions import ParameterError
 
 NO_NUMBERS = [math.nan, math.inf, "0.3", b"1", None, True, np.True_, 1j, [1.0], 10**400, np.array([1.0])]
-INTEGRATORS = ("Euler", "implicit", "implicitfast", "RK4")
+NO_SAMPLES = [[], [[0.0], [0.0, 1.0]], [[0.0]], ["0"], [0.0, None], {0.0: 1.0}, np.array([1j]), 0.3,
+              np.ma.array([0.0], mask=[1])]  # fmt: skip
 
 
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: require.shown(value)[:20])
@@ -21,15 +22,19 @@ def test_a_number_is_finite_and_real(value: object) -> None:
     assert str(caught.value) == f"mass must be a finite number [kg], got {require.shown(value)}"
 
 
-@pytest.mark.parametrize("value", [1, np.int8(1), np.float32(1), np.array(1.0), Fraction(1), np.longdouble(1)])
-def test_numbers_of_any_kind_become_doubles(value: object) -> None:
-    assert type(require.number("mass", value)) is float
-    assert require.number("mass", value) == 1
+def test_numbers_and_samples_of_any_kind_become_doubles() -> None:
+    for value in (1, np.int8(1), np.float32(1), np.array(1.0), Fraction(1), np.longdouble(1)):
+        assert type(require.number("mass", value)) is float
+        assert require.number("mass", value) == 1
+    for several in ([0, 1], (0.0, 1), range(2), np.arange(2), np.array([0, 1], np.float32)):
+        assert require.samples("time", several).tolist() == [0.0, 1.0]
+        assert require.samples("time", several).dtype == float
 
 
-@pytest.mark.parametrize(("value", "zero"), [(0.0, True), (1e-3, False), (1e3, False), (0.5, True)])
-def test_a_range_has_its_ends(value: float, zero: bool) -> None:
-    assert require.within("gravity", value, 1e-3, 1e3, "m/s^2", zero) == value
+@pytest.mark.parametrize("value", NO_SAMPLES, ids=str)
+def test_samples_are_one_list_of_numbers(value: object) -> None:
+    with pytest.raises(ParameterError, match="time must be a list or a one-dimensional array of one or more numbers"):
+        require.samples("time", value)
 
 
 @pytest.mark.parametrize(
@@ -38,39 +43,14 @@ def test_a_range_has_its_ends(value: float, zero: bool) -> None:
         (0.0, False, "gravity must be between 0.001 and 1000 [m/s^2], got 0.0"),
         (9e-4, True, "gravity must be 0, or between 0.001 and 1000 [m/s^2], got 0.0009"),
         (1001.0, False, "gravity must be between 0.001 and 1000 [m/s^2], got 1001.0"),
-        (-1.0, True, "gravity must be 0, or between 0.001 and 1000 [m/s^2], got -1.0"),
     ],
 )
-def test_outside_a_range_the_error_has_it(value: float, zero: bool, message: str) -> None:
+def test_a_range_has_its_ends_and_the_error_outside_of_it_has_the_range(value: float, zero: bool, message: str) -> None:
+    for inside in (1e-3, 0.5, 1e3, *([0.0] if zero else [])):
+        assert require.within("gravity", inside, 1e-3, 1e3, "m/s^2", zero) == inside
     with pytest.raises(ParameterError) as caught:
         require.within("gravity", value, 1e-3, 1e3, "m/s^2", zero)
     assert str(caught.value) == message
-
-
-@pytest.mark.parametrize("value", [[0, 1], (0.0, 1), range(2), np.arange(2), np.array([0, 1], np.float32)])
-def test_samples_are_doubles(value: object) -> None:
-    assert require.samples("time", value).tolist() == [0.0, 1.0]
-    assert require.samples("time", value).dtype == float
-
-
-@pytest.mark.parametrize(
-    "value",
-    [
-        [],
-        [[0.0], [0.0, 1.0]],
-        [[0.0]],
-        ["0"],
-        [0.0, None],
-        {0.0: 1.0},
-        np.array([1j]),
-        0.3,
-        np.ma.array([0.0], mask=[1]),
-    ],
-    ids=str,
-)
-def test_samples_are_one_list_of_numbers(value: object) -> None:
-    with pytest.raises(ParameterError, match="time must be a list or a one-dimensional array of one or more numbers"):
-        require.samples("time", value)
 
 
 @pytest.mark.parametrize(
@@ -89,17 +69,15 @@ def test_an_error_names_the_entry_that_is_wrong(value: list[float], message: str
 @pytest.mark.parametrize(
     ("value", "end"),
     [
-        ("RK", "'RK4'; got 'RK': did you mean 'RK4'?"),
-        ("implicitfas", "'RK4'; got 'implicitfas': did you mean 'implicitfast' or 'implicit'?"),
-        ("EULER", "'RK4'; got 'EULER': did you mean 'Euler'?"),
-        ("leapfrog", "'RK4'; got 'leapfrog'"),
-        (b"RK4", "'RK4'; got b'RK4'"),
+        ("implicitfas", "'implicitfas': did you mean 'implicitfast' or 'implicit'?"),
+        ("EULER", "'EULER': did you mean 'Euler'?"),
+        (b"RK4", "b'RK4'"),
     ],
 )
 def test_an_error_lists_the_names_and_asks_after_one_of_them(value: str, end: str) -> None:
     with pytest.raises(ParameterError) as caught:
-        require.choice("integrator", value, INTEGRATORS)
-    assert str(caught.value) == f"integrator must be one of 'Euler', 'implicit', 'implicitfast', {end}"
+        require.choice("integrator", value, ("Euler", "implicit", "implicitfast", "RK4"))
+    assert str(caught.value) == f"integrator must be one of 'Euler', 'implicit', 'implicitfast', 'RK4'; got {end}"
 
 
 class Unprintable:
@@ -108,12 +86,8 @@ class Unprintable:
 
 
 @pytest.mark.parametrize("make", [lambda: "x" * 1000, lambda: [["deep"] * 100] * 100, Unprintable, lambda: 10**5000])
-def test_no_value_takes_two_lines_or_a_long_one(make: Callable[[], object]) -> None:
-    shown = require.shown(make())
-    assert "\n" not in shown
-    assert len(shown) < 500
-
-
-@pytest.mark.parametrize("value", [np.float64(0.1), np.array(0.1), 0.1])
-def test_a_number_is_shown_as_a_plain_one(value: object) -> None:
-    assert require.shown(value) == "0.1"
+def test_a_value_is_shown_in_one_short_line_and_a_number_as_a_plain_one(make: Callable[[], object]) -> None:
+    text = require.shown(make())
+    assert "\n" not in text
+    assert len(text) < 500
+    assert {require.shown(each) for each in (np.float64(0.1), np.array(0.1), 0.1)} == {"0.1"}

@@ -18,7 +18,7 @@ from mjbeer.model.build import Stepped, compile_model, compose
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, USUAL, MujocoIntegrator, Rolling, Setting, Softness, supported
 from mjbeer.model.state import places, read
-from mjbeer.theory.equations import accelerations
+from mjbeer.theory.equations import accelerations, kinetic_energy
 from mjbeer.theory.liquid import Damping
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
 
@@ -100,21 +100,21 @@ def test_extreme_skeletons_accelerate_as_theory_says(scene: Scene) -> None:
     assert_theory(written(scene, Setting()), scene, 0.7, 2.0, u_dot)
 
 
-def test_a_model_with_another_chord_is_found_out() -> None:
-    wrong = build(frozen())
-    wrong.tendon_armature[:] *= 1 + 1e-9
-    with pytest.raises(AssertionError):
-        assert_theory(wrong, frozen(), 1.0, 20.0, 20.0 * frozen().can.radius)
+def test_a_wrong_model_is_found_out() -> None:
+    """Another chord; and the equality as MuJoCo compiles it, whose impedance of 0.9999 lacks 1e-4 of the force."""
+    chord, soft = build(frozen()), compose(frozen(), Setting("equality")).compile()
+    chord.tendon_armature[:] *= 1 + 1e-9
+    for wrong in (chord, soft):
+        with pytest.raises(AssertionError):
+            assert_theory(wrong, frozen(), 1.0, 20.0, 20.0 * frozen().can.radius)
 
 
 @pytest.mark.parametrize("rolling", ROLLINGS)
 @pytest.mark.parametrize("scene", [*SCENES.values(), sliding(can=METAL, damping=Damping(1e-4, 1e-6, 1e-8), drag=0.2)])
 def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, rolling: Rolling) -> None:
     """Softness too, which accelerations do not show; the steps have the same bits. And the other scenes are gone."""
-    if not supported(scene, rolling):
-        return
     for setting in (Setting(rolling, "implicit", 2e-4, friction=0.7), USUAL["contact, defaults"]):
-        if setting.rolling != rolling:
+        if setting.rolling != rolling or not supported(scene, rolling):
             continue
         ways = []
         for model in (written(scene, setting), compile_model(scene, setting)):
@@ -126,23 +126,19 @@ def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, ro
         assert ways[0] == ways[1]
 
 
-def test_models_with_other_elements_are_of_another_kind_and_no_others() -> None:
-    """The flag of a model without dampers says that there are none: a scene written into it would not be damped."""
+def test_models_with_other_elements_are_of_another_kind_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is of one kind is compiled once.
+
+    The flag of a model without dampers says that there are none: a scene written into it would not be damped.
+    """
     scenes = sliding(can=METAL), sliding(can=METAL, damping=1e-3), sliding(can=METAL, drag=1e-3)
     for rolling in ROLLINGS:
         assert len({Numbers.of(scene, Setting(rolling)).kind for scene in scenes}) == 3
     soft = [Setting("equality", softness=Softness(solref=(time, 1.0))) for time in (1e-3, 2e-3)]
     assert len({Numbers.of(frozen(), each).kind for each in soft}) == 1
     assert len({Numbers.of(frozen(), Setting("equality", each)).kind for each in INTEGRATORS}) == 1
-
-
-def test_nothing_is_compiled_or_read_for_the_next_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     simulate(sliding(), 0.01, 1.0)
-
-    def fail(*_: object) -> None:
-        pytest.fail("a model is compiled")
-
-    monkeypatch.setattr("mjbeer.model.build.compose", fail)
+    monkeypatch.setattr("mjbeer.model.build.compose", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)
 
 
@@ -157,13 +153,8 @@ def test_constrained_models_have_the_scene_s_mass_matrix(name: str, rolling: Rol
     data.qpos, data.qvel = np.split(wild, 2)
     model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     mujoco.mj_forward(model, data)
-    moved = read(model, scene, wild[None], times=np.zeros(1))
-    can, load = scene.can, scene.load
-    along = moved.u_dot - load.offset * np.cos(moved.phi) * moved.phi_dot
-    across = moved.lift_dot + load.offset * np.sin(moved.phi) * moved.phi_dot
-    kinetic = can.mass * (moved.u_dot**2 + moved.lift_dot**2) + can.inertia * moved.roll_dot**2
-    kinetic += load.mass * (along**2 + across**2) + load.inertia * moved.phi_dot**2
-    assert data.energy[1] == pytest.approx(kinetic[0] / 2, rel=1e-13)  # a dozen products
+    kinetic = kinetic_energy(scene, read(model, scene, wild[None], times=np.zeros(1)))
+    assert data.energy[1] == pytest.approx(kinetic[0], rel=1e-13)  # a dozen products
 
 
 def test_contact_has_the_forces_of_damping_and_drag() -> None:
@@ -179,15 +170,13 @@ def test_contact_has_the_forces_of_damping_and_drag() -> None:
         assert data.qfrc_passive[place] == pytest.approx(expected[name], rel=1e-14), name
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_stepped_models_carry_nothing_they_do_not_need(name: str) -> None:
-    model = build(SCENES[name])
-    assert (model.ngeom, model.ncam, model.nlight, model.nmesh, model.nsensor, model.neq, model.nbody) == (0,) * 6 + (
-        2,
-    )
+def test_stepped_models_carry_nothing_they_do_not_need() -> None:
+    model = build(sliding(can=METAL))
+    assert model.nbody == 2
+    assert not any((model.ngeom, model.ncam, model.nlight, model.nmesh, model.nsensor, model.neq))
     for flag in ("CONTACT", "CONSTRAINT", "SENSOR", "AUTORESET", "DAMPER"):
         assert model.opt.disableflags & getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}")
-    contact = build(SCENES["frozen"], "contact")
+    contact = build(frozen(), "contact")
     assert (contact.ngeom, contact.npair, contact.neq, contact.ntendon) == (2, 1, 0, 0)
 
 
@@ -201,13 +190,6 @@ def test_constraints_are_as_stiff_as_asked_for(rolling: Rolling, integrator: Muj
     assert solref[0] == (stiff if integrator in ("RK4", "discrete", "DOP853") else 4e-3)
     assert model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
     assert model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_DIAGEXACT
-
-
-def test_the_equality_as_compiled_is_soft() -> None:
-    """What the accelerations of the rigid one would be with solimp 0.9999: off by 1e-4 of the force."""
-    scene, rate = frozen(), 2.0
-    soft = forward(compose(scene, Setting("equality")).compile(), scene, 0.7, rate, rate * scene.can.radius)[1]
-    assert 1e-5 < abs(soft / accelerations(scene, 0.7, rate, 0.0)[1] - 1) < 1e-3
 
 
 @pytest.mark.parametrize("rolling", ["equality", "contact"])
@@ -224,13 +206,10 @@ def test_what_mujoco_has_not_is_refused(rolling: Rolling, scene: Scene, reason: 
         build(scene, rolling)
 
 
-@pytest.mark.parametrize("unit", [1e-20, 1e-16])
-def test_masses_below_mujoco_s_smallest_are_refused_and_the_next_scene_is_not(
-    unit: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_masses_below_mujoco_s_smallest_are_refused_and_the_next_scene_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
     """No scene is known in which the unit of mass leaves one that small."""
     stepped = Stepped(Numbers.of(frozen(), Setting()))
-    monkeypatch.setattr(numbers, "mass_unit", lambda _: unit)
+    monkeypatch.setattr(numbers, "mass_unit", lambda _: 1e-16)
     for refuse in (lambda: build(frozen()), lambda: stepped.write(Numbers.of(frozen(), Setting()))):
         with pytest.raises(UnsupportedError, match=r"MuJoCo cannot represent this scene: .*mass and inertia"):
             refuse()
@@ -282,8 +261,8 @@ def test_a_model_starts_where_it_is_asked_to_and_rolls(rolling: Rolling, visuals
     mujoco.mj_step(model, again, 1000)
     found = read(model, scene, np.concatenate([again.qpos, again.qvel])[None], np.array([0.1]))
     truth = mjbeer.exact(scene, [0.1], phi0=0.7, phi_dot0=2.0)
-    assert found.phi[0] == pytest.approx(truth.phi[0], abs=1e-7)  # RK4, and the softness of a contact
-    assert found.u[0] == pytest.approx(truth.u[0], abs=1e-7 * scene.can.radius)
+    distance = abs(found.phi[0] - truth.phi[0]), abs(found.u[0] - truth.u[0]) / scene.can.radius
+    assert max(distance) < 1e-7  # RK4, and the softness of a contact
 
 
 def test_reset_finds_the_joints_in_another_world_and_says_where_there_are_none() -> None:

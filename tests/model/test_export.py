@@ -27,15 +27,14 @@ from mjbeer.model import export as exporting
 from mjbeer.model import looks, state
 from mjbeer.model.build import build, compose
 from mjbeer.model.check import effective_softness
-from mjbeer.model.engine import library
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
+from mjbeer.theory.equations import kinetic_energy, potential_energy
 from mjbeer.theory.liquid import Damping
 from tests.support import others
 from tests.support.others import BY_NAME, FRICTION, START
 from tests.support.scenes import METAL, SCENES, scenes
 
-DOCUMENT = others.CHECKOUT / "docs" / "portability.md"
 # RK4's own error after 1 s at 1 ms, and at 0.25 ms for the hoop, which passes its bottom at 47 rad/s: 4.2e-8 rad. The
 # joint equality's softness is less. A contact's creeps, 2e-7 rad for the hoop; a portable one's impedance of 0.999
 # misses ten times as much of its force, 1.8e-6 rad.
@@ -130,7 +129,7 @@ def test_an_export_has_damping_and_drag(rolling: Rolling, tmp_path: pathlib.Path
 @pytest.mark.slow
 @pytest.mark.parametrize("portable", [False, True])
 @pytest.mark.parametrize("rolling", ROLLINGS)
-@pytest.mark.parametrize("radius", [1e-3, 1.0, 10.0])
+@pytest.mark.parametrize("radius", [1e-3, 10.0])
 @pytest.mark.parametrize("make", [sliding, frozen])
 def test_cans_of_every_size(
     make: Callable[..., Scene], radius: float, rolling: Rolling, portable: bool, tmp_path: pathlib.Path
@@ -151,9 +150,7 @@ def test_cans_of_every_size(
         assert 1 - softness.effective_impedance < 2e-4
 
 
-@pytest.mark.parametrize(
-    ("integrator", "incline"), [*((each, -0.7) for each in INTEGRATORS), ("RK4", 1e-17), ("RK4", 1.2)]
-)
+@pytest.mark.parametrize(("integrator", "incline"), [*((each, -0.7) for each in INTEGRATORS), ("RK4", 1e-17)])
 def test_what_was_asked_for_arrives(integrator: str, incline: float, tmp_path: pathlib.Path) -> None:
     # An incline of 1e-17 needs forces that MuJoCo takes for none and does not write.
     for scene in (sliding(incline, 0.37, METAL), pendulum(incline, gravity=1.62)):
@@ -175,29 +172,13 @@ def test_the_command_line_exports_in_degrees(tmp_path: pathlib.Path, capsys: pyt
     assert said.read_text() == meant.read_text()
 
 
-def test_the_precision_that_mujoco_writes_with_is_restored(tmp_path: pathlib.Path) -> None:
-    c = library()
-    before = c._mjPRIVATE__get_xml_precision()
-    c._mjPRIVATE__set_xml_precision(11)
-    try:
-        export(frozen(), tmp_path / "model.xml")
-        assert c._mjPRIVATE__get_xml_precision() == 11
-    finally:
-        c._mjPRIVATE__set_xml_precision(before)
-
-
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
-        *(({"integrator": name}, UnsupportedError, f"{name} is mjbeer's integrator, not MuJoCo's") for name in OWN),
-        ({"path": "x.urdf"}, ParameterError, r"MJCF is written: the file's name must end in \.xml, got 'x\.urdf'"),
-        ({"path": "x.XML"}, ParameterError, r"must end in \.xml, got 'x\.XML'"),
+        ({"integrator": OWN[0]}, UnsupportedError, f"{OWN[0]} is mjbeer's integrator, not MuJoCo's"),
+        ({"path": "x.XML"}, ParameterError, r"MJCF is written: the file's name must end in \.xml, got 'x\.XML'"),
         ({"path": "file/model.xml"}, OutputError, r"cannot write .*model\.xml"),
-        ({"scene": sliding(), "rolling": "contact"}, UnsupportedError, "massless can with a sliding load exists only"),
-        *(
-            ({"integrator": name, "portable": True}, UnsupportedError, f"Euler, implicitfast, RK4, not {name}")
-            for name in ("discrete", "implicit")
-        ),
+        ({"integrator": "discrete", "portable": True}, UnsupportedError, "Euler, implicitfast, RK4, not discrete"),
         *(
             ({"scene": scene, "portable": True}, UnsupportedError, "damping in proportion to the slip rate only")
             for scene in (sliding(drag=0.1), sliding(damping=Damping(cubic=1.0)))
@@ -215,21 +196,18 @@ def test_what_cannot_be_written_is_refused(
 
 def test_what_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rewrite = exporting._portable
-
-    def expect(message: str, lose: Callable[[str], str]) -> None:
-        monkeypatch.setattr(exporting, "_portable", lambda text: lose(rewrite(text)))
-        with pytest.raises(MjbeerError, match=f"the MJCF written is not the model: {message}"):
+    losses = {
+        "body_mass": lambda text: re.sub(r'mass="0\.2\d*"', 'mass="0.2"', text),
+        "geom_xpos": lambda text: re.sub(r'(name="load"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text),
+        "cam_xpos": lambda text: re.sub(r'(<camera name="side"[^>]*) pos="[^"]*"', r"\1", text),
+        "light_xdir": lambda text: re.sub(r' dir="[^"]*"', "", text),
+        "pair_friction": lambda text: text.replace('friction="2 2"', 'friction="3 3"'),
+        "option timestep": lambda text: text.replace('timestep="0.001"', 'timestep="0.002"'),
+    }
+    for lost, lose in losses.items():
+        monkeypatch.setattr(exporting, "_portable", lambda text, lose=lose: lose(rewrite(text)))
+        with pytest.raises(MjbeerError, match=f"the MJCF written is not the model: {lost} is"):
             export(frozen(can=METAL), tmp_path / "model.xml", *START, "contact", friction=2.0, portable=True)
-
-    expect("body_mass is", lambda text: re.sub(r'mass="0\.2\d*"', 'mass="0.2"', text))
-    expect("geom_xpos is", lambda text: re.sub(r'(name="load"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text))
-    expect("geom_xmat is", lambda text: re.sub(r'(name="board"[^>]* quat=")[^"]*"', r'\1 1 0 0 0"', text))
-    expect("cam_xpos is", lambda text: re.sub(r'(<camera name="side"[^>]*) pos="[^"]*"', r"\1", text))
-    expect("light_xdir is", lambda text: re.sub(r' dir="[^"]*"', "", text))
-    expect("pair_friction is", lambda text: text.replace('friction="2 2"', 'friction="3 3"'))
-    expect("option timestep is", lambda text: text.replace('timestep="0.001"', 'timestep="0.002"'))
-    monkeypatch.setattr(exporting, "_DIGITS", 6)
-    expect("body_mass is", str)
     assert not list(tmp_path.iterdir())
 
 
@@ -277,7 +255,7 @@ def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[
 
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
-    """And energies, from the height of the load and of the can, or none: where a constant force stands for a weight."""
+    """And energies, or none where a constant force stands for a weight."""
     scene = SCENES[name]
     model, (phi, phi_dot) = present(scene, Setting(rolling), 0.0, 0.0).compile(), (1.1, -7.0)
     found, (u, u_dot) = at(model, scene, phi, phi_dot), scene.start(phi, phi_dot)
@@ -287,13 +265,10 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
     if rolling == "contact":
         expected["lift"] = -1e-9 * scene.can.radius
     if not model.nu:
-        can, load, tilt = scene.can, scene.load, scene.incline
-        along, across = u_dot - load.offset * math.cos(phi) * phi_dot, load.offset * math.sin(phi) * phi_dot
-        kinetic = can.mass * u_dot**2 + can.inertia * (u_dot / can.radius) ** 2
-        kinetic += load.mass * (along**2 + across**2) + load.inertia * phi_dot**2
-        fall = scene.mass * u * math.sin(tilt) + load.mass * load.offset * (math.cos(phi + tilt) - math.cos(tilt))
-        level = at(model, scene, 0.0, 0.0)["potential_energy"]
-        expected |= {"potential_energy": level - scene.gravity * fall, "kinetic_energy": kinetic / 2}
+        moved, below = (exact(scene, [0.0], *start) for start in ((phi, phi_dot), (0.0, 0.0)))
+        raised = potential_energy(scene, moved) - potential_energy(scene, below)
+        expected["potential_energy"] = at(model, scene, 0.0, 0.0)["potential_energy"] + float(raised[0])
+        expected["kinetic_energy"] = float(kinetic_energy(scene, moved)[0])
     assert found.keys() == expected.keys()
     scale = max(abs(value) for value in expected.values())
     # A can in contact starts 1e-9 radii deep.
@@ -379,12 +354,3 @@ def wanted_or_skip(name: str) -> others.Other:
     except others.AbsentError as error:
         pytest.skip(str(error))
     return BY_NAME[name]
-
-
-def test_the_table_of_the_document_is_within_these_tolerances() -> None:
-    rows = [line.strip("| ").split(" | ") for line in DOCUMENT.read_text().splitlines() if line.startswith("| ")]
-    numbers = {row[0]: row[1:7] for row in rows if row[0] in BY_NAME and len(row) > len(ROLLINGS * 2)}
-    assert list(numbers) == list(BY_NAME)
-    for name in FAITHFUL:
-        for rolling, number in zip(ROLLINGS * 2, numbers[name], strict=True):
-            assert float(number) < ALLOWED[BY_NAME[name].precise][rolling], (name, rolling)

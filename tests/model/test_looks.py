@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.model import looks
-from mjbeer.model.build import build, compose
+from mjbeer.model.build import compose
 from mjbeer.model.setting import ROLLINGS, Setting
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.load import segment
@@ -74,14 +74,12 @@ def test_a_template_s_own_scene_is_drawn_as_the_template(name: str) -> None:
     assert board.pos[2] + board.size[2] == pytest.approx(-looks.WALL * RADIUS, rel=1e-9)
 
 
-@pytest.mark.parametrize("radius", [1e-4, 1.0, 100.0])
+@pytest.mark.parametrize("radius", [1e-4, 10.0])
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_all_grows_with_the_can(name: str, radius: float) -> None:
     times, scene = radius / RADIUS, TEMPLATES[name]
-    can = Can(radius, min(scene.can.length * times, 100.0), 1.0, radius**2)
+    can = Can(radius, scene.can.length * times, 1.0, radius**2)
     load = Load(1.0, scene.load.offset * times, radius**2, scene.load.fill)
-    if scene.can.length * times > 100:
-        return
     (one, small), (other, large) = shown(scene), shown(Scene(can, load, scene.incline, scene.attachment))
     for each in drawn(one):
         if one.geom(each).type != mujoco.mjtGeom.mjGEOM_MESH:  # a mesh's frame depends on what it is taken for
@@ -111,16 +109,12 @@ def test_ends_stay_ends(length: float) -> None:
     assert y("can_tab")[0] < y("can_mouth")[0] < y("can_end")[1]
     assert -length / 2 < y("can_label")[0] < 0 < y("can_label")[1] < length / 2
     assert y("can_spot")[0] < -length / 2 < y("can_spot")[1] < -0.4 * length
-    assert y("can_mark")[0] < y("can_label")[0] < y("can_label")[1] < y("can_mark")[1] < length / 2
     assert y("board")[1] == pytest.approx(length / 2 + 0.015)
     assert data.camera("side").xpos[1] == pytest.approx(-length / 2 - 0.24)
-    wheel = shown(pendulum(0.0, length=length), "reduced")[0]
-    for each in ("load", "load_arm"):
-        assert -length / 2 < wheel.geom(each).pos[1] < 0
 
 
-@pytest.mark.parametrize("fill", [1e-100, 1e-9, 1e-3, 0.02, 0.5, 0.98, 1 - 1e-6, 1.0])
-@pytest.mark.parametrize("radius", [1e-4, RADIUS, 100.0])
+@pytest.mark.parametrize("fill", [1e-100, 1e-9, 0.5, 1 - 1e-6, 1.0])
+@pytest.mark.parametrize("radius", [1e-4, 100.0])
 def test_every_fill_can_be_drawn(fill: float, radius: float) -> None:
     """With masses that MuJoCo can take; those of so little beer it cannot."""
     can = Can(radius, radius, 1.0, radius**2)
@@ -174,18 +168,6 @@ def test_marks_turn_with_the_can_or_are_not_there_and_ice_has_no_foam() -> None:
 
 
 @pytest.mark.parametrize("name", TEMPLATES)
-def test_the_marks_lie_on_the_bead_and_hide_no_load(name: str) -> None:
-    """Seen from the end: the spot covers the bead, and reaches a hundredth of a radius over the inside."""
-    model, data = shown(TEMPLATES[name])
-    for mark in ("can_spot", "can_mark"):
-        across = (vertices(model, data, mark) - data.body("can").xpos) / RADIUS
-        distance = np.hypot(across[:, 0], across[:, 2])
-        assert 0.98 < distance.min() < distance.max() < 1 + 1.2 * looks.WALL
-    ahead = vertices(model, data, "can_spot")[:, 1].min() - vertices(model, data, "can_wall")[:, 1].min()
-    assert -0.02 * RADIUS < ahead < 0
-
-
-@pytest.mark.parametrize("name", TEMPLATES)
 @pytest.mark.parametrize("length", [1e-4, 0.12, 1.0])
 def test_shapes_are_closed_and_face_outwards(name: str, length: float) -> None:
     """Every edge of a face is that of another face, the other way round; and no face is flat."""
@@ -201,24 +183,3 @@ def test_shapes_are_closed_and_face_outwards(name: str, length: float) -> None:
         cross = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
         assert np.linalg.norm(cross, axis=1).min() > 1e-7 * RADIUS * min(RADIUS, length)
         assert np.einsum("ij,ij->", sides[:, 0], cross) > 0
-
-
-def test_the_files_are_small_and_all_are_used() -> None:
-    files = list((looks.folder() / "assets").iterdir())
-    text = "".join(path.read_text() for path in looks.folder().glob("*.xml"))
-    assert all(f'file="{each.name}"' in text for each in files)
-    assert sum(each.stat().st_size for each in files) < 300_000
-
-
-def test_visuals_change_no_motion() -> None:
-    """With geoms to look at and the incline tilted instead of gravity, a step has the same result to rounding."""
-    for rolling in ROLLINGS:
-        found = []
-        for visuals in (False, True):
-            model = build(TEMPLATES["sliding"], rolling, visuals, phi0=0.8, phi_dot0=1.5)
-            data = mujoco.MjData(model)
-            mujoco.mj_resetDataKeyframe(model, data, 0)
-            mujoco.mj_step(model, data)
-            found.append(data.qvel.copy())
-        # A contact's normal comes from the tilt by a quaternion, and acts through a stiffness of 1e8 or so.
-        assert found[1] == pytest.approx(found[0], rel=1e-6 if rolling == "contact" else 1e-11, abs=1e-9)
