@@ -61,6 +61,27 @@ def coefficients(scene: Scene) -> dict[str, Any]:
     }
 
 
+def inertia(form: dict[str, Any], phi: Any) -> Any:
+    """J at an angle [kg m^2]."""
+    return form["base"] + form["chord"] * mp.sin(phi / 2) ** 2 + form["swing"] * mp.sin(phi) ** 2
+
+
+def fall(form: dict[str, Any], begin: Any, end: Any) -> Any:
+    """V(begin) - V(end) [J], as the plain difference."""
+
+    def height(phi: Any) -> Any:
+        return form["sine"] * mp.sin(phi) - form["cosine"] * mp.cos(phi) - form["slope"] * phi
+
+    return height(begin) - height(end)
+
+
+def well(form: dict[str, Any]) -> tuple[Any, Any, Any]:
+    """The barrier uphill of the rest, the rest and the barrier downhill of it [rad], on either slope."""
+    lean = mp.asin(form["slope"] / mp.hypot(form["cosine"], form["sine"]))
+    bottom = -mp.atan2(form["sine"], form["cosine"])
+    return bottom - mp.pi - lean, bottom + lean, bottom + mp.pi - lean
+
+
 def _extended(numbers: Sequence[Any]) -> np.ndarray:
     """The doubles nearest to the numbers, and what they leave."""
     return np.array([EXTENDED(float(each)) + EXTENDED(float(each - mp.mpf(float(each)))) for each in numbers])
