@@ -133,7 +133,7 @@ def test_balanced_load_is_two_inertias() -> None:
     assert motion.u_dot / a - motion.phi_dot == pytest.approx(slip, rel=ROUNDING)
 
 
-@pytest.mark.parametrize("c", [1e-3, 2.17e-3, 1e-1])
+@pytest.mark.parametrize("c", [1e-3, 1e-1])
 def test_steady_rolling_stays(c: float) -> None:
     """A start at the tilt in a can that is at rest comes to roll at the terminal speed, and stays there."""
     scene = sliding(can=METAL, damping=c)
@@ -143,35 +143,25 @@ def test_steady_rolling_stays(c: float) -> None:
     assert motion.u_dot == pytest.approx(np.full(3, scene.terminal_speed()), rel=10 * ROUNDING)
 
 
-def small_motion(scene: Scene, time: float, amplitude: float) -> float:
-    """How far phi is from the matrix exponential, relative to the amplitude, on level ground."""
+@pytest.mark.parametrize("c", [1e-5, 2e-3, 0.1])
+def test_small_motion_is_a_matrix_exponential(c: float) -> None:
+    """On level ground, at 1e-7 rad: the next terms are cubic, and 1e-14 of the amplitude."""
+    scene, time, rate, amplitude = sliding(0.0, can=METAL, damping=c), 0.5, 3.0, 1e-7
     can, load = scene.can, scene.load
-    moment, a, c = load.mass * load.offset, can.radius, scene.damping_law.linear
+    moment, a = load.mass * load.offset, can.radius
     mass = np.array([[load.inertia + load.mass * load.offset**2, -moment], [-moment, scene.mass + can.inertia / a**2]])
     coupling = np.array([[1.0], [-1 / a]])
     matrix = np.zeros((3, 3))
     matrix[0, 1] = 1
     matrix[1:, 0] = np.linalg.solve(mass, [-moment * scene.gravity, 0])
     matrix[1:, 1:] = -c * np.linalg.solve(mass, coupling @ coupling.T)
-    rate = 3.0
     expected = expm(matrix * time) @ [1.0, rate, load.offset * rate]
     motion = exact(scene, time, amplitude, rate * amplitude)
     found = np.array([motion.phi[0], motion.phi_dot[0], motion.u_dot[0]]) / amplitude
-    return float(np.abs((found - expected) / [1, 20, 1]).max())
+    assert np.abs((found - expected) / [1, 20, 1]).max() < 1e-12  # 1e-14 times 10, and the rounding of expm
 
 
-@pytest.mark.parametrize("c", [1e-5, 2e-3, 0.1])
-def test_small_motion_is_a_matrix_exponential(c: float) -> None:
-    """The next terms are cubic: what is missing falls with the amplitude squared, by 100 and 100 here, to 10 %."""
-    scene = sliding(0.0, can=METAL, damping=c)
-    errors = [small_motion(scene, 0.5, amplitude) for amplitude in (1e-1, 1e-2, 1e-3)]
-    assert errors[0] / errors[1] == pytest.approx(100, rel=0.1)
-    assert errors[1] / errors[2] == pytest.approx(100, rel=0.1)
-    assert small_motion(scene, 0.5, 1e-7) < 1e-12  # 1e-14 times 10, and the rounding of expm
-
-
-@pytest.mark.parametrize("damping", [1e-5, 2e-3, 1.0, Damping(1e-4, 1e-5, 1e-6)])
-@pytest.mark.parametrize("drag", [0.0, 0.01])
+@pytest.mark.parametrize(("damping", "drag"), [(2e-3, 0.0), (1.0, 0.01), (Damping(1e-4, 1e-5, 1e-6), 0.01)])
 def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> None:
     """What is lost is the work of T(w) w and of the drag, summed by Gauss's rule over 400 short intervals.
 
@@ -190,29 +180,21 @@ def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> No
     assert work == pytest.approx(begin - end, rel=bound)
 
 
-def exponent(values: np.ndarray, sizes: np.ndarray) -> float:
-    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])
-
-
 @pytest.mark.parametrize("can", [Can(), METAL], ids=["massless", "metal"])
-def test_weak_damping_approaches_sliding(can: Can) -> None:
-    """In proportion to c: the fitted exponent is 1 but for the next order, which is c times some 1e4."""
-    time, sizes = np.linspace(0, 1, 9), np.array([1e-10, 1e-9, 1e-8])
-    free = exact(sliding(can=can), time, 0.7)
-    gaps = [np.abs(exact(sliding(can=can, damping=c), time, 0.7).phi - free.phi).max() for c in sizes]
-    assert exponent(np.array(gaps), sizes) == pytest.approx(1, abs=1e-3)
-
-
-@pytest.mark.parametrize("can", [Can(), METAL], ids=["massless", "metal"])
-def test_strong_damping_approaches_frozen(can: Can) -> None:
-    """In proportion to 1/c. A frozen can starts with u = a phi, and a sliding one with u = b sin(phi)."""
-    time, sizes = np.linspace(0, 1, 9), np.array([1e2, 1e3, 1e4])
-    ice = exact(frozen(can=can), time, 0.7)
-    runs = [exact(sliding(can=can, damping=c), time, 0.7) for c in sizes]
-    gaps = [np.abs(run.phi - ice.phi).max() for run in runs]
-    paths = [np.abs((run.u - run.u[0]) - (ice.u - ice.u[0])).max() for run in runs]
-    assert exponent(np.array(gaps), sizes) == pytest.approx(-1, abs=1e-3)
-    assert exponent(np.array(paths), sizes) == pytest.approx(-1, abs=1e-3)
+def test_weak_damping_approaches_sliding_and_strong_damping_frozen(can: Can) -> None:
+    """In proportion to c, where the next order is c times some 1e4, and to 1/c. A frozen can starts with u = a phi, and
+    a sliding one with u = b sin(phi)."""
+    time = np.linspace(0, 1, 9)
+    free, ice = exact(sliding(can=can), time, 0.7), exact(frozen(can=can), time, 0.7)
+    weak = [exact(sliding(can=can, damping=c), time, 0.7) for c in (1e-10, 1e-8)]
+    strong = [exact(sliding(can=can, damping=c), time, 0.7) for c in (1e2, 1e4)]
+    low, high = (np.abs(run.phi - free.phi).max() for run in weak)
+    assert high / low == pytest.approx(100, rel=5e-3)
+    for low, high in (
+        (np.abs(run.phi - ice.phi).max() for run in strong),
+        (np.abs((run.u - run.u[0]) - (ice.u - ice.u[0])).max() for run in strong),
+    ):
+        assert low / high == pytest.approx(100, rel=5e-3)
 
 
 def test_slip_at_the_start_is_gone_at_once_in_a_stiff_can() -> None:
@@ -238,13 +220,10 @@ def test_motion_seen_from_behind() -> None:
 
 def test_no_damping_is_the_undamped_scene() -> None:
     time = np.linspace(0, 2, 21)
-    for can in (Can(), METAL):
-        plain, without = (
-            exact(sliding(can=can), time, 1.0, 3.0),
-            exact(Scene(can, sliding().load, damping=Damping(), drag=0.0), time, 1.0, 3.0),
-        )
-        assert (plain.phi == without.phi).all()
-        assert (plain.u == without.u).all()
+    plain = exact(sliding(can=METAL), time, 1.0, 3.0)
+    without = exact(Scene(METAL, sliding().load, damping=Damping(), drag=0.0), time, 1.0, 3.0)
+    assert (plain.phi == without.phi).all()
+    assert (plain.u == without.u).all()
 
 
 def test_times_in_any_order_and_other_turns() -> None:
@@ -258,38 +237,24 @@ def test_times_in_any_order_and_other_turns() -> None:
     assert there.phi - 14 * math.pi == pytest.approx(motion.phi, abs=ANGLE)
 
 
-def test_a_swing_dies_away_with_the_frequency_of_its_modes() -> None:
-    """Small swings for a hundred decay times: turning points of what is left, rounding, do not count."""
-    scene = sliding(0.0, damping=1e-3)
-    measured = exact(scene, np.arange(0, 100, 0.01), 1e-3).frequency()
-    # The third mode shifts the first turning point by some 0.01 rad, of the 140 rad until the swing is below 1e-10.
-    assert measured == pytest.approx(scene.frequency(), rel=2e-4)
-
-
 def test_unstable_balance() -> None:
-    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error."""
+    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error before it changes
+    phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
     scene = sliding(0.0, damping=1e-3)
     assert (exact(scene, [0.0, 9.0], 3 * math.pi).phi == 3 * math.pi).all()
     with pytest.raises(ToleranceError, match=r"phi is not known later than at \d.* s: rounding of start and scene"):
         exact(scene, 3.0, math.nextafter(math.pi, 0) - 1e-15)
-    assert exact(scene, 0.5, math.pi - 1e-6).phi[0] < math.pi - 1e-6
-
-
-@ENOUGH
-def test_the_effect_of_rounding_is_that_of_a_nudge() -> None:
-    """The error comes before rounding changes phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
-    scene, start = sliding(0.0, damping=1e-3), math.pi - 1e-13
-    time = np.linspace(0.5, 2.5, 81)
-    known = 0.0
-    for each in time:
+    start, known = math.pi - 1e-13, 0.0
+    with pytest.raises(ToleranceError):
+        exact(scene, 2.0, start)
+    for time in np.linspace(0.5, 2.0, 31):
         try:
-            motion = exact(scene, each, start)
+            motion = exact(scene, time, start)
         except ToleranceError:
             break
-        nudged = exact(scene, each, start + 4.4e-16)
-        assert abs(nudged.phi[0] - motion.phi[0]) < 1e-3
-        known = float(each)
-    assert 0.8 < known < 2.0
+        known = float(time)
+        assert abs(exact(scene, time, start + 4.4e-16).phi[0] - motion.phi[0]) < 1e-3
+    assert known > 0.8
 
 
 def test_the_edges_of_the_domain(monkeypatch: pytest.MonkeyPatch) -> None:

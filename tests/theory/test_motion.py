@@ -133,6 +133,7 @@ ROLLS = [
     (frozen(0.6), 0.0, 0.0),  # down a slope too steep to rest on
     (frozen(0.6, can=METAL), 0.0, -3.0),  # up such a slope
     (hoop(0.3), 11 * math.pi + 0.1, -30.0),
+    (frozen(0.0), math.pi - 1e-6, 1e-4),  # past a barrier by a little
 ]
 
 
@@ -152,22 +153,23 @@ def test_rolls_up_and_down() -> None:
 
 
 TURNS = [  # and about the time [s] of a hundred of them
-    (frozen(), 0.3, 60.0, 4.0),
-    (frozen(1e-3), 0.3, -200.0, 3.2),
+    (frozen(), 0.3, 60.0, 5.2),
+    (frozen(1e-3), 0.3, -200.0, 4.6),
     (frozen(0.6), 0.0, 5.0, 3.4),
-    (hoop(0.01), 2.0, -1000.0, 0.7),
-    (frozen(0.0), 0.3, -60.0, 11.0),
-    (sliding(0.3, can=METAL), 0.0, 60.0, 11.0),
-    (pendulum(-0.3), 2.0, 70.0, 11.0),
-    (sliding(gravity=0.0), 0.3, 2.0, 400.0),
+    (hoop(0.01), 2.0, -1000.0, 0.52),
+    (frozen(0.0), 0.3, -60.0, 16.5),
+    (sliding(0.3, can=METAL), 0.0, 60.0, 13.5),
+    (pendulum(-0.3), 2.0, 70.0, 8.8),
+    (sliding(gravity=0.0), 0.3, 2.0, 350.0),
 ]
 
 
 @LONG_DOUBLE
+@pytest.mark.slow
 def test_a_hundred_turns() -> None:
     cases = [taylor.Case(*each, time * np.array([0.1, 0.77, 1.0])) for *each, time in TURNS]
     compare(cases, RELATIVE)
-    assert min(abs(exact(each.scene, each.time, each.phi0, each.phi_dot0).phi[-1]) for each in cases) > 550
+    assert min(abs(exact(each.scene, each.time, each.phi0, each.phi_dot0).phi[-1]) for each in cases) > 625
 
 
 @pytest.mark.parametrize("incline", [0.0, 0.1, -0.1])
