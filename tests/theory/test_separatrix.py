@@ -140,7 +140,7 @@ def random_slope(pick: np.random.Generator) -> Scene:
             return made
 
 
-@pytest.mark.parametrize("count", [15, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [15, pytest.param(300, marks=pytest.mark.slow)])
 def test_on_a_slope_a_motion_is_right_or_refused(count: int) -> None:
     """The barrier is rounded by up to 1e-15 rad, and more near the steepest slope: who starts so near is told so."""
     pick, refused, checked = np.random.default_rng(count), 0, 0
