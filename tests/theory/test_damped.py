@@ -37,10 +37,8 @@ def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float)
     found = exact(scene, time, phi0, phi_dot0)
     radius, clock = scene.can.radius, natural(scene)[0]
     size = max(1.0, float(np.abs(expected[:, 0] - phi0).max()), float(np.ptp(expected[:, 1])) / radius)
-    fastest = max(
-        1.0, float(np.abs(expected[:, 2]).max()) * clock, float(np.abs(expected[:, 3]).max()) * clock / radius
-    )
-    bound = ANGLE * size * fastest
+    rates = np.abs(expected[:, 2:]).max(axis=0) * [clock, clock / radius]
+    bound = ANGLE * size * max(1.0, float(rates.max()))
     assert np.abs(found.phi - expected[:, 0]).max() < bound
     assert np.abs(found.u - expected[:, 1]).max() < bound * radius
     assert np.abs(found.phi_dot - expected[:, 2]).max() < bound * 10 / clock
@@ -67,11 +65,8 @@ def test_any_motion_is_that_of_a_taylor_series(
 
 CASES = {
     "hardly damped": (sliding(damping=1e-6), 1.0, 0.0, 2.0),
-    "fastest decay": (sliding(damping=2.17e-3), 1.0, 0.0, 2.0),
-    "corners of drag": (sliding(damping=1e-4, drag=0.01), 1.0, -40.0, 1.0),
     "corners of both": (sliding(damping=Damping(1e-4, 1e-5, 1e-6), drag=0.01, can=METAL), 1.0, -40.0, 1.0),
     "nothing linear": (sliding(damping=Damping(0, 1e-4, 0), drag=0.01), 1.0, 0.0, 2.0),
-    "stiff": (sliding(damping=1.0), 1.0, 5.0, 0.2),
     "very stiff": (sliding(damping=1e3, drag=0.01), 1.0, 5.0, 1e-4),
     "uphill": (sliding(-0.5, damping=1e-3, drag=0.001), 0.3, 60.0, 1.0),
 }

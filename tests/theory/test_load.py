@@ -1,6 +1,7 @@
 """The circular segment, eqs. (32)-(37), against the paper's closed forms in 60 digits; the metal can, (30) and (31)."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ def fill_of(beta: float) -> float:
     return float((1 - mp.cos(mp.mpf(beta))) / 2)
 
 
-def closed_form(fill: float) -> dict[str, object]:
+def closed_form(fill: float) -> dict[str, Any]:
     """Eqs. (33), (35) and (37) as printed."""
     beta = mp.acos(1 - 2 * mp.mpf(fill))
     twice = 2 * beta - mp.sin(2 * beta)
