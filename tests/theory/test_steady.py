@@ -147,36 +147,14 @@ def test_the_massless_can_s_numbers() -> None:
     assert sizes[int(np.argmax(decays))] == pytest.approx(2.17e-3, rel=0.012)
 
 
-def test_mean_slip_and_its_variance() -> None:
-    """In the steady loops above the largest incline: D, and D times the mean rate, from one passage of phi to another.
-
-    Loops approach the steady ones as exp(-t/1 s) or so: after 7 s they are 1e-3 away. Beyond that the mean of the
-    u-equation holds to the last digit with what is left of the change of momentum.
-    """
-    c, rate, mean = 1e-2, 112.7, 3.323  # at 30 degrees, as measured once with another program
-    scene = sliding(math.radians(30), damping=c)
-    fine = np.linspace(7, 8, 4001)
-    motion = exact(scene, fine, 0.0, rate)
-    turns = math.floor((motion.phi[-1] - motion.phi[0]) / (2 * math.pi) * 0.99)
-    last = int(np.searchsorted(motion.phi, motion.phi[0] + 2 * math.pi * turns))
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    ends = np.linspace(fine[0], fine[last], 8 * turns + 1)
-    halves, middles = np.diff(ends) / 2, (ends[1:] + ends[:-1]) / 2
-    run = exact(scene, (middles[:, np.newaxis] + halves[:, np.newaxis] * nodes).ravel(), 0.0, rate)
-    slip, duration = run.u_dot / scene.can.radius - run.phi_dot, fine[last] - fine[0]
-
-    def mean_of(values: np.ndarray) -> float:
-        return float((values.reshape(-1, 16) @ weights) @ halves) / duration
-
-    found, turning = mean_of(slip), mean_of(run.phi_dot)
-    moment = scene.load.mass * scene.load.offset
-    momentum = scene.mass * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot
-    gained = float(momentum[last] - momentum[0]) / duration * scene.can.radius / c
-    assert found + gained == pytest.approx(scene.slip_rate(), rel=1e-11)  # a hundred turns of rounding
-    assert found == pytest.approx(scene.slip_rate(), rel=5e-3)
-    assert mean_of((slip - found) ** 2) == pytest.approx(scene.slip_rate() * turning, rel=1e-2)
-    assert scene.slip_rate() == pytest.approx(mean, rel=5e-4)
-    assert turning == pytest.approx(rate, rel=3e-3)
+def test_mean_slip() -> None:
+    """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
+    scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033
+    motion = exact(scene, [7.0, 8.0], 0.0, 112.7)
+    momentum = scene.mass * motion.u_dot - scene.load.mass * scene.load.offset * np.cos(motion.phi) * motion.phi_dot
+    slipped = np.diff(motion.u)[0] / a - np.diff(motion.phi)[0]
+    assert slipped + np.diff(momentum)[0] * a / c == pytest.approx(scene.slip_rate(), rel=1e-11)  # 18 turns a second
+    assert scene.slip_rate() == pytest.approx(3.323, rel=5e-4)  # as measured once with another program
 
 
 def test_what_has_no_answer_says_so() -> None:

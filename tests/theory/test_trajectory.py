@@ -61,7 +61,7 @@ def test_exact_motion_is_trusted(scene: Scene, phi0: float, phi_dot0: float) -> 
     assert motion.rolls_until() == math.inf
 
 
-@pytest.mark.parametrize("scene", [sliding(fill=1.0), sliding(fill=1 - 1e-9), frozen(fill=1.0), sliding(gravity=0.0)])
+@pytest.mark.parametrize("scene", [sliding(fill=1 - 1e-9), frozen(fill=1.0), sliding(gravity=0.0)])
 @pytest.mark.parametrize("phi_dot0", [0.0, 1.0])
 def test_exact_motion_without_a_swing_is_trusted(scene: Scene, phi_dot0: float) -> None:
     motion = exact(scene, np.linspace(0, 50, 11), 0.3, phi_dot0)
@@ -116,7 +116,7 @@ def test_tampering_is_noticed(scene: Scene, tamper: Callable, trusted: float, wa
         assert tamper(motion, sign * 0.8 * trusted).trusted
 
 
-@pytest.mark.parametrize("scene", [sliding(), sliding(can=METAL), pendulum()])
+@pytest.mark.parametrize("scene", [sliding(), pendulum()])
 def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
     """An axis that runs ahead steadily breaks no energy of the swing, and does not slip."""
     motion = exact(scene, TIME, 0.8)
@@ -188,21 +188,18 @@ def test_frozen_can_from_the_top_leaves_the_incline() -> None:
         warning
         == f"from t = {until:.6g} s the incline would have to pull at the can (N < 0): a real one leaves it there"
     )
-    # N crosses zero there, up to the straight line's error between two samples, h^2 N'' / 8 N'.
+    # N crosses zero there; the straight line between two samples is off by their distance squared times N''/8N'.
     crossing = brentq(lambda time: exact(frozen(), [time], math.pi).forces.normal[0], until - 0.01, until + 0.01)
-    around = crossing + np.linspace(-5e-3, 5e-3, 101)
-    steepness = np.gradient(exact(frozen(), around, math.pi).forces.normal, around)
-    bend = np.abs(np.gradient(steepness, around)).max() / np.abs(steepness).min()
-    for samples in (401, 4001):
-        time = np.linspace(0, 2, samples)
-        assert abs(exact(frozen(), time, math.pi).rolls_until() - crossing) < time[1] ** 2 / 8 * bend
+    late, fine = abs(until - crossing), exact(frozen(), np.linspace(0, 2, 4001), math.pi)
+    assert late < TIME[1] / 10
+    assert abs(fine.rolls_until() - crossing) < late / 50  # 100, but for where in between N is 0
     (warning,) = simulated(motion, Setting("contact"), 0.0).warnings
     assert warning == "rolling needs a friction coefficient of inf, and the contact has 1: it slides"
 
 
-@pytest.mark.parametrize("scene", [frozen(), frozen(-0.1)])
-def test_friction_that_holds(scene: Scene) -> None:
+def test_friction_that_holds() -> None:
     """At the frozen equilibrium tan(alpha) is needed from the start (footnote 7), elsewhere from when it runs out."""
+    scene = frozen(-0.1)
     rest = exact(scene, TIME, scene.equilibrium())
     assert rest.rolls_until(1.001 * abs(math.tan(scene.incline))) == math.inf
     assert rest.rolls_until(0.999 * abs(math.tan(scene.incline))) == 0
