@@ -1,4 +1,4 @@
-"""Motions of damped scenes by SciPy's integrators on theory's accelerations, without MuJoCo."""
+"""Motions of damped scenes by SciPy's integrator on theory's accelerations, without MuJoCo."""
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -10,35 +10,19 @@ FINE = 1e-12
 """Relative tolerance of each step."""
 
 
-def motion(
-    scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0, method: str = "DOP853", fine: float = FINE
-) -> Coordinates:
-    """Return the motion from a start [rad, rad/s] at `times` [s], the first of which is 0."""
+def motion(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
+    """The motion from a start [rad, rad/s] at `times` [s], the first of which is 0."""
 
     def slope(_: float, state: np.ndarray) -> list[float]:
         u_ddot, phi_ddot = accelerations(scene, state[1], state[3], state[2])
         return [state[2], state[3], float(u_ddot), float(phi_ddot)]
 
-    def jacobian(_: float, state: np.ndarray) -> np.ndarray:
-        return np.array([
-            (np.array(slope(0.0, state + aside)) - slope(0.0, state - aside)) / 2e-6 for aside in 1e-6 * np.eye(4)
-        ]).T  # fmt: skip
-
     radius, (u, u_dot) = scene.can.radius, scene.start(phi0, phi_dot0)
-    scale = np.array([radius, 1.0, radius, 1.0])
-    # Between the ends of long steps SciPy knows fewer digits.
-    longest = float(np.diff(times).max()) if method == "DOP853" else np.inf
+    longest = float(np.diff(times).max())  # between the ends of long steps SciPy knows fewer digits
     found = solve_ivp(
-        slope,
-        (0, times[-1]),
-        [u, phi0, u_dot, phi_dot0],
-        method,
-        times,
-        max_step=longest,
-        rtol=fine,
-        atol=fine * scale,
-        **({} if method == "DOP853" else {"jac": jacobian}),
-    )
+        slope, (0, times[-1]), [u, phi0, u_dot, phi_dot0], "DOP853", times, max_step=longest, rtol=FINE,
+        atol=FINE * np.array([radius, 1.0, radius, 1.0]),
+    )  # fmt: skip
     assert found.success
     u, phi, u_dot, phi_dot = found.y
     nothing = np.zeros_like(times)

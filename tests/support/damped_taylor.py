@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mjbeer import Scene
-from tests.support.taylor import EXTENDED
+from tests.support.taylor import EXTENDED, value
 
 _ORDER = 26
 _LOCAL = EXTENDED(1e-21)
@@ -25,11 +25,12 @@ def integrate(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> n
         while now < end:
             series = _series(scene, state)
             step = min(end - now, _step(series))
-            for which, each in ((2, series[3] / radius - series[2]), (3, series[3])):
-                if scene.drag if which == 3 else scene.damping_law.quadratic:
-                    each[0] = _clean(each[0] / (radius if which == 3 else 1), series[2, 0]) and each[0]
+            slip = series[3] / radius - series[2]
+            for has_corner, each in ((scene.damping_law.quadratic, slip), (scene.drag, series[3] / radius)):
+                if has_corner:
+                    each[0] = _clean(each[0], series[2, 0])
                     step = min(step, _corner(each, step))
-            state = np.array([_value(each, step) for each in series])
+            state = np.array([value(each, step) for each in series])
             now += step
         results.append(state)
     return np.array(results)
@@ -53,35 +54,29 @@ def _series(scene: Scene, state: np.ndarray) -> np.ndarray:
         if k == 0:
             w[0] = _clean(w[0], p[0])
             corner_v = _clean(v[0] / a, p[0])
-        ww[k], vv[k], pp[k] = _product(w, w, k), _product(v, v, k), _product(p, p, k)
+        ww[k], vv[k], pp[k] = _dot(w, w, k), _dot(v, v, k), _dot(p, p, k)
         if k < 2:  # the sign of what starts at zero is that of its derivative
             sides = [float(np.sign(first or each[1]) or 1.0) for first, each in ((w[0], w), (corner_v, v))]
-        torque = c1 * w[k] + sides[0] * c2 * ww[k] + c3 * _product(w, ww, k)
+        torque = c1 * w[k] + sides[0] * c2 * ww[k] + c3 * _dot(w, ww, k)
         first = 1 if k == 0 else 0
         along = first * (m + can_mass) * g * np.sin(alpha) - torque / a - sides[1] * drag * vv[k]
-        along -= m * b * _product(sin, pp, k)
+        along -= m * b * _dot(sin, pp, k)
         around = -m * g * b * (np.sin(alpha) * cos[k] + np.cos(alpha) * sin[k]) + torque
-        along += m * b * (cos[1 : k + 1] * phi_ddot[:k][::-1]).sum()
-        around += m * b * (cos[1 : k + 1] * u_ddot[:k][::-1]).sum()
+        along += m * b * (cos[1 : k + 1] @ phi_ddot[:k][::-1])
+        around += m * b * (cos[1 : k + 1] @ u_ddot[:k][::-1])
         couple = m * b * cos[0]
         determinant = whole * axial - couple**2
         phi_ddot[k] = (whole * around + couple * along) / determinant
         u_ddot[k] = (axial * along + couple * around) / determinant
         phi[k + 1], u[k + 1] = p[k] / (k + 1), v[k] / (k + 1)
         p[k + 1], v[k + 1] = phi_ddot[k] / (k + 1), u_ddot[k] / (k + 1)
-        sin[k + 1], cos[k + 1] = _product(cos, p, k) / (k + 1), -_product(sin, p, k) / (k + 1)
+        sin[k + 1], cos[k + 1] = _dot(cos, p, k) / (k + 1), -_dot(sin, p, k) / (k + 1)
     return series
 
 
-def _product(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
-    return (x[: k + 1] * y[k::-1]).sum() if k else x[0] * y[0]
-
-
-def _value(series: np.ndarray, step: np.ndarray) -> np.ndarray:
-    total = series[-1]
-    for coefficient in series[-2::-1]:
-        total = total * step + coefficient
-    return total
+def _dot(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
+    """Coefficient k of the product of two series."""
+    return x[: k + 1] @ y[k::-1] if k else x[0] * y[0]
 
 
 def _step(series: np.ndarray) -> np.ndarray:
@@ -102,12 +97,12 @@ def _corner(series: np.ndarray, step: Any) -> Any:
     start = 0 if series[0] else 1
     times = step * np.linspace(0, 1, 33, dtype=EXTENDED)[start:]
     sign = np.sign(series[start])
-    values = np.array([_value(series, each) for each in times]) * sign
+    values = np.array([value(series, each) for each in times]) * sign
     below = np.flatnonzero(values < 0)
     if not len(below) or below[0] == 0:
         return EXTENDED(np.inf)
     low, high = times[below[0] - 1], times[below[0]]
     for _ in range(70):
         middle = (low + high) / 2
-        low, high = (middle, high) if _value(series, middle) * sign > 0 else (low, middle)
+        low, high = (middle, high) if value(series, middle) * sign > 0 else (low, middle)
     return high

@@ -41,6 +41,13 @@ def motion(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tup
         return np.array([float(phi) for phi, _ in states]), np.array([float(u / radius) for _, u in states])
 
 
+def accelerations(scene: Scene, phi: float, phi_dot: float) -> tuple[mpmath.mpf, mpmath.mpf]:
+    """Return u_ddot [m/s^2] and phi_ddot [rad/s^2], which neither u nor u_dot changes."""
+    with mpmath.workdps(_DIGITS):
+        angle, axis = _series(scene, mpmath.mpf(phi), mpmath.mpf(phi_dot), mpmath.mpf(0), mpmath.mpf(0))
+        return 2 * axis[2], 2 * angle[2]
+
+
 def _series(
     scene: Scene, angle: mpmath.mpf, rate: mpmath.mpf, u: mpmath.mpf, speed: mpmath.mpf
 ) -> tuple[Series, Series]:

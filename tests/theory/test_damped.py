@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -37,10 +36,8 @@ def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float)
     found = exact(scene, time, phi0, phi_dot0)
     radius, clock = scene.can.radius, natural(scene)[0]
     size = max(1.0, float(np.abs(expected[:, 0] - phi0).max()), float(np.ptp(expected[:, 1])) / radius)
-    fastest = max(
-        1.0, float(np.abs(expected[:, 2]).max()) * clock, float(np.abs(expected[:, 3]).max()) * clock / radius
-    )
-    bound = ANGLE * size * fastest
+    rates = np.abs(expected[:, 2:]).max(axis=0) * [clock, clock / radius]
+    bound = ANGLE * size * max(1.0, float(rates.max()))
     assert np.abs(found.phi - expected[:, 0]).max() < bound
     assert np.abs(found.u - expected[:, 1]).max() < bound * radius
     assert np.abs(found.phi_dot - expected[:, 2]).max() < bound * 10 / clock
@@ -67,11 +64,8 @@ def test_any_motion_is_that_of_a_taylor_series(
 
 CASES = {
     "hardly damped": (sliding(damping=1e-6), 1.0, 0.0, 2.0),
-    "fastest decay": (sliding(damping=2.17e-3), 1.0, 0.0, 2.0),
-    "corners of drag": (sliding(damping=1e-4, drag=0.01), 1.0, -40.0, 1.0),
     "corners of both": (sliding(damping=Damping(1e-4, 1e-5, 1e-6), drag=0.01, can=METAL), 1.0, -40.0, 1.0),
     "nothing linear": (sliding(damping=Damping(0, 1e-4, 0), drag=0.01), 1.0, 0.0, 2.0),
-    "stiff": (sliding(damping=1.0), 1.0, 5.0, 0.2),
     "very stiff": (sliding(damping=1e3, drag=0.01), 1.0, 5.0, 1e-4),
     "uphill": (sliding(-0.5, damping=1e-3, drag=0.001), 0.3, 60.0, 1.0),
 }
@@ -81,37 +75,6 @@ CASES = {
 @pytest.mark.parametrize(("scene", "phi0", "phi_dot0", "latest"), CASES.values(), ids=CASES.keys())
 def test_motion_is_that_of_a_taylor_series(scene: Scene, phi0: float, phi_dot0: float, latest: float) -> None:
     require_taylor(scene, np.linspace(0, latest, 5), phi0, phi_dot0)
-
-
-@ENOUGH
-def test_the_taylor_series_are_right() -> None:
-    """Against mpmath, from the Lagrangian's equations with the two accelerations eliminated by hand."""
-    scene, time = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-4, 1e-5), drag=0.02), 0.02
-    can, load, law = scene.can, scene.load, scene.damping_law
-    mp = mpmath.MPContext()
-    mp.dps = 20
-    a, m, b, total = can.radius, load.mass, load.offset, scene.mass
-    whole, axial = total + can.inertia / a**2, load.inertia + m * b**2
-
-    def derivative(_: object, state: list) -> list:
-        phi, _, phi_dot, u_dot = state
-        slip = u_dot / a - phi_dot
-        torque = law.linear * slip + law.quadratic * slip * abs(slip) + law.cubic * slip**3
-        along = total * scene.gravity * mp.sin(scene.incline) - torque / a - scene.drag * u_dot * abs(u_dot)
-        along -= m * b * mp.sin(phi) * phi_dot**2
-        around = torque - m * scene.gravity * b * mp.sin(scene.incline + phi)
-        couple = m * b * mp.cos(phi)
-        determinant = whole * axial - couple**2
-        return [
-            phi_dot,
-            u_dot,
-            (whole * around + couple * along) / determinant,
-            (axial * along + couple * around) / determinant,
-        ]
-
-    start = [mp.mpf(1), b * mp.sin(1), mp.mpf(-10), -10 * b * mp.cos(1)]  # neither w nor u_dot changes its sign
-    expected = [float(each) for each in mp.odefun(derivative, 0, start)(time)]
-    assert damped_taylor.integrate(scene, [time], 1.0, -10.0)[0].astype(float) == pytest.approx(expected, rel=1e-15)
 
 
 def test_balanced_load_is_two_inertias() -> None:
@@ -133,7 +96,7 @@ def test_balanced_load_is_two_inertias() -> None:
     assert motion.u_dot / a - motion.phi_dot == pytest.approx(slip, rel=ROUNDING)
 
 
-@pytest.mark.parametrize("c", [1e-3, 2.17e-3, 1e-1])
+@pytest.mark.parametrize("c", [1e-3, 1e-1])
 def test_steady_rolling_stays(c: float) -> None:
     """A start at the tilt in a can that is at rest comes to roll at the terminal speed, and stays there."""
     scene = sliding(can=METAL, damping=c)
@@ -143,35 +106,25 @@ def test_steady_rolling_stays(c: float) -> None:
     assert motion.u_dot == pytest.approx(np.full(3, scene.terminal_speed()), rel=10 * ROUNDING)
 
 
-def small_motion(scene: Scene, time: float, amplitude: float) -> float:
-    """How far phi is from the matrix exponential, relative to the amplitude, on level ground."""
+@pytest.mark.parametrize("c", [1e-5, 2e-3, 0.1])
+def test_small_motion_is_a_matrix_exponential(c: float) -> None:
+    """On level ground, at 1e-7 rad: the next terms are cubic, and 1e-14 of the amplitude."""
+    scene, time, rate, amplitude = sliding(0.0, can=METAL, damping=c), 0.5, 3.0, 1e-7
     can, load = scene.can, scene.load
-    moment, a, c = load.mass * load.offset, can.radius, scene.damping_law.linear
+    moment, a = load.mass * load.offset, can.radius
     mass = np.array([[load.inertia + load.mass * load.offset**2, -moment], [-moment, scene.mass + can.inertia / a**2]])
     coupling = np.array([[1.0], [-1 / a]])
     matrix = np.zeros((3, 3))
     matrix[0, 1] = 1
     matrix[1:, 0] = np.linalg.solve(mass, [-moment * scene.gravity, 0])
     matrix[1:, 1:] = -c * np.linalg.solve(mass, coupling @ coupling.T)
-    rate = 3.0
     expected = expm(matrix * time) @ [1.0, rate, load.offset * rate]
     motion = exact(scene, time, amplitude, rate * amplitude)
     found = np.array([motion.phi[0], motion.phi_dot[0], motion.u_dot[0]]) / amplitude
-    return float(np.abs((found - expected) / [1, 20, 1]).max())
+    assert np.abs((found - expected) / [1, 20, 1]).max() < 1e-12  # 1e-14 times 10, and the rounding of expm
 
 
-@pytest.mark.parametrize("c", [1e-5, 2e-3, 0.1])
-def test_small_motion_is_a_matrix_exponential(c: float) -> None:
-    """The next terms are cubic: what is missing falls with the amplitude squared, by 100 and 100 here, to 10 %."""
-    scene = sliding(0.0, can=METAL, damping=c)
-    errors = [small_motion(scene, 0.5, amplitude) for amplitude in (1e-1, 1e-2, 1e-3)]
-    assert errors[0] / errors[1] == pytest.approx(100, rel=0.1)
-    assert errors[1] / errors[2] == pytest.approx(100, rel=0.1)
-    assert small_motion(scene, 0.5, 1e-7) < 1e-12  # 1e-14 times 10, and the rounding of expm
-
-
-@pytest.mark.parametrize("damping", [1e-5, 2e-3, 1.0, Damping(1e-4, 1e-5, 1e-6)])
-@pytest.mark.parametrize("drag", [0.0, 0.01])
+@pytest.mark.parametrize(("damping", "drag"), [(2e-3, 0.0), (1.0, 0.01), (Damping(1e-4, 1e-5, 1e-6), 0.01)])
 def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> None:
     """What is lost is the work of T(w) w and of the drag, summed by Gauss's rule over 400 short intervals.
 
@@ -190,29 +143,17 @@ def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> No
     assert work == pytest.approx(begin - end, rel=bound)
 
 
-def exponent(values: np.ndarray, sizes: np.ndarray) -> float:
-    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])
-
-
-@pytest.mark.parametrize("can", [Can(), METAL], ids=["massless", "metal"])
-def test_weak_damping_approaches_sliding(can: Can) -> None:
-    """In proportion to c: the fitted exponent is 1 but for the next order, which is c times some 1e4."""
-    time, sizes = np.linspace(0, 1, 9), np.array([1e-10, 1e-9, 1e-8])
-    free = exact(sliding(can=can), time, 0.7)
-    gaps = [np.abs(exact(sliding(can=can, damping=c), time, 0.7).phi - free.phi).max() for c in sizes]
-    assert exponent(np.array(gaps), sizes) == pytest.approx(1, abs=1e-3)
-
-
 @pytest.mark.parametrize("can", [Can(), METAL], ids=["massless", "metal"])
 def test_strong_damping_approaches_frozen(can: Can) -> None:
     """In proportion to 1/c. A frozen can starts with u = a phi, and a sliding one with u = b sin(phi)."""
-    time, sizes = np.linspace(0, 1, 9), np.array([1e2, 1e3, 1e4])
+    time = np.linspace(0, 1, 9)
     ice = exact(frozen(can=can), time, 0.7)
-    runs = [exact(sliding(can=can, damping=c), time, 0.7) for c in sizes]
-    gaps = [np.abs(run.phi - ice.phi).max() for run in runs]
-    paths = [np.abs((run.u - run.u[0]) - (ice.u - ice.u[0])).max() for run in runs]
-    assert exponent(np.array(gaps), sizes) == pytest.approx(-1, abs=1e-3)
-    assert exponent(np.array(paths), sizes) == pytest.approx(-1, abs=1e-3)
+    runs = [exact(sliding(can=can, damping=c), time, 0.7) for c in (1e2, 1e4)]
+    for low, high in (
+        (np.abs(run.phi - ice.phi).max() for run in runs),
+        (np.abs((run.u - run.u[0]) - (ice.u - ice.u[0])).max() for run in runs),
+    ):
+        assert low / high == pytest.approx(100, rel=5e-3)  # the next order is 1e-5/c or so
 
 
 def test_slip_at_the_start_is_gone_at_once_in_a_stiff_can() -> None:
@@ -228,23 +169,13 @@ def test_slip_at_the_start_is_gone_at_once_in_a_stiff_can() -> None:
     assert motion.phi_dot[0] == pytest.approx(common, abs=2e-5)  # gravity adds 1e-7 s times 2e2 rad/s^2
 
 
-def test_motion_seen_from_behind() -> None:
-    scene = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5), drag=0.01)
-    time = np.linspace(0, 1, 5)
+def test_motion_seen_from_behind_and_without_damping() -> None:
+    scene, time = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5), drag=0.01), np.linspace(0, 1, 5)
     motion, behind = exact(scene, time, 1.0, 7.0), exact(replace(scene, incline=-0.3), time, -1.0, -7.0)
     assert (behind.phi == -motion.phi).all()
     assert (behind.u == -motion.u).all()
-
-
-def test_no_damping_is_the_undamped_scene() -> None:
-    time = np.linspace(0, 2, 21)
-    for can in (Can(), METAL):
-        plain, without = (
-            exact(sliding(can=can), time, 1.0, 3.0),
-            exact(Scene(can, sliding().load, damping=Damping(), drag=0.0), time, 1.0, 3.0),
-        )
-        assert (plain.phi == without.phi).all()
-        assert (plain.u == without.u).all()
+    plain, without = (exact(replace(scene, damping=each, drag=0.0), time, 1.0) for each in (0.0, Damping()))
+    assert (plain.phi == without.phi).all()
 
 
 def test_times_in_any_order_and_other_turns() -> None:
@@ -258,38 +189,24 @@ def test_times_in_any_order_and_other_turns() -> None:
     assert there.phi - 14 * math.pi == pytest.approx(motion.phi, abs=ANGLE)
 
 
-def test_a_swing_dies_away_with_the_frequency_of_its_modes() -> None:
-    """Small swings for a hundred decay times: turning points of what is left, rounding, do not count."""
-    scene = sliding(0.0, damping=1e-3)
-    measured = exact(scene, np.arange(0, 100, 0.01), 1e-3).frequency()
-    # The third mode shifts the first turning point by some 0.01 rad, of the 140 rad until the swing is below 1e-10.
-    assert measured == pytest.approx(scene.frequency(), rel=2e-4)
-
-
 def test_unstable_balance() -> None:
-    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error."""
+    """On level ground the top is an equilibrium; beside it rounding decides, and there is an error before it changes
+    phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
     scene = sliding(0.0, damping=1e-3)
     assert (exact(scene, [0.0, 9.0], 3 * math.pi).phi == 3 * math.pi).all()
     with pytest.raises(ToleranceError, match=r"phi is not known later than at \d.* s: rounding of start and scene"):
         exact(scene, 3.0, math.nextafter(math.pi, 0) - 1e-15)
-    assert exact(scene, 0.5, math.pi - 1e-6).phi[0] < math.pi - 1e-6
-
-
-@ENOUGH
-def test_the_effect_of_rounding_is_that_of_a_nudge() -> None:
-    """The error comes before rounding changes phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
-    scene, start = sliding(0.0, damping=1e-3), math.pi - 1e-13
-    time = np.linspace(0.5, 2.5, 81)
-    known = 0.0
-    for each in time:
+    start, known = math.pi - 1e-13, 0.0
+    with pytest.raises(ToleranceError):
+        exact(scene, 2.0, start)
+    for time in np.linspace(0.5, 2.0, 31):
         try:
-            motion = exact(scene, each, start)
+            motion = exact(scene, time, start)
         except ToleranceError:
             break
-        nudged = exact(scene, each, start + 4.4e-16)
-        assert abs(nudged.phi[0] - motion.phi[0]) < 1e-3
-        known = float(each)
-    assert 0.8 < known < 2.0
+        known = float(time)
+        assert abs(exact(scene, time, start + 4.4e-16).phi[0] - motion.phi[0]) < 1e-3
+    assert known > 0.8
 
 
 def test_the_edges_of_the_domain(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,13 +1,14 @@
 """The circular segment, eqs. (32)-(37), against the paper's closed forms in 60 digits; the metal can, (30) and (31)."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from mpmath import MPContext
 
 from mjbeer import Can, Load, frozen
-from mjbeer.theory.load import Segment, segment
+from mjbeer.theory.load import segment
 
 mp = MPContext()
 mp.dps = 60
@@ -17,7 +18,7 @@ QUADRATURE = 1e-14
 # A double rounds beta once more than the formula has roundings.
 ROUNDING = 1e-15
 
-HALF_ANGLES = [*np.geomspace(1e-6, 3, 25), math.pi / 2, math.pi - 1e-3, math.pi - 1e-6]
+HALF_ANGLES = [*np.geomspace(1e-6, 3, 9), math.pi / 2, math.pi - 1e-3, math.pi - 1e-6]
 
 
 def fill_of(beta: float) -> float:
@@ -25,7 +26,7 @@ def fill_of(beta: float) -> float:
     return float((1 - mp.cos(mp.mpf(beta))) / 2)
 
 
-def closed_form(fill: float) -> dict[str, object]:
+def closed_form(fill: float) -> dict[str, Any]:
     """Eqs. (33), (35) and (37) as printed."""
     beta = mp.acos(1 - 2 * mp.mpf(fill))
     twice = 2 * beta - mp.sin(2 * beta)
@@ -47,51 +48,30 @@ def test_segment_is_the_closed_form(beta: float) -> None:
         assert abs(getattr(shape, name) / exact - 1) <= tolerance, name
 
 
-def printed(beta: float) -> Segment:
-    """The closed forms in double precision."""
+def test_the_closed_form_loses_digits_where_the_quadrature_does_not() -> None:
+    """(37) subtracts numbers of size 1 to leave beta^2: an error of eps / beta^4."""
+    beta = math.acos(1 - 2 * fill_of(1e-3))
     twice = 2 * beta - math.sin(2 * beta)
-    offset = 4 * math.sin(beta) ** 3 / (3 * twice)
-    axial = (1 + 2 * math.sin(2 * beta) * math.sin(beta) ** 2 / (3 * twice)) / 2
-    return Segment(beta, twice / 2, offset, axial - offset**2)
+    printed = (1 + 2 * math.sin(2 * beta) * math.sin(beta) ** 2 / (3 * twice)) / 2
+    printed -= 16 * math.sin(beta) ** 6 / (9 * twice**2)
+    assert abs(printed / closed_form(fill_of(1e-3))["inertia"] - 1) > 1e4 * QUADRATURE
 
 
-@pytest.mark.parametrize("scale", [1e-2, 1e-3, 1e-4])
-def test_closed_forms_lose_digits_where_the_quadrature_does_not(scale: float) -> None:
-    # (33) subtracts numbers of size beta to leave one of size beta^3, (37) ones of size 1 to leave beta^2:
-    # errors of eps / beta^2 and eps / beta^4, of which the worst of ten is at least a hundredth.
-    betas = scale * np.linspace(1, 2, 10)
-    exact = [closed_form(fill_of(beta)) for beta in betas]
-    worst = {
-        name: max(abs(getattr(printed(beta), name) / each[name] - 1) for beta, each in zip(betas, exact, strict=True))
-        for name in ("area", "inertia")
-    }
-    assert worst["area"] > max(0.01 * ROUNDING / scale**2, 10 * QUADRATURE)
-    assert worst["inertia"] > max(0.01 * ROUNDING / scale**4, 1e4 * QUADRATURE)
-
-
-def test_half_full() -> None:
+def test_half_full_full_and_nearly_full() -> None:
     shape = segment(0.5)
     assert shape.half_angle == math.pi / 2
-    assert shape.area == pytest.approx(math.pi / 2, rel=QUADRATURE)
     assert shape.offset == pytest.approx(4 / (3 * math.pi), rel=QUADRATURE)  # (7)
     assert shape.inertia + shape.offset**2 == pytest.approx(1 / 2, rel=QUADRATURE)  # (8)
     assert shape.inertia == pytest.approx(0.32, abs=5e-4)  # (9) as printed
-
-
-def test_full() -> None:
     shape = segment(1.0)
     assert shape.offset == 0
-    assert shape.inertia == pytest.approx(1 / 2, rel=2 * ROUNDING)
-    assert shape.area == pytest.approx(math.pi, rel=QUADRATURE)
-
-
-def test_nearly_full_keeps_the_offset() -> None:
+    assert (shape.area, shape.inertia) == pytest.approx((math.pi, 1 / 2), rel=QUADRATURE)
     gap = 2.0**-52
     # 1 - fill is exact, and b = 2 a^3 sin^3(beta) / 3A with sin(beta) = 2 sqrt(gap) to first order.
     assert segment(1 - gap).offset == pytest.approx(16 * gap**1.5 / (3 * math.pi), rel=QUADRATURE)
 
 
-@pytest.mark.parametrize("fill", [1e-30, 1e-200, 1e-300])
+@pytest.mark.parametrize("fill", [1e-30, 1e-300])
 def test_film(fill: float) -> None:
     """A film of liquid is a parabola's segment: b = a, I_cm = m beta^2 a^2 / 5, however thin."""
     shape = segment(fill)
@@ -113,12 +93,8 @@ def test_sheet_metal_can() -> None:
     wall, end = 2 * math.pi * a * length * thickness * density, math.pi * a**2 * thickness * density
     assert can.mass == pytest.approx(wall + 2 * end, rel=ROUNDING)  # (30)
     assert can.inertia == pytest.approx(wall * a**2 + 2 * end * a**2 / 2, rel=ROUNDING)  # (31)
+    assert Can.hoop(radius=0.2, length=0.1, mass=3.0).inertia == pytest.approx(3.0 * 0.2**2, rel=ROUNDING)
     assert can.inertia / (can.mass * a**2) == pytest.approx(0.89, abs=0.005)  # (31) as printed
-
-
-def test_hoop_has_all_its_mass_at_the_rim() -> None:
-    can = Can.hoop(radius=0.2, length=0.1, mass=3.0)
-    assert can.inertia == pytest.approx(3.0 * 0.2**2, rel=ROUNDING)
 
 
 def test_centre_of_mass_of_the_whole() -> None:

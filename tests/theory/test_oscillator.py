@@ -15,6 +15,7 @@ from mpmath import MPContext
 from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.theory.oscillator import TURN, Crest, reduced, sinc, sinc_gap
+from tests.support import taylor
 from tests.support.scenes import METAL, SCENES, scenes
 
 # J is a sum of positive terms and V' a difference of two, each of a few roundings; measured: 1e-15.
@@ -92,6 +93,9 @@ def test_reduction_is_the_lagrangian_s(scene: Scene, phi: float, swing: float) -
     assert abs(form.acceleration(phi, rate) - acceleration) <= ROUNDING * scale
     # V only ever appears as a difference.
     fall = values(scene, 0.5)[3] - potential
+    known = taylor.coefficients(scene)  # of the other tests' witnesses; 30 digits less those that a difference loses
+    assert abs(taylor.inertia(known, mp.mpf(phi)) - inertia) <= 1e-20 * inertia
+    assert abs(taylor.fall(known, mp.mpf(0.5), mp.mpf(phi)) - fall) <= 1e-20 * torque * (1 + abs(phi))
     assert abs(form.drop(phi, 0.5) - fall) <= ROUNDING * torque * (1 + abs(phi))
     assert abs(form.potential(0.5) - form.potential(phi) - fall) <= ROUNDING * torque * (1 + abs(phi))
 
@@ -106,37 +110,12 @@ def test_energy_differences_do_not_cancel(scene: Scene, start: float) -> None:
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
-def test_equilibrium(scene: Scene) -> None:
-    can, load, alpha = scene.can, scene.load, scene.incline
+def test_equilibrium_and_frequency(scene: Scene) -> None:
     phi = scene.equilibrium()
-    if scene.attachment == "frozen":  # (53), with the can's mass
-        held = (load.mass + can.mass) * can.radius * math.sin(alpha) / (load.mass * load.offset)
-        assert math.sin(alpha + phi) == pytest.approx(held, rel=ANGLE, abs=0)
-    else:  # level with the steady acceleration of footnote 4
-        steady = (load.mass + can.mass) / (load.mass + can.mass + can.inertia / can.radius**2)
-        lag = scene.gravity * math.sin(alpha) * (1 - steady)
-        assert math.tan(phi) == pytest.approx(-lag / (scene.gravity * math.cos(alpha)), rel=ANGLE, abs=1e-16)
     inertia, _, pull, _ = values(scene, phi)
     assert abs(pull) < ANGLE * scene.oscillator.depth
     stiffness = mp.diff(lambda x: values(scene, x)[2], phi)
     assert abs(scene.frequency() / mp.sqrt(stiffness / inertia) - 1) < ANGLE
-
-
-def test_paper_s_numbers() -> None:
-    slides, frozen_can = sliding(math.radians(10)), frozen(math.radians(10))
-    a, g, alpha = 0.033, 9.81, math.radians(10)
-    assert slides.equilibrium() == 0
-    ten = 24 * math.pi * g * math.cos(alpha) / (9 * math.pi**2 - 32) / a  # (10), divided by a
-    assert slides.frequency() == pytest.approx(math.sqrt(ten), rel=ANGLE)
-    assert math.sqrt(ten) == pytest.approx(math.sqrt(1.33 * g * math.cos(alpha) / a), rel=2e-3)
-    phi, b = frozen_can.equilibrium(), 4 * a / (3 * math.pi)
-    assert math.sin(alpha + phi) == pytest.approx(3 * math.pi / 4 * math.sin(alpha), rel=ANGLE)  # (53)
-    corrected, printed = (
-        math.sqrt(g * b * math.cos(alpha + phi) / (1.5 * a**2 - factor * a * b * math.cos(phi))) for factor in (2, 1)
-    )
-    assert frozen_can.frequency() == pytest.approx(corrected, rel=ANGLE)  # (55), corrected
-    assert (corrected, printed) == pytest.approx((13.04, 10.28), abs=0.005)
-    assert 1 - printed / corrected == pytest.approx(0.21, abs=0.005)
 
 
 def test_steepest_incline() -> None:
@@ -201,7 +180,7 @@ def test_heights_and_mean_torque(slope: float, size: float, sign: int, share: fl
         assert abs(crest.mean_torque(turn, length) - mean) <= 2 * DIFFERENCE * mean
 
 
-@pytest.mark.parametrize("slope", [0.0, 1e-20, 0.3, 1 - 1e-9, 1.0, 1.5])
+@pytest.mark.parametrize("slope", [0.0, 1e-20, 1 - 1e-9, 1.5])
 def test_crest_and_rest_are_where_v_is_level(slope: float) -> None:
     crest, bottom = Crest.of(slope, 1.0, -0.2), mp.mpf(-0.2)
     lean = mp.asin(mp.mpf(slope)) if slope < 1 else mp.pi / 2
@@ -213,8 +192,8 @@ def test_crest_and_rest_are_where_v_is_level(slope: float) -> None:
     assert crest.step == 2 * math.pi * slope
 
 
-@pytest.mark.parametrize("slope", [0.0, 1e-12, 0.3, 0.99, 2.0])
-@pytest.mark.parametrize("angle", [0.3, -0.3, math.pi, -3.0, 2.9, -1.0, 40.0, -1e4, 12345 * math.pi])
+@pytest.mark.parametrize("slope", [0.0, 1e-12, 0.99, 2.0])
+@pytest.mark.parametrize("angle", [0.3, math.pi, -3.0, 40.0, -1e4, 12345 * math.pi])
 def test_place(slope: float, angle: float) -> None:
     """Both distances are those of the angle, and lie in the well and in the turn that belong together."""
     crest = Crest.of(slope, 1.0, -0.1)
@@ -231,7 +210,7 @@ def test_place(slope: float, angle: float) -> None:
     assert from_rest == pytest.approx(past + crest.well - (TURN if past >= 0 else 0), abs=1e-15)
 
 
-@pytest.mark.parametrize("x", [0.0, 1e-100, 1e-8, 0.5, 0.999, 1.0, 1.001, 3.0, 6.0])
+@pytest.mark.parametrize("x", [0.0, 1e-100, 1e-8, 0.999, 1.001, 6.0])
 def test_sinc(x: float) -> None:
     with mp.workdps(700):
         exact = mp.sin(mp.mpf(x)) / x if x else mp.mpf(1)

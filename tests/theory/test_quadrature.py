@@ -29,21 +29,14 @@ class Counted:
         return self.rate(psi)
 
 
-def test_constant_rate() -> None:
-    clock = Clock(lambda psi: np.full_like(psi, 2.5), -1.0, 20.0)
-    time = np.array([0.0, 1.0, 0.3, 40.0, 52.5])
-    assert clock.phase(time)[0] == pytest.approx(-1 + time / 2.5, rel=ROUNDING)
-    assert clock.duration == pytest.approx(52.5, rel=ROUNDING)
-    assert clock.phase(np.empty(0))[0].shape == (0,)
-
-
 def test_outside_of_all_panels_the_motion_stays() -> None:
     clock = Clock(lambda psi: 2 + np.cos(psi), 0.7, 3.0)
     outside, _ = clock.phase(np.array([-1.0, 0.0, clock.duration, 99.0]))
     assert outside == pytest.approx([0.7, 0.7, 3.0, 3.0], abs=ROUNDING)
+    assert clock.phase(np.empty(0))[0].shape == (0,)
 
 
-@pytest.mark.parametrize("gap", [0.9, 0.1, 1e-3, 1e-6])
+@pytest.mark.parametrize("gap", [0.9, 1e-3, 1e-6])
 def test_pendulum(gap: float) -> None:
     """dt/dpsi = 1/sqrt(1 - m sin^2 psi): a period of 4 K(m), and psi the amplitude function."""
     # 1 - m sin^2 psi, arranged not to cancel where m = 1 - gap is near 1
@@ -62,16 +55,14 @@ def test_pendulum(gap: float) -> None:
 @pytest.mark.parametrize(
     ("rate", "time"),
     [
-        (lambda psi: 1 + psi**2, lambda psi: psi + psi**3 / 3),
         (lambda psi: np.exp(np.sin(psi)) * np.cos(psi) + 3, lambda psi: np.exp(np.sin(psi)) + 3 * psi),
-        # A peak as a motion has that hardly passes a barrier, and others a million and a billion times as sharp.
+        # A peak as a motion has that hardly passes a barrier, and another one much sharper.
         (lambda psi: 1 / np.hypot(psi, 1e-3), lambda psi: np.arcsinh(psi / 1e-3)),
-        (lambda psi: 1 / np.hypot(psi, 1e-9), lambda psi: np.arcsinh(psi / 1e-9)),
         (lambda psi: 1 / np.hypot(psi, 1e-18), lambda psi: np.arcsinh(psi / 1e-18)),
         # A small fast ripple is no rounding noise, however alike they look at first.
         (lambda psi: 1 + 1e-6 * np.cos(500 * psi), lambda psi: psi + 2e-9 * np.sin(500 * psi)),
     ],
-    ids=["cubic", "waves", "peak", "needle", "finer needle", "ripple"],
+    ids=["waves", "peak", "needle", "ripple"],
 )
 def test_round_trip(rate: Callable, time: Callable) -> None:
     """From edges at which doubles are dense: the peaks are at 0."""
@@ -85,7 +76,7 @@ def test_round_trip(rate: Callable, time: Callable) -> None:
     assert (np.abs(backwards - elapsed) < tolerance * slowest).all()
 
 
-@pytest.mark.parametrize("width", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("width", [1e-3, 1e-9])
 def test_the_rounding_of_the_phase_is_not_chased(width: float) -> None:
     """Beside psi = 2 doubles are 4e-16 apart, which makes a peak there rough; but it still takes the time it does."""
     rate = Counted(lambda psi: 1 / np.hypot(psi - 2, width))

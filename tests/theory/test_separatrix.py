@@ -1,125 +1,53 @@
 """Beside a separatrix: right to rounding where doubles know the barrier, and refused where its rounding matters."""
 
-import functools
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
-from mpmath import MPContext
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, sliding
 from mjbeer.exceptions import NoLibrationError
-from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.motion import UNCERTAIN
+from tests.support import taylor
 from tests.support.scenes import METAL
-from tests.support.taylor import coefficients
-
-mp = MPContext()
-mp.dps = 30
-
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
+from tests.support.taylor import mp
 
 # The distance from the barrier is right to an eps, and what follows is so late by an eps of 1/lambda; the sum of the
 # times of 60 panels, up to 3 s, is good to a few eps. phi falls at 20 rad/s. Measured: 1.1e-13.
 ANGLE = 5e-13
 
 
-def barrier(scene: Scene) -> Any:
-    """The top of V in 30 digits, at the very doubles of the scene, for an incline that is not negative."""
-    form = coefficients(scene)
-    depth = mp.hypot(form["cosine"], form["sine"])
-    return mp.pi - mp.atan2(form["sine"], form["cosine"]) - mp.asin(form["slope"] / depth)
-
-
-@dataclass(frozen=True)
-class Fall:
-    """A fall from rest beside a barrier: J, and V in a form that cancels nowhere, from coefficients in 30 digits.
-
-    At the barrier the slope of V is 0, so that V(beside) - V(beside + by) is
-    slope (by - sin(beside + by) + sin(beside)) + 2 grip sin(beside + by/2) sin(by/2), with grip^2 = depth^2 - slope^2.
-    """
-
-    scene: Scene
-    phi0: float
-
-    @functools.cached_property
-    def form(self) -> dict[str, Any]:
-        return coefficients(self.scene)
-
-    @functools.cached_property
-    def beside(self) -> Any:
-        """How far the start is from the next barrier [rad], in 30 digits."""
-        beside = mp.mpf(self.phi0) - barrier(self.scene)
-        return beside - 2 * mp.pi * mp.nint(beside / (2 * mp.pi))
-
-    def inertia(self, by: np.ndarray) -> np.ndarray:
-        phi = self.phi0 + by
-        base, chord, swing = (float(self.form[name]) for name in ("base", "chord", "swing"))
-        return base + chord * np.sin(phi / 2) ** 2 + swing * np.sin(phi) ** 2
-
-    def fallen(self, by: np.ndarray) -> np.ndarray:
-        """By how much V is less at phi0 + by than at phi0 [J]."""
-        slope, beside = float(self.form["slope"]), float(self.beside)
-        grip = float(mp.sqrt(mp.hypot(self.form["cosine"], self.form["sine"]) ** 2 - self.form["slope"] ** 2))
-        bend = sine_gap(beside + by) - sine_gap(beside)
-        return slope * bend + 2 * grip * np.sin(beside + by / 2) * np.sin(by / 2)
-
-    def time(self, turned: float) -> float:
-        """The time [s] in which phi changes by that much, by Gauss-Legendre with 24 nodes in each piece."""
-        end = math.sqrt(abs(turned))
-        doubled = math.sqrt(abs(self.beside)) / 4 * 2.0 ** np.arange(60)
-        pieces = np.unique([*np.linspace(0, end, 9), *doubled[doubled < end]])
-        half = np.diff(pieces)[:, np.newaxis] / 2
-        root = pieces[:-1, np.newaxis] + half * (1 + NODES)  # of the change of phi: at rest its rate is finite
-        by = math.copysign(1, turned) * root**2
-        return float(np.sum(half * WEIGHTS * 2 * root * np.sqrt(self.inertia(by) / (2 * self.fallen(by)))))
-
-
-def sine_gap(x: np.ndarray | float) -> np.ndarray:
-    """x - sin(x), by its series where the difference would cancel."""
-    near = np.where(np.abs(x) < 2, x, 0)
-    series = np.ones_like(near)
-    for k in range(26, 2, -2):  # the last term is below 1e-18 of the first
-        series = 1 - near**2 / (k * (k + 1)) * series
-    return np.where(np.abs(x) < 2, near**3 / 6 * series, x - np.sin(x))
-
-
 def error_of_a_fall(scene: Scene, phi0: float, phi: float, time: float) -> float:
-    """By how much phi [rad] is off at a time [s] in the fall from rest at phi0, before the next turning point."""
-    fall, turned = Fall(scene, phi0), float(mp.mpf(phi) - mp.mpf(phi0))
-    if turned * fall.beside <= 0:  # it fell to the other side
-        return math.inf
-    speed = math.sqrt(2 * fall.fallen(np.array(turned)) / fall.inertia(np.array(turned)))
-    return abs(fall.time(turned) - time) * speed
+    """By how much phi [rad] is off at a time [s] in the fall from rest at phi0, before the next turning point.
+
+    The time by quadrature at the very doubles of the scene, for an incline that is not negative. The integral is over
+    the root of the change of phi, of which the rate is finite at rest, in pieces that are doubled from there on.
+    """
+    form = taylor.coefficients(scene)
+    with mp.workdps(60):  # beside the barrier V falls by 1e-36 of itself up to the first node
+        begin, turned = mp.mpf(phi0), mp.mpf(phi) - mp.mpf(phi0)
+        beside = begin - taylor.well(form)[2]
+        beside -= 2 * mp.pi * mp.nint(beside / (2 * mp.pi))
+        if turned * beside <= 0:  # it fell to the other side
+            return math.inf
+
+        def slowness(root: Any) -> Any:
+            angle = begin + mp.sign(turned) * root**2
+            return mp.sqrt(taylor.inertia(form, angle) / (2 * taylor.fall(form, begin, angle)))
+
+        end = mp.sqrt(abs(turned))
+        doubled = (mp.sqrt(abs(beside)) / 4 * 2**k for k in range(60))
+        pieces = {k * end / 8 for k in range(9)} | {each for each in doubled if each < end}
+        late = taylor.integral(lambda root: 2 * root * slowness(root), sorted(pieces)) - time
+        return float(abs(late) / slowness(end))
 
 
-AT_PI = [frozen(0.0), sliding(), sliding(-0.3), hoop(), frozen(0.0, can=METAL)]
-NEAR = [5e-15, -5e-15, 1e-13, -1e-10, 1e-6, -1e-2]
+NEAR = [5e-15, -1e-10, -1e-2]
 
 
 @pytest.mark.parametrize("beside", NEAR)
-@pytest.mark.parametrize("scene", [*AT_PI, frozen(), hoop(0.5), frozen(frozen().largest_incline() * (1 - 1e-6))])
-def test_the_witness_loses_no_digits(scene: Scene, beside: float) -> None:
-    """Its V against the difference of two values of V in 70 digits."""
-    fall = Fall(scene, float(barrier(scene) + beside))
-    form, by = fall.form, math.copysign(1, beside) * 10 ** np.linspace(-14, 0.4, 20)
-    with mp.workdps(70):
-
-        def height(phi: Any) -> Any:
-            return -form["slope"] * phi - form["cosine"] * mp.cos(phi) + form["sine"] * mp.sin(phi)
-
-        start = mp.mpf(fall.phi0)
-        plain = [float(height(start) - height(start + mp.mpf(angle))) for angle in by.tolist()]
-    assert fall.fallen(by) == pytest.approx(plain, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("scene", "beside"),
-    [(frozen(0.0), 5e-15), (sliding(), -1e-10)]
-    + [pytest.param(scene, beside, marks=pytest.mark.slow) for scene in AT_PI for beside in NEAR],
-)
+@pytest.mark.parametrize("scene", [frozen(0.0), sliding(-0.3), hoop(), frozen(0.0, can=METAL)])
 def test_beside_a_barrier_at_pi(scene: Scene, beside: float) -> None:
     """pi is no double, but how far a double is from it is known, and so is the motion."""
     phi0, slowness = math.pi + beside, math.sqrt(scene.oscillator.inertia(math.pi) / scene.oscillator.stiffness())
@@ -130,7 +58,7 @@ def test_beside_a_barrier_at_pi(scene: Scene, beside: float) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::mjbeer.AngleWarning")
-@pytest.mark.parametrize("turns", [-3, 50, 1500])
+@pytest.mark.parametrize("turns", [-3, 1500])
 def test_beside_a_barrier_many_turns_away(turns: int) -> None:
     scene = frozen(0.0)
     phi0 = (2 * turns + 1) * math.pi * (1 + 1e-15)
@@ -154,7 +82,7 @@ def random_slope(pick: np.random.Generator) -> Scene:
             return made
 
 
-@pytest.mark.parametrize("count", [15, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [15, pytest.param(60, marks=pytest.mark.slow)])
 def test_on_a_slope_a_motion_is_right_or_refused(count: int) -> None:
     """The barrier is rounded by up to 1e-15 rad, and more near the steepest slope: who starts so near is told so."""
     pick, refused, checked = np.random.default_rng(count), 0, 0
@@ -201,26 +129,16 @@ def test_on_the_separatrix_the_motion_is_known_until_it_is_not() -> None:
         exact(scene, [40.0], 0.0, 2.0)
 
 
-def test_on_the_top_of_a_slope() -> None:
-    """The double nearest to the barrier is the barrier, and so are its neighbours."""
-    for scene in (frozen(), frozen(-0.1, can=METAL), sliding(can=METAL), hoop(0.2)):
-        for top in scene.separatrix() if scene.attachment == "sliding" else [scene.oscillator.barrier()]:
-            if scene.oscillator.slope >= 0:
-                assert (exact(scene, [0.0, 100.0], top).phi == top).all()
-
-
-@pytest.mark.parametrize("beside", [-1e-9, -1e-12, 1e-12, 1e-9])
-@pytest.mark.parametrize(("past", "phi_dot0"), [(1e-9, -3e-8), (-1e-9, 3e-8), (1e-9, 0.0), (0.0, -1e-9)])
-def test_where_hardly_a_torque_acts(beside: float, past: float, phi_dot0: float) -> None:
-    """Beside the steepest incline the torque at the crest all but vanishes, and for a while only speed counts."""
-    scene = frozen(frozen().largest_incline() * (1 + beside))
-    form, time = scene.oscillator, np.array([0.0, 0.1, 1.0])
-    phi0 = math.pi + form.crest.offset + past
-    motion = exact(scene, time, phi0, phi_dot0)
-    # It moves by its acceleration, which is at most that of the torque where it may get to.
-    farthest = abs(past) + 2 * abs(phi_dot0) + 1e-7
-    fall = max(abs(form.crest.torque(x)) for x in (-farthest, farthest)) / float(form.inertia(phi0)) * time**2 / 2
-    assert (np.abs(motion.phi - phi0 - phi_dot0 * time) <= fall + 1e-15).all()
+@pytest.mark.filterwarnings("ignore::mjbeer.AngleWarning")
+def test_on_the_top() -> None:
+    """As far as a double tells, an odd multiple of pi is the unstable equilibrium on level ground, and three ulps off
+    it is not; so it is with the double nearest to the barrier of a slope."""
+    for scene in (frozen(), sliding(can=METAL), hoop(0.2)):
+        assert (exact(scene, [0.0, 100.0], scene.separatrix()[1]).phi == scene.separatrix()[1]).all()
+    for scene in (sliding(), frozen(0.0)):
+        for top in (-1001 * math.pi, 7 * math.pi):
+            assert (exact(scene, [0.0, 9.0], top).phi == top).all()
+            assert exact(scene, 1e-3, top + 3 * math.ulp(top)).phi_dot[0] != 0
 
 
 def test_thrown_onto_the_top_of_another_turn() -> None:
@@ -245,26 +163,3 @@ def test_period_beside_the_separatrix_of_a_slope(gap: float) -> None:
     for end in scene.separatrix():
         with pytest.raises(NoLibrationError):
             scene.period(end - scene.equilibrium() + math.copysign(1e-15, end))
-
-
-@pytest.mark.parametrize("scene", [sliding(0.0), frozen(0.0), hoop(), sliding()])
-@pytest.mark.parametrize("turns", [-1001, -3, 1, 7, 101])
-@pytest.mark.filterwarnings("ignore::mjbeer.AngleWarning")
-def test_on_the_top(scene: Scene, turns: int) -> None:
-    """As far as a double tells, an odd multiple of pi is the unstable equilibrium, and three ulps off it is not."""
-    motion, top = exact(scene, np.linspace(0, 9, 4), turns * math.pi), turns * math.pi
-    assert (motion.phi == top).all()
-    assert exact(scene, 1e-3, top + 3 * math.ulp(top)).phi_dot[0] != 0
-
-
-@pytest.mark.parametrize("scene", [sliding(0.0), sliding(can=METAL), frozen(0.0), frozen(), hoop(0.2)])
-def test_within_a_few_ulps_of_the_separatrix(scene: Scene) -> None:
-    """If nobody can tell which side the motion falls to, there is an error; or else it is one of this scene's."""
-    for end in scene.separatrix():
-        for ulps in (-4, -2, -1, 0, 1, 2, 4):
-            for phi_dot0 in (0.0, 1e-300, math.copysign(1e-12, end)):
-                try:
-                    motion = exact(scene, np.linspace(0, 2, 20), end + ulps * math.ulp(end), phi_dot0)
-                except NoLibrationError:
-                    continue
-                assert np.ptp(motion.energy) < 2e-13 * (kinetic_energy(motion.scene, motion).max() + 1)

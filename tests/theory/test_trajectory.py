@@ -17,7 +17,7 @@ from mjbeer.simulation.run import Run
 from mjbeer.simulation.stepping import Solution
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, axis_drift, doubts
-from mjbeer.theory.trajectory import csv, turning_times
+from mjbeer.theory.trajectory import csv
 from tests.support.scenes import METAL, SCENES
 
 # After 2 s the can as a whole has some thousand times the energy of the swing, to which a drift is compared.
@@ -50,11 +50,8 @@ def test_energy_of_any_state(scene: Scene) -> None:
     assert state.energy == pytest.approx([kinetic / 2 + potential], rel=ROUNDING)
 
 
-STARTS = [(0.8, 0.0), (-0.5, 3.0), (0.1, 0.0)]
-
-
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
-@pytest.mark.parametrize(("phi0", "phi_dot0"), STARTS)
+@pytest.mark.parametrize(("phi0", "phi_dot0"), [(0.8, 0.0), (-0.5, 3.0)])
 def test_exact_motion_is_trusted(scene: Scene, phi0: float, phi_dot0: float) -> None:
     motion = exact(scene, TIME, phi0, phi_dot0)
     assert motion.energy_drift < DRIFT
@@ -64,8 +61,8 @@ def test_exact_motion_is_trusted(scene: Scene, phi0: float, phi_dot0: float) -> 
     assert motion.rolls_until() == math.inf
 
 
-@pytest.mark.parametrize("scene", [sliding(fill=1.0), sliding(fill=1 - 1e-9), frozen(fill=1.0), sliding(gravity=0.0)])
-@pytest.mark.parametrize("phi_dot0", [0.0, 1e-9, 1.0])
+@pytest.mark.parametrize("scene", [sliding(fill=1 - 1e-9), frozen(fill=1.0), sliding(gravity=0.0)])
+@pytest.mark.parametrize("phi_dot0", [0.0, 1.0])
 def test_exact_motion_without_a_swing_is_trusted(scene: Scene, phi_dot0: float) -> None:
     motion = exact(scene, np.linspace(0, 50, 11), 0.3, phi_dot0)
     assert motion.record.implied_error < ROUNDING * 50**2
@@ -119,7 +116,7 @@ def test_tampering_is_noticed(scene: Scene, tamper: Callable, trusted: float, wa
         assert tamper(motion, sign * 0.8 * trusted).trusted
 
 
-@pytest.mark.parametrize("scene", [sliding(), sliding(can=METAL), pendulum()])
+@pytest.mark.parametrize("scene", [sliding(), pendulum()])
 def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
     """An axis that runs ahead steadily breaks no energy of the swing, and does not slip."""
     motion = exact(scene, TIME, 0.8)
@@ -132,19 +129,13 @@ def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
 
 
 def test_the_swing_s_energy_is_that_of_theory() -> None:
-    """Half of the kinetic energy, at the bottom of the swing, is half of it."""
+    """Half of the kinetic energy, at the bottom of the swing, is half of it: as much again as its own, over 0.5 rad."""
     scene = frozen()
-    bottom = scene.equilibrium()
-    fall = exact(scene, [0.0, scene.period(0.5) / 4], bottom + 0.5)
-    slower = replace(fall, phi=np.array([bottom + 0.5, bottom]), phi_dot=np.array([0.0, fast(scene) / math.sqrt(2)]))
-    # Relative to its own largest kinetic energy, the missing half is as much again, over a path of 0.5 rad.
-    assert slower.record.swing_error == pytest.approx(0.5, rel=1e-12)
-
-
-def fast(scene: Scene) -> float:
-    """phi_dot at the bottom, let go 0.5 rad above it."""
     form, bottom = scene.oscillator, scene.equilibrium()
-    return math.sqrt(2 * form.drop(bottom, bottom + 0.5) / form.inertia(bottom))
+    fast = math.sqrt(2 * form.drop(bottom, bottom + 0.5) / form.inertia(bottom))
+    fall = exact(scene, [0.0, scene.period(0.5) / 4], bottom + 0.5)
+    slower = replace(fall, phi=np.array([bottom + 0.5, bottom]), phi_dot=np.array([0.0, fast / math.sqrt(2)]))
+    assert slower.record.swing_error == pytest.approx(0.5, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -197,21 +188,18 @@ def test_frozen_can_from_the_top_leaves_the_incline() -> None:
         warning
         == f"from t = {until:.6g} s the incline would have to pull at the can (N < 0): a real one leaves it there"
     )
-    # N crosses zero there, up to the straight line's error between two samples, h^2 N'' / 8 N'.
+    # N crosses zero there; the straight line between two samples is off by their distance squared times N''/8N'.
     crossing = brentq(lambda time: exact(frozen(), [time], math.pi).forces.normal[0], until - 0.01, until + 0.01)
-    around = crossing + np.linspace(-5e-3, 5e-3, 101)
-    steepness = np.gradient(exact(frozen(), around, math.pi).forces.normal, around)
-    bend = np.abs(np.gradient(steepness, around)).max() / np.abs(steepness).min()
-    for samples in (401, 4001):
-        time = np.linspace(0, 2, samples)
-        assert abs(exact(frozen(), time, math.pi).rolls_until() - crossing) < time[1] ** 2 / 8 * bend
+    late, fine = abs(until - crossing), exact(frozen(), np.linspace(0, 2, 4001), math.pi)
+    assert late < TIME[1] / 10
+    assert abs(fine.rolls_until() - crossing) < late / 50  # 100, but for where in between N is 0
     (warning,) = simulated(motion, Setting("contact"), 0.0).warnings
     assert warning == "rolling needs a friction coefficient of inf, and the contact has 1: it slides"
 
 
-@pytest.mark.parametrize("scene", [frozen(), frozen(-0.1)])
-def test_friction_that_holds(scene: Scene) -> None:
+def test_friction_that_holds() -> None:
     """At the frozen equilibrium tan(alpha) is needed from the start (footnote 7), elsewhere from when it runs out."""
+    scene = frozen(-0.1)
     rest = exact(scene, TIME, scene.equilibrium())
     assert rest.rolls_until(1.001 * abs(math.tan(scene.incline))) == math.inf
     assert rest.rolls_until(0.999 * abs(math.tan(scene.incline))) == 0
@@ -226,61 +214,37 @@ def test_friction_that_holds(scene: Scene) -> None:
 
 @pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum(), frozen(-0.2, can=METAL)])
 def test_frequency_is_that_of_the_period(scene: Scene) -> None:
-    """Of fourth order in the sampling: the cubic between two samples has an error of h^4 phi_ddddot / 384."""
-    amplitude = 0.9
-    period = scene.period(amplitude)
-    errors = []
-    for samples in (24, 48, 96):
-        # An awkward number of samples a period, so that turning points do not fall on them.
-        time = np.arange(0, 20.3 * period, period / (samples + 0.37))
-        measured = exact(scene, time, scene.equilibrium() + amplitude).frequency()
-        errors.append(abs(measured * period / (2 * math.pi) - 1))
-    for error, samples in zip(errors, (24, 48, 96), strict=True):
-        step = 2 * math.pi / samples
-        assert error < step**4 / 384 + ROUNDING
+    """Of fourth order in the sampling: the cubic between two samples has an error of h^4 phi_ddddot / 384. Three
+    samples a period are enough, and an awkward number of them, so that turning points do not fall on samples."""
+    period = scene.period(0.5)
+    for samples in (3.37, 24.37, 96.37):
+        time = np.arange(0, 20.3 * period, period / samples)
+        measured = exact(scene, time, scene.equilibrium() + 0.5).frequency()
+        assert abs(measured * period / (2 * math.pi) - 1) < (2 * math.pi / samples) ** 4 / 384 + ROUNDING
 
 
-def test_turning_times() -> None:
-    scene = sliding()
-    period = scene.period(1.0)
-    motion = exact(scene, np.arange(0, 3.2 * period, period / 1000.3), 1.0)
-    assert turning_times(motion, scene)[-6:] == pytest.approx(np.arange(1, 7) * period / 2, rel=1e-9)
+@pytest.mark.parametrize("gap", [0.45, 0.55, 0.93, 1.0, 2.3])
+def test_samples_that_do_not_follow_the_swing_have_no_frequency(gap: float) -> None:
+    """A swing that is sampled every 0.93 periods looks like one of 0.07 of its frequency."""
+    time = np.arange(0, 60, gap) * frozen().period(0.5)
+    with pytest.raises(MjbeerError, match="no frequency: "):
+        exact(frozen(), time, frozen().equilibrium() + 0.5).frequency()
 
 
-@pytest.mark.parametrize(("scene", "phi0", "phi_dot0"), [(sliding(), 0.5, 0.0), (sliding(), 0.0, 60.0)])
-def test_no_frequency_without_a_swing(scene: Scene, phi0: float, phi_dot0: float) -> None:
-    motion = exact(scene, np.linspace(0, 0.3, 100), phi0, phi_dot0)
+@pytest.mark.parametrize(("phi0", "phi_dot0"), [(0.5, 0.0), (0.0, 60.0)])
+def test_no_frequency_without_a_swing(phi0: float, phi_dot0: float) -> None:
+    motion = exact(sliding(), np.linspace(0, 0.3, 100), phi0, phi_dot0)
     with pytest.raises(MjbeerError, match=r"no frequency: the motion turns \d times in 0\.3 s, 3 are needed"):
         motion.frequency()
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
-@pytest.mark.parametrize("aside", [0.0, 1e-13])
-def test_a_load_at_rest_has_no_frequency(rolling: str, aside: float) -> None:
+def test_a_load_at_rest_has_no_frequency(rolling: str) -> None:
     """What moves there is rounding, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
     scene = frozen(can=METAL)
-    run = simulate(scene, 4.0, scene.equilibrium() + aside, rolling=rolling)
+    run = simulate(scene, 4.0, scene.equilibrium() + 1e-13, rolling=rolling)
     with pytest.raises(MjbeerError, match="no frequency: "):
         run.frequency()
-
-
-@pytest.mark.parametrize("gap", [0.45, 0.55, 0.7, 0.93, 1.0, 1.07, 2.3])
-def test_samples_that_do_not_follow_the_swing_have_no_frequency(gap: float) -> None:
-    """A swing that is sampled every 0.93 periods looks like one of 0.07 of its frequency."""
-    scene = frozen()
-    period = scene.period(0.5)
-    motion = exact(scene, np.arange(0, 60 * period, gap * period), scene.equilibrium() + 0.5)
-    with pytest.raises(MjbeerError, match="no frequency: "):
-        motion.frequency()
-
-
-@pytest.mark.parametrize("gap", [0.05, 0.2, 0.3])
-def test_three_samples_a_period_are_enough(gap: float) -> None:
-    """The cubic between two samples has an error of (2 pi gap)^4 / 384 = 0.03 of a radian of the swing at most."""
-    scene = frozen()
-    period = scene.period(0.5)
-    motion = exact(scene, np.arange(0, 60 * period, gap * period), scene.equilibrium() + 0.5)
-    assert motion.frequency() * period / (2 * math.pi) == pytest.approx(1, abs=(2 * math.pi * gap) ** 4 / 384 / 60)
 
 
 @pytest.mark.parametrize(("scene", "start"), [(sliding(), 0.014 * math.sin(1)), (frozen(), 0.033), (hoop(), 0.033)])
