@@ -11,39 +11,25 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, liquid, pendulum, simulate, sliding
-from mjbeer.cli.arguments import Motion, Sliding
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.run import Run, Second
+from mjbeer.simulation.run import Run
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
 from tests.support import damped
-from tests.support.scenes import METAL, SCENES
+from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
 ALL = (*INTEGRATORS, "DOP853")
 
 
-def error(run: Run) -> float:
-    """The largest error of phi and u/a at the samples of a run, as a tolerance bounds it."""
-    start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
-    return distance(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_a_run_starts_where_theory_starts(name: str) -> None:
-    run = simulate(SCENES[name], 0.1, 0.8, 3.0)
-    truth = exact(SCENES[name], np.array([0.0]), 0.8, 3.0)
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_a_run_starts_where_theory_starts_and_is_trusted(scene: Scene) -> None:
+    run, truth = simulate(scene, 0.1, 0.8, 3.0), exact(scene, np.array([0.0]), 0.8, 3.0)
     for each in ("u", "phi", "u_dot", "phi_dot", "roll", "roll_dot"):
         assert getattr(run, each)[0] == pytest.approx(getattr(truth, each)[0], rel=4e-16)
-
-
-def test_the_command_line_has_the_same_defaults() -> None:
-    ours, theirs = simulate(sliding()), Motion(Sliding()).simulate()
-    assert (ours.time[-1], ours.phi0) == (2.0, math.radians(60))
-    # Degrees and back are a rounding of the start.
-    assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)
+    assert simulate(scene, 1, 0.5).trusted
 
 
 @pytest.mark.parametrize("integrator", ALL)
@@ -60,26 +46,19 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
         ({"duration": math.inf}, "duration must be a finite number"),
         ({"duration": 1e6, "timestep": 1e-6}, "too many timesteps of 1e-06 s: at most 1e.08, or say with times="),
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
-        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e\+06 and 1e\+06 \[rad/s\], got 1e\+200"),
         ({"scene": "frozen"}, "scene must be a Scene, got 'frozen'"),
-        ({"softness": "hard"}, "softness must be a Softness, got 'hard'"),
-        ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
         ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4': did you mean 'RK4'\?"),
         ({"integrator": "DOP853", "tolerance": 1e-6}, "a tolerance chooses the integrator .* got integrator 'DOP853'"),
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
         ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at 0.0105 s; integrator="DOP853"'),
-        ({"times": [5e-10]}, "multiples of the timestep 0.001 s only, not at 5e-10 s"),
         (
             {"times": [0.01, 0.01 * (1 + 1e-12)]},
             r"times must be at least a timestep of 0\.001 s apart, got 0\.01 s and 0\.01",
         ),
-        ({"duration": 1e15, "times": [1e15]}, r"times must be within 1e\+12 timesteps of 0\.001 s"),
-        ({"rolling": "reduced", "tolerance": 1e-6, "timestep": math.nan}, "timestep must be .*, got nan"),
         ({"friction": 1e-6}, r"friction must be at least 1e-05, MuJoCo's smallest \(mjMINMU\), got 1e-06"),
     ],
 )
@@ -88,7 +67,7 @@ def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: s
         simulate(**({"scene": frozen(), "duration": 0.1, "phi0": 1.0} | arguments))
 
 
-@pytest.mark.parametrize("timestep", [0.1, 1e-3, 1 / 3])
+@pytest.mark.parametrize("timestep", [1e-3, 1 / 3])
 def test_rounding_does_not_take_a_time_from_its_step(timestep: float) -> None:
     """Times as people write them, and as clocks that add up timesteps count: all are the steps that were meant."""
     steps, scene = np.arange(29_900, 30_000), pendulum(gravity=0.0)
@@ -118,18 +97,6 @@ def test_a_run_repeats_to_the_bit_alone_and_beside_another(rolling: str, integra
     first = run(0)
     with ThreadPoolExecutor(2) as pool:
         assert all(np.array_equal(first, each) for each in [run(0), *pool.map(run, range(2))])
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_a_good_run_is_trusted_and_makes_no_second_one_unasked(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[Second] = []
-    second = Second.of
-    monkeypatch.setattr(Second, "of", lambda run: made.append(second(run)) or made[-1])
-    run = simulate(SCENES[name], 1, 0.5)
-    assert not made
-    assert run.trusted, run.warnings
-    assert run.error_estimate == run.error_estimate == made[0].error
-    assert len(made) == 1
 
 
 @pytest.mark.parametrize(
@@ -163,7 +130,6 @@ HOLES = {
     "two turns in a step of Euler": lambda: simulate(
         frozen(incline=0.0), 0.003, 0.0, 4 * math.pi / 1e-3, integrator="Euler"
     ),
-    "four turns in a step of RK4": lambda: simulate(frozen(incline=0.0), 0.003, 0.0, 8 * math.pi / 1e-3),
     "34 turns in a step, whose parts are nearly whole turns too": lambda: simulate(
         frozen(incline=0.0), 0.003, 0.0, 68 * math.pi / 1e-3, integrator="Euler"
     ),
@@ -270,7 +236,7 @@ def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.Mon
     assert run.warnings == ("a run at other timesteps diverges: take a much smaller timestep or a better integrator",)
 
 
-@pytest.mark.parametrize("gravity", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("gravity", [1e-3, 1e3])
 @pytest.mark.parametrize("scene", [frozen, pendulum])
 def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: float) -> None:
     """In units of sqrt(a/g) the motion is that on Earth; MuJoCo's solver has an acceleration in its tolerance.
