@@ -50,13 +50,6 @@ def test_the_polynomial_is_a_step_of_the_method(integrator: str, z: complex) -> 
     assert abs(complex(by_stages(integrator, z)) - value) <= FEW * size
 
 
-@pytest.mark.parametrize(("integrator", "order"), [("RK4", 4), ("DOP853", 8)])
-def test_the_polynomial_is_the_exponential_up_to_the_order_and_no_further(integrator: str, order: int) -> None:
-    of_exponential = [c * math.factorial(k) for k, c in enumerate(polynomial(integrator))] + [0.0]
-    assert of_exponential[: order + 1] == pytest.approx([1.0] * (order + 1), rel=1e-13)  # the tableau has 16 digits
-    assert abs(of_exponential[order + 1] - 1) > 1e-3
-
-
 @pytest.mark.parametrize("integrator", RUNGE_KUTTA)
 @pytest.mark.parametrize(("stiffness", "damping"), [(0.5, 0.0), (0.7, 4.0)])
 def test_eigenvalues_of_a_step_are_those_of_the_polynomial(integrator: str, stiffness: float, damping: float) -> None:
@@ -71,13 +64,6 @@ def test_semi_implicit_euler_is_velocity_first() -> None:
     q, v = 1.3, -0.4
     new = v - stiffness * q - damping * v
     assert amplification("Euler", stiffness, damping) @ [q, v] == pytest.approx([q + new, new], rel=FEW)
-
-
-def test_several_coordinates_are_stepped_as_each_alone() -> None:
-    both = amplification("RK4", np.diag([0.2, 0.9]), np.diag([0.1, 0.0]))
-    for place, (stiffness, damping) in enumerate([(0.2, 0.1), (0.9, 0.0)]):
-        mine = both[np.ix_([place, place + 2], [place, place + 2])]
-        assert mine == pytest.approx(amplification("RK4", stiffness, damping), rel=FEW, abs=FEW)
 
 
 def test_limits_on_the_imaginary_axis() -> None:

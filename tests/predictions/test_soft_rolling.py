@@ -86,17 +86,6 @@ def test_a_step_is_the_one_that_mujoco_takes(rolling: Rolling, integrator: Integ
     assert (np.abs(found - wanted) <= allowed).all()
 
 
-def test_a_short_step_has_the_modes_of_the_scene() -> None:
-    """The logarithms of the eigenvalues over the timestep, of a step so short that constraints are hard beside it."""
-    scene = sliding(can=Can.sheet_metal(), damping=1e-3)
-    timestep, tilt = 1e-4, scene.terminal_tilt()
-    for system in (soft_rolling.by_coordinates(scene, tilt), soft_rolling.by_equality(scene, excess=0.0, angle=tilt)):
-        step = system.step("RK4", spring(2 * timestep, 1.0, MAX_IMPEDANCE), timestep)
-        rates = np.log(np.linalg.eigvals(step).astype(complex)) / timestep
-        for mode in scene.modes():
-            assert np.abs(rates - mode).min() <= 1e-6 * abs(mode)
-
-
 def test_implicit_damping_does_not_save_a_hard_equality() -> None:
     """The limits that the document tells, in rates of the fast mode."""
     scene = sliding(can=Can.sheet_metal(), damping=100.0)
