@@ -63,11 +63,3 @@ def test_a_set_up_comes_back_from_a_run_that_failed() -> None:
     with Prepared.borrowed(SCENES[1], SETTINGS[0]) as prepared:
         assert prepared is failed
         assert bits(prepared) == bits(Prepared(SCENES[1], SETTINGS[0]))
-
-
-def test_one_setting_may_follow_another() -> None:
-    """Of a kind are all that have the same elements, whatever the integrator and its steps."""
-    for setting in (SETTINGS[0], SETTINGS[2], Setting(), SETTINGS[0]):
-        with Prepared.borrowed(SCENES[1], setting) as prepared:
-            assert bits(prepared) == bits(Prepared(SCENES[1], setting))
-    assert len(prepare._idle) == 1

@@ -186,16 +186,6 @@ def test_what_a_run_says_of_itself_does_not_depend_on_its_samples(rolling: str, 
     assert one.rolls_until(0.3) == pytest.approx(all_samples.rolls_until(0.3), rel=1e-6)
 
 
-def test_slip_of_a_sliding_contact_is_coulomb_s() -> None:
-    """Footnote 7: below mu = tan(alpha) the frozen can slides away from its equilibrium, above it stays."""
-    scene = frozen()
-    mu = math.tan(scene.incline)
-    above = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=1.02 * mu)
-    below = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=0.98 * mu)
-    assert np.abs(above.slip).max() < 1e-6 * scene.can.radius
-    assert np.abs(below.slip).max() > 1e-2 * scene.can.radius
-
-
 @pytest.mark.slow
 def test_rolls_until_is_where_theory_says() -> None:
     run = simulate(frozen(), 1, math.pi, tolerance=1e-9)
