@@ -1,12 +1,9 @@
 """The compiled integrator: against SciPy's on the same equations, its continuous output, its limits."""
 
-import math
-from collections.abc import Callable
-
 import mujoco
 import numpy as np
 import pytest
-from scipy.integrate import DOP853, solve_ivp
+from scipy.integrate import DOP853
 
 from mjbeer import Can, Scene, exact, frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError
@@ -18,32 +15,20 @@ from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
 
-def slope(scene: Scene) -> Callable[[float, np.ndarray], np.ndarray]:
-    """The rates of (u, phi, u_dot, phi_dot) by theory."""
-    return lambda _, y: np.concatenate([y[2:], accelerations(scene, y[1], y[3], 0.0)])
-
-
 def test_fixed_step_is_scipy_s_step() -> None:
     """One step of the same method from the same state on hand-derived equations: equal but for rounding."""
     scene, step, begin = frozen(), 2e-2, np.array([0.0, 1.0, 0.0, 0.5])
-    reference = DOP853(slope(scene), 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
+
+    def slope(_: float, y: np.ndarray) -> np.ndarray:
+        return np.concatenate([y[2:], accelerations(scene, y[1], y[3], y[2])])
+
+    reference = DOP853(slope, 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
     model = build(scene)
     ours = integrate(model, start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), timestep=step)
     # Twelve slopes of size 50 and 5 times a step of 0.02, each with the rounding of its forward dynamics.
     assert ours[2] == pytest.approx(reference.y[1::2], rel=1e-13)
     assert ours[1] == pytest.approx(reference.dense_output()(step / 3)[1::2], rel=1e-13)
-
-
-def test_adaptive_steps_agree_with_scipy_s() -> None:
-    scene, times = sliding(), np.linspace(0, 2, 101)
-    model = build(scene)
-    ours = read(model, scene, Integrator(model).run(start(model, scene, 1.0, 0.0), times, tolerance=1e-11), times).phi
-    begin = np.array([scene.load.offset * math.sin(1.0), 1.0, 0.0, 0.0])
-    theirs = solve_ivp(slope(scene), (0, 2), begin, "DOP853", times, rtol=1e-11, atol=1e-11).y[1]
-    truth = exact(scene, times, 1.0).phi
-    # Step control is SciPy's, so both should be off by about as much; 3 allows for the different scales.
-    assert np.abs(ours - truth).max() <= 3 * np.abs(theirs - truth).max() + 1e-13
 
 
 def test_continuous_output_is_of_seventh_order() -> None:
