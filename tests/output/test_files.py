@@ -23,33 +23,30 @@ with files.locked(pathlib.Path(sys.argv[1])):
 """
 
 
-def test_a_file_is_written_into_new_folders(tmp_path: pathlib.Path) -> None:
-    target = tmp_path / "a" / "b" / "motion.csv"
-    files.write(target, "φ\n")
+@pytest.mark.parametrize("mask", [0o022, 0o000])
+def test_a_file_is_written_into_new_folders_and_any_user_s_permissions(tmp_path: pathlib.Path, mask: int) -> None:
+    target, before = tmp_path / "a" / "b" / "motion.csv", os.umask(mask)
+    try:
+        files.write(target, "φ\n")
+    finally:
+        assert os.umask(before) == mask
     assert target.read_bytes() == "φ\n".encode()
     assert os.listdir(target.parent) == ["motion.csv"]
-
-
-def test_the_temporary_file_is_a_neighbour_with_the_same_suffix(tmp_path: pathlib.Path) -> None:
-    # Only within a file system is a rename atomic; ffmpeg takes the format from the suffix.
-    with files.whole(tmp_path / "film.mp4") as temporary:
-        assert temporary.parent == tmp_path
-        assert temporary.suffix == ".mp4"
-        assert not (tmp_path / "film.mp4").exists()
-        temporary.write_text("new")
-    assert os.listdir(tmp_path) == ["film.mp4"]
+    assert stat.S_IMODE(target.stat().st_mode) == 0o666 & ~mask
 
 
 def test_two_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
     """It is whole whenever it is looked at: the one, and then the other."""
-    target = tmp_path / "motion.csv"
+    target = tmp_path / "film.mp4"
     with files.whole(target) as one:
+        # Only within a file system is a rename atomic; ffmpeg takes the format from the suffix.
+        assert (one.parent, one.suffix) == (tmp_path, ".mp4")
         with files.whole(target) as other:
             one.write_text("one")
             other.write_text("other")
         assert target.read_text() == "other"
     assert target.read_text() == "one"
-    assert os.listdir(tmp_path) == ["motion.csv"]
+    assert os.listdir(tmp_path) == ["film.mp4"]
 
 
 @pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
@@ -69,81 +66,47 @@ def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path,
     assert os.listdir(tmp_path) == ["film.mp4"]
 
 
-def test_a_full_disk_is_an_output_error(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(path: pathlib.Path, text: str, **_: object) -> int:
-        path.write_bytes(text.encode()[:3])
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+def full(*_: object, **__: object) -> None:
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
+
+def closed(*_: object, **__: object) -> None:
+    raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "fault", "reason"),
+    [
+        (pathlib.Path, "write_text", full, "No space left on device"),
+        (os, "fsync", full, "No space left on device"),  # what has its name is on the disk, over a network too
+        (pathlib.Path, "touch", closed, "Permission denied"),  # to the superuser no folder is closed
+    ],
+)
+def test_a_disk_that_does_not_take_it_is_an_output_error(
+    where: object, name: str, fault: object, reason: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = tmp_path / "motion.csv"
     target.write_text("old")
     with monkeypatch.context() as patched:
-        patched.setattr(pathlib.Path, "write_text", full)
+        patched.setattr(where, name, fault)
         with pytest.raises(OutputError) as caught:
             files.write(target, "new and longer")
-    assert str(caught.value) == f"cannot write {target}: No space left on device"
+    assert str(caught.value) == f"cannot write {target}: {reason}"
     assert target.read_text() == "old"
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
-def test_what_has_its_name_is_on_the_disk(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """And a disk that turns out to be full only then, as over a network, is one of the faults."""
-    target = tmp_path / "motion.csv"
-    target.write_text("old")
-    seen = []
-
-    def sync(file: int) -> None:
-        seen.append((os.fstat(file).st_size, target.read_text()))
-        if len(seen) > 1:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr(os, "fsync", sync)
-    files.write(target, "new")
-    assert target.read_text() == "new"
-    with pytest.raises(OutputError, match="No space left on device"):
-        files.write(target, "newer")
-    assert seen == [(3, "old"), (5, "new")]
-    assert os.listdir(tmp_path) == ["motion.csv"]
-    assert target.read_text() == "new"
-
-
-@pytest.mark.parametrize("mask", [0o022, 0o077, 0o000])
-def test_permissions_are_those_of_any_new_file(tmp_path: pathlib.Path, mask: int) -> None:
-    before = os.umask(mask)
-    try:
-        files.write(tmp_path / "motion.csv", "")
-    finally:
-        assert os.umask(before) == mask
-    assert stat.S_IMODE((tmp_path / "motion.csv").stat().st_mode) == 0o666 & ~mask
-
-
-def test_a_device_is_not_replaced_by_a_file(tmp_path: pathlib.Path) -> None:
-    pipe = tmp_path / "pipe"
-    os.mkfifo(pipe)
-    with pytest.raises(OutputError, match="pipe: it is not a regular file"):
-        files.write(pipe, "")
-    assert pipe.is_fifo()
-
-
-def test_a_link_stays_and_leads_to_the_new_file(tmp_path: pathlib.Path) -> None:
-    link, target = tmp_path / "link.csv", tmp_path / "far" / "motion.csv"
+def test_a_link_stays_and_leads_to_the_new_file_and_a_device_is_not_replaced(tmp_path: pathlib.Path) -> None:
+    link, target, pipe = tmp_path / "link.csv", tmp_path / "far" / "motion.csv", tmp_path / "pipe"
     link.symlink_to(target)
     for text in ("made", "replaced"):
         files.write(link, text)
         assert link.is_symlink()
         assert target.read_text() == text
-
-
-def test_a_folder_that_may_not_be_written_to_is_an_output_error(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # To the superuser no folder is closed, so the system's answer is imitated.
-    def refuse(path: pathlib.Path, *_: object, **__: object) -> None:
-        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
-
-    monkeypatch.setattr(pathlib.Path, "touch", refuse)
-    with pytest.raises(OutputError) as caught:
-        files.write(tmp_path / "motion.csv", "")
-    assert str(caught.value) == f"cannot write {tmp_path / 'motion.csv'}: Permission denied"
+    os.mkfifo(pipe)
+    with pytest.raises(OutputError, match="pipe: it is not a regular file"):
+        files.write(pipe, "")
+    assert pipe.is_fifo()
 
 
 @pytest.mark.parametrize("command", ["benchmark", "stability"])
@@ -160,12 +123,8 @@ def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
         assert capsys.readouterr().err == f"mjbeer: cannot write to {folder}: another command is at work there\n"
         assert os.listdir(folder) == [".lock"]
         interrupt(holder, signal.SIGKILL)
-    with files.locked(folder):
-        pass
-    with files.locked(folder):
-        pass
-
-
-def test_an_error_in_a_locked_folder_is_its_own(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(OSError, match="mine"), files.locked(tmp_path):
+    for _ in range(2):
+        with files.locked(folder):
+            pass
+    with pytest.raises(OSError, match="mine"), files.locked(folder):
         raise OSError("mine")

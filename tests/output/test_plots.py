@@ -8,7 +8,6 @@ import matplotlib as mpl
 import pytest
 from PIL import Image
 
-from mjbeer.exceptions import OutputError
 from mjbeer.output import plots
 from tests.support import figures
 
@@ -35,16 +34,6 @@ def test_an_error_while_drawing_leaves_no_file_and_no_style(tmp_path: pathlib.Pa
         raise ZeroDivisionError
     assert not list(tmp_path.iterdir())
     assert dict(mpl.rcParams) == before
-
-
-def test_a_folder_that_cannot_be_written_says_so(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(OutputError, match="cannot write"):
-        draw(tmp_path / "file" / "plot")
-
-
-def test_colours_differ() -> None:
-    assert len(set(plots.COLOURS)) == len(plots.COLOURS)
 
 
 def test_a_title_and_a_scene_stand_above_the_axes(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:

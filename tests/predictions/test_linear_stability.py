@@ -33,23 +33,25 @@ def by_stages(integrator: str, z: complex) -> mpmath.mpc:
         return 1 + weighted(weights, slopes)
 
 
+def limit_by_stages(integrator: str, direction: complex, low: float, high: float) -> float:
+    """How far z may go in a direction until a step grows."""
+
+    def growth(size: mpmath.mpf) -> mpmath.mpf:
+        return abs(by_stages(integrator, mpmath.mpmathify(direction) * size)) - 1
+
+    return float(mpmath.findroot(growth, (low, high), solver="anderson"))
+
+
 @pytest.mark.parametrize("integrator", RUNGE_KUTTA)
-@pytest.mark.parametrize("z", [0.3j, 2.5j, -1.0, -2.7, -0.4 + 1.1j])
+@pytest.mark.parametrize("z", [2.5j, -2.7, -0.4 + 1.1j])
 def test_the_polynomial_is_a_step_of_the_method(integrator: str, z: complex) -> None:
     size = sum(abs(c * z**k) for k, c in enumerate(polynomial(integrator)))
     value = np.polyval(polynomial(integrator)[::-1], z)
     assert abs(complex(by_stages(integrator, z)) - value) <= FEW * size
 
 
-@pytest.mark.parametrize(("integrator", "order"), [("RK4", 4), ("DOP853", 8)])
-def test_the_polynomial_is_the_exponential_up_to_the_order_and_no_further(integrator: str, order: int) -> None:
-    of_exponential = [c * math.factorial(k) for k, c in enumerate(polynomial(integrator))] + [0.0]
-    assert of_exponential[: order + 1] == pytest.approx([1.0] * (order + 1), rel=1e-13)  # the tableau has 16 digits
-    assert abs(of_exponential[order + 1] - 1) > 1e-3
-
-
 @pytest.mark.parametrize("integrator", RUNGE_KUTTA)
-@pytest.mark.parametrize(("stiffness", "damping"), [(0.5, 0.0), (2.0, 0.3), (0.7, 4.0)])
+@pytest.mark.parametrize(("stiffness", "damping"), [(0.5, 0.0), (0.7, 4.0)])
 def test_eigenvalues_of_a_step_are_those_of_the_polynomial(integrator: str, stiffness: float, damping: float) -> None:
     roots = np.roots([1, damping, stiffness])
     wanted = np.sort_complex(np.polyval(polynomial(integrator)[::-1], roots))
@@ -64,44 +66,29 @@ def test_semi_implicit_euler_is_velocity_first() -> None:
     assert amplification("Euler", stiffness, damping) @ [q, v] == pytest.approx([q + new, new], rel=FEW)
 
 
-def test_several_coordinates_are_stepped_as_each_alone() -> None:
-    both = amplification("RK4", np.diag([0.2, 0.9]), np.diag([0.1, 0.0]))
-    for place, (stiffness, damping) in enumerate([(0.2, 0.1), (0.9, 0.0)]):
-        mine = both[np.ix_([place, place + 2], [place, place + 2])]
-        assert mine == pytest.approx(amplification("RK4", stiffness, damping), rel=FEW, abs=FEW)
-
-
-@pytest.mark.parametrize(("integrator", "limit"), [("Euler", 2.0), ("discrete", 2.0), ("RK4", 2 * math.sqrt(2))])
-def test_limits_on_the_imaginary_axis(integrator: str, limit: float) -> None:
+def test_limits_on_the_imaginary_axis() -> None:
     """Bounded just below, not just above; an eigenvalue that is almost double is known to the root of rounding."""
-    assert spectral_radius(amplification(integrator, (limit * (1 - 1e-6)) ** 2)) <= 1 + 4 * EPS
-    assert spectral_radius(amplification(integrator, (limit * (1 + 1e-6)) ** 2)) > 1 + 1e-6
-    assert linear_stability.stable_limit(integrator) == pytest.approx(limit, rel=2e-3)
+    for integrator, limit in (("Euler", 2.0), ("discrete", 2.0), ("RK4", 2 * math.sqrt(2))):
+        assert spectral_radius(amplification(integrator, (limit * (1 - 1e-6)) ** 2)) <= 1 + 4 * EPS
+        assert spectral_radius(amplification(integrator, (limit * (1 + 1e-6)) ** 2)) > 1 + 1e-6
+        assert linear_stability.stable_limit(integrator) == pytest.approx(limit, rel=2e-3)
+    assert linear_stability.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
 
 
-def test_the_limit_of_dop853_is_where_its_stages_say() -> None:
-    def excess(swing: mpmath.mpf) -> mpmath.mpf:
-        return abs(by_stages("DOP853", mpmath.mpc(0, swing))) - 1
-
-    limit = float(mpmath.findroot(excess, (5.9, 6.0), solver="anderson"))
-    assert linear_stability.stable_limit("DOP853") == pytest.approx(limit, rel=3e-3)
+@pytest.mark.parametrize(("integrator", "low", "high"), [("RK4", 2.7, 2.8), ("DOP853", 6.3, 6.5)])
+def test_friction_rows_end_where_the_real_axis_does(integrator: str, low: float, high: float) -> None:
+    wanted = limit_by_stages(integrator, -1, low, high) / 2
+    assert soft_constraint.stable_slip(integrator) == pytest.approx(wanted, rel=1e-8)
 
 
-@pytest.mark.parametrize("integrator", RUNGE_KUTTA)
-def test_friction_rows_end_where_the_real_axis_does(integrator: str) -> None:
-    guess = {"RK4": (2.7, 2.8), "DOP853": (6.3, 6.5)}[integrator]
-    limit = mpmath.findroot(lambda x: abs(by_stages(integrator, -x)) - 1, guess, solver="anderson")
-    assert soft_constraint.stable_slip(integrator) == pytest.approx(float(limit) / 2, rel=1e-8)
-
-
-@pytest.mark.parametrize("dampratio", [0.1, 0.354, 1.0, 3.0])
+@pytest.mark.parametrize("dampratio", [0.1, math.sqrt(1 / 8), 3.0])
 def test_the_limit_of_a_row_under_euler_is_the_closed_form(dampratio: float) -> None:
     wanted = 2 * dampratio * (math.sqrt(dampratio**2 + 1) - dampratio)
     assert soft_constraint.stable_ratio("Euler", dampratio) == pytest.approx(wanted, rel=1e-7)
 
 
-def test_refsafe_saves_damping_ratios_from_the_root_of_an_eighth_on() -> None:
-    assert soft_constraint.stable_ratio("Euler", math.sqrt(1 / 8)) == pytest.approx(0.5, rel=1e-7)
+def test_refsafe_is_two_timesteps_at_the_least() -> None:
+    """Enough for Euler from a damping ratio of the root of an eighth on, whose limit is one half."""
     assert soft_constraint.refsafe_timeconst(1e-4, 1e-3) == 2e-3
     assert soft_constraint.refsafe_timeconst(1e-2, 1e-3) == 1e-2
 
@@ -114,7 +101,7 @@ def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str
     assert soft_constraint.stable_timestep(integrator, soft, excess=10.0) > 2 * limit
 
 
-@pytest.mark.parametrize("timestep", [1e-4, 1e-2, 1.0])
+@pytest.mark.parametrize("timestep", [1e-4, 1.0])
 def test_discrete_bears_every_row(timestep: float) -> None:
     for row in (
         soft_constraint.spring(1e-5, 1.0, 0.9),
@@ -151,8 +138,3 @@ def test_motion_is_the_power_of_the_matrix() -> None:
     assert states.shape == (38, 2)
     for n in (0, 1, 17, 37):
         assert states[n] == pytest.approx(np.linalg.matrix_power(matrix, n) @ [1.0, 0.5], rel=1e-12)
-
-
-def test_what_is_exceeded_from_the_start_is_an_error() -> None:
-    with pytest.raises(ValueError, match="already"):
-        linear_stability.first(lambda x: x, 1.0, 2.0)

@@ -75,7 +75,7 @@ def step_of_theory(model: mujoco.MjModel, scene: Scene, rolling: Rolling, integr
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
 @pytest.mark.parametrize("integrator", ["Euler", "implicit", "implicitfast", "discrete", "RK4"])
-@pytest.mark.parametrize("damping", [1e-3, 0.1, 1.0])
+@pytest.mark.parametrize("damping", [1e-3, 1.0])
 def test_a_step_is_the_one_that_mujoco_takes(rolling: Rolling, integrator: Integrator, damping: float) -> None:
     """In contact on level ground, where friction is far from its cone's edge."""
     incline = 0.0 if rolling == "contact" else math.radians(10)
@@ -86,40 +86,22 @@ def test_a_step_is_the_one_that_mujoco_takes(rolling: Rolling, integrator: Integ
     assert (np.abs(found - wanted) <= allowed).all()
 
 
-@pytest.mark.parametrize("rolling", ["reduced", "equality"])
-def test_a_short_step_has_the_modes_of_the_scene(rolling: Rolling) -> None:
-    """The logarithms of the eigenvalues over the timestep, of a step so short that constraints are hard beside it."""
-    scene = sliding(can=Can.sheet_metal(), damping=1e-3)
-    timestep, tilt = 1e-4, scene.terminal_tilt()
-    systems = {
-        "reduced": soft_rolling.by_coordinates(scene, tilt),
-        "equality": soft_rolling.by_equality(scene, excess=0.0, angle=tilt),
-    }
-    step = systems[rolling].step("RK4", spring(2 * timestep, 1.0, MAX_IMPEDANCE), timestep)
-    rates = np.log(np.linalg.eigvals(step).astype(complex)) / timestep
-    for mode in scene.modes():
-        assert np.abs(rates - mode).min() <= 1e-6 * abs(mode)
-
-
 def test_implicit_damping_does_not_save_a_hard_equality() -> None:
     """The limits that the document tells, in rates of the fast mode."""
     scene = sliding(can=Can.sheet_metal(), damping=100.0)
     tilt, fast = scene.terminal_tilt(), -scene.modes()[0].real
-    system = soft_rolling.by_equality(scene, excess=0.0, angle=tilt)
+    equality = soft_rolling.by_equality(scene, excess=0.0, angle=tilt)
+    reduced = soft_rolling.by_coordinates(scene, tilt)
 
-    def radius(integrator: Integrator, share: float) -> float:
+    def radius(integrator: Integrator, share: float, system: soft_rolling.System = equality) -> float:
         timestep = share / fast
         row = spring(stiffest(integrator, timestep), 1.0, MAX_IMPEDANCE)
-        return float(np.abs(np.linalg.eigvals(system.step(integrator, row, timestep))).max())
+        return spectral_radius(system.step(integrator, row, timestep))
 
     for integrator in ("Euler", "implicit", "implicitfast"):
         assert radius(integrator, 0.66) <= 1 + 1e-9 < 1.0005 < radius(integrator, 0.69)
     assert radius("discrete", 1e4) <= 1 + 1e-9
     for integrator, limit in (("RK4", 2.785), ("DOP853", 6.39)):
         assert radius(integrator, 0.99 * limit) <= 1 + 1e-9 < radius(integrator, 1.01 * limit)
-    reduced = soft_rolling.by_coordinates(scene, tilt)
-    row = spring(1.0, 1.0, MAX_IMPEDANCE)
-    for share, stable in ((1.99, True), (2.01, False)):
-        step = reduced.step("Euler", row, share / fast)
-        assert (np.abs(np.linalg.eigvals(step)).max() <= 1 + 1e-9) == stable
-        assert np.abs(np.linalg.eigvals(reduced.step("implicitfast", row, share / fast))).max() <= 1 + 1e-9
+    assert radius("Euler", 1.99, reduced) <= 1 + 1e-9 < radius("Euler", 2.01, reduced)
+    assert radius("implicitfast", 2.01, reduced) <= 1 + 1e-9

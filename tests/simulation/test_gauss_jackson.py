@@ -1,9 +1,7 @@
-"""The multistep integrator: its weights against published ones, its order, samples, start, and what it refuses."""
+"""The multistep integrator: its weights, its order, samples, start, and what it refuses."""
 
 import math
-from collections.abc import Callable
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,32 +9,14 @@ import pytest
 from mjbeer import exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
-from mjbeer.model.setting import ROLLINGS
 from mjbeer.model.state import read, start
 from mjbeer.simulation import gauss_jackson_kernel, tolerance
-from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.gauss_jackson_kernel import COUNT, series, weights
+from mjbeer.simulation.gauss_jackson_kernel import COUNT, weights
 from mjbeer.simulation.stepping import Recorder
 from mjbeer.studies.convergence import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
-from tests.support.scenes import SCENES
-
-# E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I: table III.1.1 (Adams-Bashforth),
-# table III.1.2 (Adams-Moulton), and section III.10 (Stormer's and Cowell's methods).
-PUBLISHED = {
-    (1, -1): "1 1/2 5/12 3/8 251/720 95/288 19087/60480 5257/17280 1070017/3628800",
-    (1, 0): "1 -1/2 -1/12 -1/24 -19/720 -3/160 -863/60480 -275/24192 -33953/3628800",
-    (2, -1): "1 0 1/12 1/12 19/240 3/40 863/12096 275/4032",
-    (2, 0): "1 -1 1/12 0 -1/240 -1/240 -221/60480 -19/6048",
-}
-
-
-@pytest.mark.parametrize(("power", "back"), PUBLISHED)
-def test_coefficients_of_differences_are_the_published_ones(power: int, back: int) -> None:
-    published = [Fraction(term) for term in PUBLISHED[power, back].split()]
-    assert series(power, back, len(published)) == published
 
 
 @pytest.mark.parametrize("power", [1, 2])
@@ -86,28 +66,6 @@ def test_the_error_falls_with_order_thirteen(scene: Scene) -> None:
     assert observed_order(steps[fitted], found[fitted]) == pytest.approx(13, abs=1)
 
 
-@pytest.mark.parametrize(("name", "phi0"), [("sliding", 3.0), ("frozen", math.pi), ("pendulum", 1.0), ("hoop", 0.5)])
-def test_a_quarter_millisecond_errs_like_rounding(name: str, phi0: float) -> None:
-    """Near the top a swing amplifies the rounding of its start by a thousand, and a roll-down by the angle squared."""
-    assert errors(SCENES[name], phi0, np.array([2.5e-4]), np.linspace(0, 2, 9))[0] < 3e-12
-
-
-def test_fewer_evaluations_than_dop853_for_the_same_error() -> None:
-    """To 1e-11 rad, with those of the start: by a factor of 1.8 or more."""
-    for scene in (sliding(), frozen()):
-        model, times = build(scene), np.linspace(0, 2, 9)
-        begin, truth = start(model, scene, 0.5, 0.0), exact(scene, times, 0.5)
-        taken = []
-        for method, ladder in ((GaussJackson(model), range(200, 640, 8)), (Integrator(model), range(80, 400, 8))):
-            counts = []
-            for steps in ladder:
-                states = method.run(begin, times, timestep=2 / steps)
-                if distance(read(model, scene, states, times), truth, scene.can.radius) < 1e-11:
-                    counts.append(method.evaluations)
-            taken.append(min(counts))
-        assert 1.8 * taken[0] < taken[1]
-
-
 def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
     """The polynomial of the last accelerations is that of the method, so that it adds next to nothing."""
     scene, step = frozen(), 5e-3
@@ -123,15 +81,6 @@ def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
         assert np.abs(found.phi_dot - truth.phi_dot).max() < 4 * 13 * worst[-1]
     assert 1e-12 < worst[0] < 1e-10
     assert worst[1] < 1.1 * worst[0]
-
-
-def test_the_first_steps_have_samples_too() -> None:
-    scene = sliding()
-    model = build(scene)
-    times = np.linspace(0, 12e-3, 50)
-    states = GaussJackson(model).run(start(model, scene, 1.0, 0.0), times, 1e-3)
-    assert (states[0] == start(model, scene, 1.0, 0.0)).all()
-    assert np.abs(read(model, scene, states, times).phi - exact(scene, times, 1.0).phi).max() < 1e-14
 
 
 def test_samples_and_watchers_change_no_bit() -> None:
@@ -155,10 +104,10 @@ def test_every_step_is_seen_once(last: int) -> None:
     ends, states = (np.concatenate(part) for part in zip(*seen, strict=True))
     assert ends == pytest.approx(times, rel=1e-15, abs=0)
     assert states == pytest.approx(found, rel=1e-13, abs=1e-13)
+    assert np.abs(found[:, 0] - exact(frozen(), times, 1.0).phi).max() < 1e-11
     if last > 20:
         # Six steps of DOP853 with samples in them, the accelerations of the start, and two evaluations a step.
         assert integrator.evaluations == 1 + 6 * 15 + COUNT + 2 * (len(times) - COUNT + gauss_jackson_kernel.LAG)
-        assert np.abs(found[:, 0] - exact(frozen(), times, 1.0).phi).max() < 1e-11
 
 
 def test_rounding_does_not_add_up() -> None:
@@ -177,64 +126,24 @@ def test_a_run_of_simulate_judges_itself() -> None:
     assert run.record.swing_error < 1e-5
 
 
-@pytest.mark.parametrize("timestep", [9e-3, 11e-3, 13e-3, 16e-3, 30e-3])
+@pytest.mark.parametrize("timestep", [9e-3, 13e-3, 30e-3])
 def test_a_timestep_that_is_too_large_is_seen(timestep: float) -> None:
     """Rolling down turns faster and faster, and the method becomes unstable in the middle of the run."""
     with pytest.raises(DivergenceError, match="diverged at t = "):
         simulate(frozen(), 2.0, math.pi, integrator="GaussJackson", timestep=timestep)
 
 
-@pytest.mark.parametrize("rolling", [way for way in ROLLINGS if way != "reduced"])
-def test_constraints_are_refused(rolling: str) -> None:
+@pytest.mark.parametrize("rolling", ["equality", "contact"])
+def test_constraints_and_damping_are_refused(rolling: str) -> None:
     with pytest.raises(ParameterError, match=f"rolling must be 'reduced' with it, got '{rolling}'; DOP853 takes any"):
         simulate(frozen(), 1.0, 1.0, rolling=rolling, integrator="GaussJackson")
     with pytest.raises(UnsupportedError, match="smooth motions only, and this model has constraints"):
         GaussJackson(build(frozen(), rolling))
-
-
-@pytest.mark.parametrize("place", ["dof_damping", "tendon_damping"])
-def test_damping_is_refused(place: str) -> None:
-    model = build(frozen())
-    getattr(model, place)[:] = 1e-3
-    with pytest.raises(UnsupportedError, match="undamped motions only, and this model has damping"):
-        GaussJackson(model)
-
-
-def test_a_timestep_whose_square_is_nothing_is_refused() -> None:
-    with pytest.raises(DivergenceError, match="could not start: its sums are not finite"):
-        GaussJackson(build(frozen())).run(np.array([1.0, 0.0]), np.array([0.0, 1e-170]), timestep=1e-170)
-
-
-@pytest.mark.parametrize(("error", "gain"), [(1e-6, 1.3), (1e-9, 1.6), (1e-12, 2.0)])
-def test_a_tolerance_takes_fewer_evaluations_with_it(
-    error: float, gain: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """All runs count: that of DOP853 which chooses the timestep, and those that agree."""
-    evaluations: list[int] = []
-    for integrator in (Integrator, GaussJackson):
-        monkeypatch.setattr(integrator, "run", counted(integrator, evaluations))
-    totals = {}
-    for name in ("GaussJackson", "DOP853"):
-        if name == "DOP853":
-            monkeypatch.setattr(tolerance, "_LOOSE", 0.0)
-        run = simulate(sliding(), 2.0, 1.0, tolerance=error)
-        assert run.integrator == name
-        totals[name] = sum(evaluations)
-        evaluations.clear()
-    assert totals["DOP853"] > gain * totals["GaussJackson"]
-
-
-def counted(integrator: Any, evaluations: list[int]) -> Callable[..., np.ndarray]:
-    """Return `run` of an integrator, which adds the evaluations of its own steps to a list."""
-    run = integrator.run
-
-    def look(self: Any, *arguments: Any, **named: Any) -> np.ndarray:
-        before = sum(evaluations)
-        states = run(self, *arguments, **named)
-        evaluations.append(self.evaluations - (sum(evaluations) - before))  # those of its starter are there already
-        return states
-
-    return look
+    for place in ("dof_damping", "tendon_damping"):
+        model = build(frozen())
+        getattr(model, place)[:] = 1e-3
+        with pytest.raises(UnsupportedError, match="undamped motions only, and this model has damping"):
+            GaussJackson(model)
 
 
 @pytest.mark.parametrize("constant", ["_ASTRAY", "_GAIN"])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mjbeer import Scene, frozen, pendulum, sliding
+from mjbeer import frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation import prepare
@@ -36,13 +36,10 @@ def bits(prepared: Prepared) -> bytes:
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
-    for scene in SCENES * 2:
+    for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
         with Prepared.borrowed(scene, setting) as prepared:
             assert bits(prepared) == bits(Prepared(scene, setting))
     assert len(prepare._idle) < len(SCENES)
-    for scene in DAMPED * 2:  # with drag, and then without
-        with Prepared.borrowed(scene, setting) as prepared:
-            assert bits(prepared) == bits(Prepared(scene, setting))
 
 
 def test_a_set_up_in_use_is_not_lent() -> None:
@@ -66,21 +63,3 @@ def test_a_set_up_comes_back_from_a_run_that_failed() -> None:
     with Prepared.borrowed(SCENES[1], SETTINGS[0]) as prepared:
         assert prepared is failed
         assert bits(prepared) == bits(Prepared(SCENES[1], SETTINGS[0]))
-
-
-def test_few_are_kept() -> None:
-    lent = [Prepared.borrowed(scene, setting) for scene in SCENES for setting in SETTINGS]
-    for each in lent:
-        each.__enter__()
-    for each in lent:
-        each.__exit__(None, None, None)
-    assert len(prepare._idle) == prepare._MOST_IDLE
-
-
-def test_one_setting_may_follow_another() -> None:
-    """Of a kind are all that have the same elements, whatever the integrator and its steps."""
-    scene: Scene = SCENES[1]
-    for setting in (SETTINGS[0], SETTINGS[2], Setting(), SETTINGS[0]):
-        with Prepared.borrowed(scene, setting) as prepared:
-            assert bits(prepared) == bits(Prepared(scene, setting))
-    assert len(prepare._idle) == 1

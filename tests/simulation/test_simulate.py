@@ -15,35 +15,27 @@ from mjbeer.cli.arguments import Motion, Sliding
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.run import Run, Second
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
 from tests.support import damped
-from tests.support.scenes import METAL, SCENES
+from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
 ALL = (*INTEGRATORS, "DOP853")
 
 
-def error(run: Run) -> float:
-    """The largest error of phi and u/a at the samples of a run, as a tolerance bounds it."""
-    start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
-    return distance(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_a_run_starts_where_theory_starts(name: str) -> None:
-    run = simulate(SCENES[name], 0.1, 0.8, 3.0)
-    truth = exact(SCENES[name], np.array([0.0]), 0.8, 3.0)
+@pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
+def test_a_run_starts_where_theory_starts_and_is_trusted(scene: Scene) -> None:
+    run, truth = simulate(scene, 0.1, 0.8, 3.0), exact(scene, np.array([0.0]), 0.8, 3.0)
     for each in ("u", "phi", "u_dot", "phi_dot", "roll", "roll_dot"):
         assert getattr(run, each)[0] == pytest.approx(getattr(truth, each)[0], rel=4e-16)
+    assert simulate(scene, 1, 0.5).trusted
 
 
 def test_the_command_line_has_the_same_defaults() -> None:
     ours, theirs = simulate(sliding()), Motion(Sliding()).simulate()
     assert (ours.time[-1], ours.phi0) == (2.0, math.radians(60))
-    # Degrees and back are a rounding of the start.
-    assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)
+    assert theirs.phi == pytest.approx(ours.phi, abs=1e-14)  # degrees and back are a rounding of the start
 
 
 @pytest.mark.parametrize("integrator", ALL)
@@ -60,26 +52,19 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"duration": 0}, r"duration must be greater than 0 \[s\], got 0"),
         ({"duration": math.inf}, "duration must be a finite number"),
         ({"duration": 1e6, "timestep": 1e-6}, "too many timesteps of 1e-06 s: at most 1e.08, or say with times="),
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
-        ({"phi_dot0": 1e200}, r"phi_dot0 must be between -1e\+06 and 1e\+06 \[rad/s\], got 1e\+200"),
         ({"scene": "frozen"}, "scene must be a Scene, got 'frozen'"),
-        ({"softness": "hard"}, "softness must be a Softness, got 'hard'"),
-        ({"tolerance": 0}, r"tolerance must be greater than 0 \[rad\], got 0"),
         ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4': did you mean 'RK4'\?"),
         ({"integrator": "DOP853", "tolerance": 1e-6}, "a tolerance chooses the integrator .* got integrator 'DOP853'"),
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
         ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at 0.0105 s; integrator="DOP853"'),
-        ({"times": [5e-10]}, "multiples of the timestep 0.001 s only, not at 5e-10 s"),
         (
             {"times": [0.01, 0.01 * (1 + 1e-12)]},
             r"times must be at least a timestep of 0\.001 s apart, got 0\.01 s and 0\.01",
         ),
-        ({"duration": 1e15, "times": [1e15]}, r"times must be within 1e\+12 timesteps of 0\.001 s"),
-        ({"rolling": "reduced", "tolerance": 1e-6, "timestep": math.nan}, "timestep must be .*, got nan"),
         ({"friction": 1e-6}, r"friction must be at least 1e-05, MuJoCo's smallest \(mjMINMU\), got 1e-06"),
     ],
 )
@@ -88,7 +73,7 @@ def test_bad_input_says_what_is_allowed(arguments: dict[str, object], message: s
         simulate(**({"scene": frozen(), "duration": 0.1, "phi0": 1.0} | arguments))
 
 
-@pytest.mark.parametrize("timestep", [0.1, 1e-3, 1 / 3])
+@pytest.mark.parametrize("timestep", [1e-3, 1 / 3])
 def test_rounding_does_not_take_a_time_from_its_step(timestep: float) -> None:
     """Times as people write them, and as clocks that add up timesteps count: all are the steps that were meant."""
     steps, scene = np.arange(29_900, 30_000), pendulum(gravity=0.0)
@@ -120,18 +105,6 @@ def test_a_run_repeats_to_the_bit_alone_and_beside_another(rolling: str, integra
         assert all(np.array_equal(first, each) for each in [run(0), *pool.map(run, range(2))])
 
 
-@pytest.mark.parametrize("name", SCENES)
-def test_a_good_run_is_trusted_and_makes_no_second_one_unasked(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[Second] = []
-    second = Second.of
-    monkeypatch.setattr(Second, "of", lambda run: made.append(second(run)) or made[-1])
-    run = simulate(SCENES[name], 1, 0.5)
-    assert not made
-    assert run.trusted, run.warnings
-    assert run.error_estimate == run.error_estimate == made[0].error
-    assert len(made) == 1
-
-
 @pytest.mark.parametrize(
     ("run", "reason"),
     [
@@ -154,28 +127,25 @@ def test_a_run_that_is_not_to_be_relied_on_warns_when_it_is_made(run: Callable[[
     assert any(re.search(reason, each) for each in trajectory.warnings)
 
 
+LEVEL, TURN = frozen(incline=0.0), 2 * math.pi / 1e-3
 HOLES = {
-    "slips between samples": lambda: simulate(frozen(), 0.5, 1.0, rolling="contact", friction=0.05, times=[0.5]),
-    "hops between samples": lambda: simulate(hoop(), 1.0, 3.0, rolling="contact", timestep=1e-4, times=[1.0]),
-    "decays before the samples": lambda: simulate(
-        frozen(), 3000.0, 1.0, timestep=0.1, times=0.1 * np.arange(29900, 30000)
-    ),
-    "two turns in a step of Euler": lambda: simulate(
-        frozen(incline=0.0), 0.003, 0.0, 4 * math.pi / 1e-3, integrator="Euler"
-    ),
-    "four turns in a step of RK4": lambda: simulate(frozen(incline=0.0), 0.003, 0.0, 8 * math.pi / 1e-3),
-    "34 turns in a step, whose parts are nearly whole turns too": lambda: simulate(
-        frozen(incline=0.0), 0.003, 0.0, 68 * math.pi / 1e-3, integrator="Euler"
-    ),
+    "slips between samples": (frozen(), 0.5, 1.0, 0.0, {"rolling": "contact", "friction": 0.05, "times": [0.5]}),
+    "hops between samples": (hoop(), 1.0, 3.0, 0.0, {"rolling": "contact", "timestep": 1e-4, "times": [1.0]}),
+    "decays before the samples": (frozen(), 3e3, 1.0, 0.0, {"timestep": 0.1, "times": 0.1 * np.arange(29900, 30000)}),
+    "two turns in a step": (LEVEL, 0.003, 0.0, 2 * TURN, {"integrator": "Euler"}),
+    "four in one of RK4": (LEVEL, 0.003, 0.0, 4 * TURN, {}),
+    "34 turns, whose parts are nearly whole turns too": (LEVEL, 0.003, 0.0, 34 * TURN, {"integrator": "Euler"}),
 }
 
 
-@pytest.mark.parametrize("run", HOLES.values(), ids=HOLES.keys())
-def test_a_wrong_run_is_never_trusted(run: Callable[[], Run]) -> None:
+@pytest.mark.parametrize(("scene", "duration", "phi0", "phi_dot0", "setting"), HOLES.values(), ids=HOLES)
+def test_a_wrong_run_is_never_trusted(
+    scene: Scene, duration: float, phi0: float, phi_dot0: float, setting: dict[str, Any]
+) -> None:
     """Each of these was once trusted, or might be. The least error among them is 0.45 rad."""
-    made = run()
-    assert error(made) > 0.4
-    assert not made.trusted
+    run = simulate(scene, duration, phi0, phi_dot0, **setting)
+    assert error(run) > 0.4
+    assert not run.trusted
 
 
 def test_far_turns_in_a_step_of_dop853_are_no_alarm() -> None:
@@ -220,16 +190,6 @@ def test_what_a_run_says_of_itself_does_not_depend_on_its_samples(rolling: str, 
     assert one.rolls_until(0.3) == pytest.approx(all_samples.rolls_until(0.3), rel=1e-6)
 
 
-def test_slip_of_a_sliding_contact_is_coulomb_s() -> None:
-    """Footnote 7: below mu = tan(alpha) the frozen can slides away from its equilibrium, above it stays."""
-    scene = frozen()
-    mu = math.tan(scene.incline)
-    above = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=1.02 * mu)
-    below = simulate(scene, 1, scene.equilibrium(), rolling="contact", friction=0.98 * mu)
-    assert np.abs(above.slip).max() < 1e-6 * scene.can.radius
-    assert np.abs(below.slip).max() > 1e-2 * scene.can.radius
-
-
 @pytest.mark.slow
 def test_rolls_until_is_where_theory_says() -> None:
     run = simulate(frozen(), 1, math.pi, tolerance=1e-9)
@@ -270,7 +230,7 @@ def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.Mon
     assert run.warnings == ("a run at other timesteps diverges: take a much smaller timestep or a better integrator",)
 
 
-@pytest.mark.parametrize("gravity", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("gravity", [1e-3, 1e3])
 @pytest.mark.parametrize("scene", [frozen, pendulum])
 def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: float) -> None:
     """In units of sqrt(a/g) the motion is that on Earth; MuJoCo's solver has an acceleration in its tolerance.

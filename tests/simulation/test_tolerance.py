@@ -18,7 +18,7 @@ from mjbeer.theory.exact import phi_error
 from mjbeer.theory.liquid import Damping
 from mjbeer.theory.trajectory import distance
 from tests.support import damped
-from tests.support.scenes import METAL, scenes
+from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow
 
@@ -26,12 +26,6 @@ pytestmark = pytest.mark.slow
 # be all of it: a motion beside a separatrix, of which nobody knows that many digits.
 WORST_CONDITION = 1e13
 NEARBY = 1e-8
-
-
-def error(run: Run) -> float:
-    """The largest error of phi and u/a at the samples of a run, as a tolerance bounds it."""
-    start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
-    return distance(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)
 
 
 def assert_kept(run: Run, tolerance: float) -> None:
@@ -58,7 +52,7 @@ def test_true_error_is_below_the_tolerance(
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9, 1e-12])
-@pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum()])
+@pytest.mark.parametrize("scene", [sliding(), frozen()])
 def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> None:
     run = simulate(scene, 2, 1.0, tolerance=tolerance)
     assert run.error_estimate is not None
@@ -93,16 +87,14 @@ def test_what_is_brief_is_seen_whatever_is_asked_for(
     assert found == [met] * 3
 
 
-def test_contact_is_not_smooth_and_says_how_far_it_got(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With the patience of a test: where the can parts from the incline no step is small enough."""
+def test_what_cannot_be_met_is_refused_and_says_how_far_it_got(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More digits than a double has; and, with the patience of a test, a can that parts from the incline, where no step
+    is small enough."""
+    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
+        simulate(sliding(), 1, 1.0, tolerance=1e-17)
     monkeypatch.setattr(tolerances, "_EVALUATIONS", 200_000)
     with pytest.raises(ToleranceError, match=r"tolerance 1e-12 rad is not reached: .* given up at t = 0.7\d+ s"):
         simulate(frozen(), 1.2, math.pi, rolling="contact", tolerance=1e-12)
-
-
-def test_more_digits_than_a_double_has_are_refused() -> None:
-    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
-        simulate(sliding(), 1, 1.0, tolerance=1e-17)
 
 
 @pytest.mark.parametrize("phi0", [0.0, 1e-30])
@@ -194,7 +186,7 @@ def test_damping_that_is_too_stiff_is_refused_at_once() -> None:
     assert np.abs(run.phi_dot - run.u_dot / METAL.radius)[10:].max() < 1e-3
 
 
-@pytest.mark.parametrize("phi", [0.0, 1.0, 3.0])
+@pytest.mark.parametrize("phi", [0.0, 3.0])
 def test_stiffness_is_the_fast_root(phi: float) -> None:
     """That of the linearized equations; the others are of the order of the swing's rate, 20 1/s."""
     scene, aside = sliding(0.2, can=METAL, damping=Damping(30.0, 0.2, 0.1)), 1e-6
@@ -206,23 +198,17 @@ def test_stiffness_is_the_fast_root(phi: float) -> None:
     assert stiffness(scene, np.array(phi), rates[0], rates[1]) == pytest.approx(root, rel=1e-4)
 
 
-@pytest.mark.parametrize("damping", [1e-12, 1e-3, 0.1])
-@pytest.mark.parametrize("integrator", ["RK4", "DOP853"])
-def test_an_accurate_damped_run_is_trusted(integrator: str, damping: float) -> None:
-    scene = sliding(damping=damping)
-    run = simulate(scene, 2, 1.0, integrator=integrator, times=np.linspace(0, 2, 21))
-    assert distance(run, damped.motion(scene, run.time, 1.0), scene.can.radius) < 1e-7
-    assert run.trusted
-    # The work of damping is a corrected trapezoid over the 1e-3 s in which can and load come together at the most.
-    assert run.energy_drift < 1e-3
-
-
-@pytest.mark.parametrize("damping", [1e-12, 1e-6, 1e-3])
-def test_a_wrong_damped_run_is_not(damping: float) -> None:
-    scene = sliding(damping=damping)
-    run = simulate(scene, 4, 2.0, integrator="Euler", timestep=5e-3, times=np.linspace(0, 4, 21))
-    assert distance(run, damped.motion(scene, run.time, 2.0), scene.can.radius) > 1e-2
-    assert not run.trusted
+@pytest.mark.parametrize("damping", [1e-12, 1e-3])
+def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
+    scene, times = sliding(damping=damping), np.linspace(0, 4, 21)
+    truth = damped.motion(scene, times, 2.0)
+    for integrator, timestep, right in (("RK4", 1e-3, True), ("DOP853", 1e-3, True), ("Euler", 5e-3, False)):
+        run = simulate(scene, 4, 2.0, integrator=integrator, timestep=timestep, times=times)
+        found = distance(run, truth, scene.can.radius)
+        assert found < 1e-6 if right else found > 1e-2
+        assert run.trusted == right, run.warnings
+        # The work of damping is a corrected trapezoid over the 1e-3 s in which can and load come together at the most.
+        assert run.energy_drift < 1e-3 or not right
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])

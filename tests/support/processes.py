@@ -1,6 +1,7 @@
 """The command line as users run it: in a process of its own, with limits, signals and broken streams.
 
-Nothing here waits for a time: a process says on standard output that it has come to a place, and stays there.
+Nothing here waits for a time: a process says on standard output that it has come to a place, and stays there. At the
+end is what processes of a crew are given to do: each of them loads this module anew, and fast.
 """
 
 import contextlib
@@ -8,9 +9,11 @@ import os
 import pathlib
 import resource
 import signal
+import socket
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, TextIO
 
@@ -104,3 +107,21 @@ def run_with_little_disk(words: Sequence[str]) -> tuple[int, str, str]:
 def _little_disk() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # Python does the same
+
+
+def where() -> dict[str, Any]:
+    """Return in which process this is."""
+    return {"process": os.getpid()}
+
+
+def call_and_sleep(port: int) -> dict[str, Any]:
+    """Call a port of this machine, and hold the line for longer than any test."""
+    with socket.create_connection(("127.0.0.1", port)):
+        time.sleep(3600)
+    return {}
+
+
+def fall() -> dict[str, Any]:
+    """End the process as from outside."""
+    os.kill(os.getpid(), signal.SIGKILL)
+    return {}

@@ -1,10 +1,12 @@
-"""Scenes that tests share, and random ones."""
+"""Scenes that tests share, random ones, and how far a run of them is from theory."""
 
 import math
 
 from hypothesis import strategies as st
 
-from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
+from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
+from mjbeer.simulation.run import Run
+from mjbeer.theory.trajectory import distance
 
 METAL = Can.sheet_metal()
 SCENES = {
@@ -34,3 +36,9 @@ def scenes(draw: st.DrawFn) -> Scene:
     load = Load(load_mass, radius * between(0.05, 0.95), load_mass * radius**2 * between(0.05, 0.5))
     attachment = draw(st.sampled_from(["sliding", "frozen"]))
     return Scene(can, load, between(-math.pi / 3, math.pi / 3), attachment)
+
+
+def error(run: Run) -> float:
+    """The largest error of phi and u/a at the samples of a run [rad], as a tolerance bounds it."""
+    start = run.phi0, run.scene.start(run.phi0, run.phi_dot0)[0]
+    return distance(run, exact(run.scene, run.time, run.phi0, run.phi_dot0), run.scene.can.radius, start)

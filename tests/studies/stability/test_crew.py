@@ -12,8 +12,7 @@ import pytest
 from mjbeer.studies.stability.crew import crew
 from mjbeer.studies.stability.search.batches import batch
 from mjbeer.studies.study import Task
-from tests.support.errands import fall, where
-from tests.support.processes import PATIENCE, interrupt, start
+from tests.support.processes import PATIENCE, fall, interrupt, start, where
 
 pytestmark = pytest.mark.slow
 
@@ -22,7 +21,7 @@ import sys
 from functools import partial
 from mjbeer.studies.stability.crew import crew
 from mjbeer.studies.study import Task
-from tests.support.errands import call_and_sleep
+from tests.support.processes import call_and_sleep
 tasks = [Task("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place in range(4)]
 with crew(tasks, 2) as measure:
     for task in tasks:
