@@ -283,7 +283,7 @@ class Solver:
                 distance = max(distance, self._distance(before.at_ends, found[len(times) :], start))
         ends, at_ends = watch.times_and_states()
         chosen = slice(stride, int(np.searchsorted(ends, times[-1])), stride)
-        return _Run(states, ends[chosen], at_ends[chosen], recorder and recorder.record, distance)
+        return _Run(states, ends[chosen], at_ends[chosen], recorder.record if recorder else None, distance)
 
     def _integrate(
         self,
