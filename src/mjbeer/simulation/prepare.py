@@ -69,12 +69,11 @@ class Prepared:
         """
         numbers = _numbers(scene, setting, uneven=False)
         with _taking:
-            places = (place for place, (kind, _) in enumerate(_idle) if kind == numbers.kind)
-            found = _idle.pop(place)[1] if (place := next(places, None)) is not None else None
-        if found is None:
+            places = [place for place, (kind, _) in enumerate(_idle) if kind == numbers.kind]
+            prepared = _idle.pop(places[0])[1] if places else None
+        if prepared is None:
             prepared = cls(scene, setting)
         else:
-            prepared = found
             prepared._made.write(numbers)
             prepared._begin(scene, setting, uneven=False)
         try:
