@@ -151,8 +151,7 @@ class Solver:
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
-        rate = _stiffest(self._scene)
-        if rate * times[-1] > _STABLE * _EVALUATIONS:
+        if (rate := _stiffest(self._scene)) * times[-1] > _STABLE * _EVALUATIONS:
             raise _not_reached(
                 tolerance,
                 f"damping brings can and load together {rate:.2g} times a second, and steps as short as that would be "
@@ -212,25 +211,19 @@ class Solver:
             if error <= tolerance:  # the drift may be that of a model which no smaller steps can cure
                 self._loss(fine.states, start, partial(run, local=local), tolerance)
             if local < _RATIO * self._smallest:
-                raise _not_reached(
-                    tolerance,
-                    f"two runs at the limit of rounding differ by {fine.distance:.2g} rad"
-                    if error > tolerance
-                    else _lost(drift),
-                )
+                reason = f"two runs at the limit of rounding differ by {fine.distance:.2g} rad"
+                raise _not_reached(tolerance, reason if error > tolerance else _lost(drift))
             coarse, local, drift_before, further = fine, local / _RATIO, drift, True
             fine = run(start, local=local, before=coarse, friction=friction)
             error, drift = _SAFETY_BY_CHANCE * max(fine.distance, coarse.distance / _RATIO), self._drift(fine)
             now, then = (fine.distance, coarse.distance) if error > tolerance else (drift, drift_before)
             stalled = 0 if now <= _STALLED * then else stalled + 1
             if max(error, drift) > tolerance and stalled > _PATIENCE:
-                raise _not_reached(
-                    tolerance,
+                reason = (
                     f"two runs differ by {coarse.distance:.2g} rad, and finer ones by {fine.distance:.2g} rad; the "
                     "motion is not smooth enough, or rounding has the upper hand"
-                    if error > tolerance
-                    else _lost(drift),
                 )
+                raise _not_reached(tolerance, reason if error > tolerance else _lost(drift))
         rounding = _ROUNDING_OVER_NUDGE * first if further else 0.0  # the first distance includes the nudge
         if rounding > tolerance:
             # On either side of the start, because from one side of a barrier's top all motions fall the same way.
