@@ -17,7 +17,6 @@ from mjbeer.simulation.stepping import Watcher, stepping
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
-_EVERYTHING = ("mj_forward",)
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
 """What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
 the same numbers to the last bit, in three quarters of the time."""
@@ -51,7 +50,7 @@ class Integrator:
                 # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
                 # from positions in the world, whose rounding would hide a short arm far from the origin.
                 needed[joints["slide"]] = False
-        functions = np.array([address(name) for name in (_SMOOTH if smooth else _EVERYTHING)])
+        functions = np.array([address(name) for name in (_SMOOTH if smooth else ("mj_forward",))])
         acceleration = self._data.qacc_smooth if smooth else self._data.qacc
         self.dynamics = (
             (functions, model._address, self._data._address),
