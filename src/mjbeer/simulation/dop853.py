@@ -17,12 +17,9 @@ from mjbeer.simulation.stepping import Watcher, stepping
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
-_EVERYTHING = ("mj_forward",)
-"""The function that computes the acceleration of any model."""
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
-"""The functions by which mj_forward computes the acceleration of a model without constraints, whose actuators have
-constant forces that are computed once. Calling them directly gives the same numbers to the last bit, in three quarters
-of the time."""
+"""What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
+the same numbers to the last bit, in three quarters of the time."""
 
 
 class Integrator:
@@ -42,23 +39,26 @@ class Integrator:
         actuated = model.nu > 0 and not model.opt.disableflags & _ACTUATION
         constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
         smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or constant)
-        if smooth and actuated:
-            _apply_constant_forces(model, self._data)
-        functions = np.array([address(name) for name in (_SMOOTH if smooth else _EVERYTHING)])
+        needed = np.ones(model.nq, np.bool_)
+        if smooth:
+            if actuated:  # their forces at the start, which _SMOOTH takes unchanged
+                mujoco.mj_forward(model, self._data)
+                forces = self._data.qfrc_actuator.copy()
+                mujoco.mj_resetData(model, self._data)
+                self._data.qfrc_actuator[:] = forces
+            if "slide" in (joints := places(model)):
+                # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
+                # from positions in the world, whose rounding would hide a short arm far from the origin.
+                needed[joints["slide"]] = False
+        functions = np.array([address(name) for name in (_SMOOTH if smooth else ("mj_forward",))])
         acceleration = self._data.qacc_smooth if smooth else self._data.qacc
         self.dynamics = (
             (functions, model._address, self._data._address),
-            (self._data.qpos, self._data.qvel, acceleration, _needed_positions(model, smooth)),
+            (self._data.qpos, self._data.qvel, acceleration, needed),
         )
         """Addresses and views by which the kernels evaluate the accelerations."""
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
-
-    def slope(self, state: np.ndarray) -> np.ndarray:
-        """Return the time derivative of a state, shape (nq + nv,)."""
-        slope = np.empty(self._size)
-        dop853_kernel.slope(*self.dynamics, state, slope)
-        return slope
 
     def run(
         self,
@@ -132,23 +132,3 @@ def drive(
 def integrate(model: mujoco.MjModel, start: np.ndarray, times: np.ndarray, timestep: float) -> np.ndarray:
     """Return the states at increasing `times` [s] of one run with a fixed `timestep` [s], as `Integrator.run` does."""
     return Integrator(model).run(start, times, timestep)
-
-
-def _needed_positions(model: mujoco.MjModel, smooth: bool) -> np.ndarray:
-    """Return a mask of the components of qpos on which the acceleration depends, shape (nq,).
-
-    Without constraints it does not depend on the slide, and is evaluated at the slide's origin: MuJoCo computes torques
-    from positions in the world, whose rounding would hide a short arm far from the origin.
-    """
-    needed = np.ones(model.nq, np.bool_)
-    if smooth and "slide" in (joints := places(model)):
-        needed[joints["slide"]] = False
-    return needed
-
-
-def _apply_constant_forces(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Write the forces of actuators to `data` in its initial state, from where `_SMOOTH` takes them unchanged."""
-    mujoco.mj_forward(model, data)
-    forces = data.qfrc_actuator.copy()
-    mujoco.mj_resetData(model, data)
-    data.qfrc_actuator[:] = forces

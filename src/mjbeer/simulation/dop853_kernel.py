@@ -46,26 +46,22 @@ def call(typing_context, function, model, data):
     return types.void(types.intp, types.intp, types.intp), generate
 
 
-@intrinsic
-def _for_size(typing_context):
-    """Compile the function that calls this for size: its loops over a few joints gain nothing from more code."""
+def _marked(attribute):
+    """Return a function that gives the compiled function that calls it an attribute of LLVM."""
 
-    def generate(context, builder, signature, arguments):
-        builder.function.attributes.add("optsize")
-        return context.get_dummy_value()
+    @intrinsic
+    def mark(typing_context):
+        def generate(context, builder, signature, arguments):
+            builder.function.attributes.add(attribute)
+            return context.get_dummy_value()
 
-    return types.void(), generate
+        return types.void(), generate
+
+    return mark
 
 
-@intrinsic
-def _not_inlined(typing_context):
-    """Keep the function that calls this from being copied into its callers, which would take the compiler seconds."""
-
-    def generate(context, builder, signature, arguments):
-        builder.function.attributes.add("noinline")
-        return context.get_dummy_value()
-
-    return types.void(), generate
+_for_size = _marked("optsize")  # loops over a few joints gain nothing from more code
+_not_inlined = _marked("noinline")  # copies in all callers would take the compiler seconds
 
 
 @njit(cache=True, error_model="numpy")
@@ -102,19 +98,15 @@ def _combine(weights, count, slopes, out):
 def advance(pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale, kept):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
-    Args:
-      pointers: addresses of the functions that compute an acceleration, of the model and of its data.
-      views: qpos, qvel and acceleration in that data, and the mask of the components of qpos that are needed.
-      state: the state at the start of the block; at the end it is the state reached.
-      slopes: work space of shape (ROWS, states); its first row must be the slope at `state`, except in the first block.
-      times: increasing times of the samples [s].
-      samples: states at `times`; the rows that the steps pass are filled in.
-      place: time, step, index of the next sample, number of steps, and error of the last step.
-      fixed: whether the step is fixed, or keeps its error below the tolerance.
-      tolerance: local tolerance of a step.
-      scale: size below which an error of each component counts absolutely.
-      kept: times, states and slopes at the ends of the steps of this block, and at the start of the run: work space for
-        `KEPT` of them, or for none.
+    `pointers` are addresses of the functions that compute an acceleration, of the model and of its data; `views` are
+    qpos, qvel and acceleration in that data, and the mask of the components of qpos that are needed. `state` is moved
+    on. `slopes`, of shape (ROWS, states), comes with the slope at `state` in its first row, except in the first block.
+    The rows of `samples` whose `times` [s] the steps pass are filled in.
+
+    `place` is the time, the step, the index of the next sample, the number of steps and the error of the last step.
+    Unless the step is `fixed`, its error is kept below `tolerance` (`scale` + |state|) in each component.
+    `kept` takes times, states and slopes at the start of the run and at the ends of this block's steps: it has room
+    for `KEPT` of them, or for none.
     """
     _for_size()
     time, step, sample, steps, before = place

@@ -93,13 +93,9 @@ def begin(pointers, views, states, step, sums, history):
 
     The sums are those that give the state in the middle of the first ones, where the formulas err least.
 
-    Args:
-      pointers: addresses of functions, model and data, as in `dop853_kernel.advance`.
-      views: arrays of that data, as in `dop853_kernel.advance`.
-      states: the first states, one timestep apart, shape (COUNT, states).
-      step: the timestep [s].
-      sums: the first and the second sum of the accelerations, and what rounding took from each, shape (4, nv).
-      history: accelerations, shape (nv, COUNT + BLOCK); the first `COUNT` columns are filled in.
+    `pointers` and `views` are those of `dop853_kernel.advance`; `states`, of shape (COUNT, states), are one timestep
+    `step` [s] apart. `sums`, of shape (4, nv), has the first and the second sum of the accelerations and what rounding
+    took from each; `history` has the accelerations, shape (nv, COUNT + BLOCK).
     """
     size = sums.shape[1]
     derivative = np.empty(2 * size)
@@ -144,16 +140,10 @@ def _add(sums, row, i, term):
 def advance(pointers, views, sums, history, times, samples, place, kept):
     """Take up to a block of steps, and return the status, the new place and the numbers of steps taken and rows kept.
 
-    Args:
-      pointers: addresses of functions, model and data, as in `dop853_kernel.advance`.
-      views: arrays of that data, as in `dop853_kernel.advance`.
-      sums: the sums and their rounding, as `begin` or the block before left them.
-      history: accelerations, as `begin` or the block before left them.
-      times: increasing times of the samples [s].
-      samples: states at `times`; the rows that the steps pass are filled in.
-      place: timestep [s], number of the last step, and index of the next sample.
-      kept: times and states at the steps that are read off in this block, beginning with that after the first
-        `COUNT`: work space for `BLOCK` of them, or none.
+    `sums` and `history` are as `begin` or the block before left them. The rows of `samples` whose `times` [s] the steps
+    pass are filled in. `place` is the timestep [s], the number of the last step and the index of the next sample.
+    `kept` takes times and states at the steps that are read off in this block, from that after the first `COUNT` on:
+    it has room for `BLOCK` of them, or for none.
     """
     step, steps, sample = place
     kept_times, kept_states = kept

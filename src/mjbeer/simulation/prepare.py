@@ -14,7 +14,7 @@ from mjbeer.model.setting import DOP853, GAUSS_JACKSON, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
-from mjbeer.simulation.tolerance import Solver, tuning
+from mjbeer.simulation.tolerance import Solver
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
@@ -69,12 +69,11 @@ class Prepared:
         """
         numbers = _numbers(scene, setting, uneven=False)
         with _taking:
-            places = (place for place, (kind, _) in enumerate(_idle) if kind == numbers.kind)
-            found = _idle.pop(place)[1] if (place := next(places, None)) is not None else None
-        if found is None:
+            places = [place for place, (kind, _) in enumerate(_idle) if kind == numbers.kind]
+            prepared = _idle.pop(places[0])[1] if places else None
+        if prepared is None:
             prepared = cls(scene, setting)
         else:
-            prepared = found
             prepared._made.write(numbers)
             prepared._begin(scene, setting, uneven=False)
         try:
@@ -114,14 +113,16 @@ class Prepared:
 
 
 def _step(setting: Setting, uneven: bool) -> float:
-    """Return the timestep [s] to which constraints are tuned, and which is that of mjbeer's own integrators."""
     return setting.timestep * (_GREATER if uneven else 1)
 
 
 def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
-    """Return what is to be written into the model of a scene."""
-    if setting.tolerance is not None:
-        timestep = tuning(scene, setting.rolling, setting.timestep)
-    else:
-        timestep = _step(setting, uneven)
+    """Return what is to be written into the model of a scene.
+
+    A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
+    sqrt(a/g)/2, a twelfth of the period of a pendulum of length a, which is too slow to limit the steps.
+    """
+    timestep = _step(setting, uneven)
+    if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
+        timestep = float(np.sqrt(scene.can.radius / scene.gravity)) / 2
     return Numbers.of(scene, setting, timestep=timestep)

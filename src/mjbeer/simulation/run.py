@@ -52,7 +52,7 @@ class Run(Trajectory):
 
     @property
     def rolling(self) -> str:
-        """Return how the can was made to roll: "reduced", "equality" or "contact"."""
+        """Return "reduced", "equality" or "contact"."""
         return self.setting.rolling
 
     @property

@@ -3,7 +3,7 @@
 import copy
 import math
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,9 +46,7 @@ class Recorder:
     """The record of a run of one model of a scene, a `Watcher`."""
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf) -> None:
-        """Begin the record of a run whose can would slip where rolling needs more than a coefficient `friction`."""
-        self._model, self._scene = model, scene
-        self.record = Record(scene, friction)
+        self._model, self._scene, self.record = model, scene, Record(scene, friction)
         self._last: np.ndarray | None = None
         size = model.nq + model.nv
         unit = read(model, scene, np.eye(size), np.zeros(size))
@@ -110,26 +108,19 @@ class _Compiling(event.Listener):
             _Compiling.said = True
             terminal.say(_COMPILING)
 
-    def on_end(self, _: Any) -> None:
-        """Nothing is said at the end."""
+    def on_end(self, _: Any) -> None: ...
 
 
 @contextmanager
 def stepping(kernel: Any) -> Generator[None]:
     """Let a compiled `kernel` step in the block: MuJoCo is quiet and reads no clock."""
-    with quiet(), untimed():
-        if kernel.overloads:  # it is compiled already; `signatures` would make a list of hashed types
-            yield
-        else:
-            with event.install_listener("numba:compile", _Compiling()):
-                yield
+    heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
+    with quiet(), untimed(), heard:
+        yield
 
 
 class Stepper:
-    """A model set up to be stepped with its own timestep, which may be taken in several `parts`, whose sum is 1.
-
-    Without `data` of the model it makes its own.
-    """
+    """A model set up to be stepped with its own timestep, which may be taken in several `parts`, whose sum is 1."""
 
     def __init__(self, model: mujoco.MjModel, parts: tuple[float, ...] = (), data: mujoco.MjData | None = None) -> None:
         self._timestep = model.opt.timestep
@@ -147,7 +138,7 @@ class Stepper:
         Raises:
           DivergenceError: if the run stops being finite; the message names the time and MuJoCo's reason.
         """
-        data, size = self._data, self._models[0].nq
+        data, size, step = self._data, self._models[0].nq, self._timestep
         mujoco.mj_resetData(self._models[0], data)
         data.qpos[:], data.qvel[:] = start[:size], start[size:]
         states = np.empty((len(samples), len(start)))
@@ -159,17 +150,16 @@ class Stepper:
             for first in range(0, last, _BLOCK):
                 block = self._states[: min(_BLOCK, last - first)]
                 count = _advance(address("mj_step"), self._addresses, data._address, self._views, block)
-                end, cause = (first + count) * self._timestep, _warnings(data)
+                end, cause = (first + count) * step, _warnings(data)
                 if count < len(block):
-                    raise DivergenceError(
-                        f"the run diverged at t = {end:.6g} s: {cause or 'its state is no longer finite'}"
-                    )
+                    cause = cause or "its state is no longer finite"
+                    raise DivergenceError(f"the run diverged at t = {end:.6g} s: {cause}")
                 if cause:  # as of an inertia that rounding loses: what follows is finite, and may be anything
                     raise DivergenceError(f"the run diverged before t = {end:.6g} s: {cause}")
                 begin, after = np.searchsorted(samples, [first + 1, first + len(block) + 1])
                 states[begin:after] = block[samples[begin:after] - first - 1]
                 if watch:
-                    watch(self._timestep * np.arange(first + 1, first + len(block) + 1), block, None)
+                    watch(step * np.arange(first + 1, first + len(block) + 1), block, None)
         return states
 
 

@@ -24,37 +24,33 @@ from mjbeer.theory.trajectory import angle_distance
 _SAFETY = 1.5
 """Error estimate over the distance of two runs."""
 _SAFETY_BY_CHANCE = 3.0
-"""The same where two runs may agree by chance: from the third run on, and for tolerances outside `_ASYMPTOTIC`, where
-rounding or large steps hide the method's order."""
+"""The same from the third run on, and for tolerances outside `_ASYMPTOTIC`, where two runs may agree by chance."""
 _ASYMPTOTIC = (1e-11, 1e-5)
-"""Range of tolerances in which the method's order shows: the finer run has an eighth of the other one's error."""
+"""Range of tolerances in which rounding or large steps do not hide the method's order."""
 _NUDGE = 4e-14
 """Distance of the first run's start from the given start, relative to `scales`. The distance of the first two runs then
 includes the effect of a small change of the start, which is large beside a separatrix."""
 _ROUNDING_OVER_NUDGE = 3 / 40
-"""Estimated effect of rounding over the effect of the nudge: the rounding of a run is like a nudge of some 1e-15, with
-a safety factor of 3."""
+"""Estimated effect of rounding over that of the nudge: a run's rounding is like a nudge of some 1e-15; safety is 3."""
 _CANCELLED = 0.1
 """That rounding over what MuJoCo loses of a small inertia, as a share of the larger ones that cancel in it."""
 
 _FIRST = 0.07
-"""Local tolerance of the first run over the global tolerance. Over some ten periods the local errors add up to 2-20
-times a local tolerance (measured on all scenes)."""
+"""Local tolerance of the first run over the global tolerance: over some ten periods errors add up to 2-20 times a local
+tolerance (measured on all scenes)."""
 _COARSEST = 1e-6
 """Largest local tolerance. With larger steps the two runs of a motion that spins up may have much the same error: one
 of 2,000 runs was 7.5 times as far from the exact motion as from the other run."""
 _RATIO = 8.0
 """Local tolerance of one run over that of the next. At order 8 the next one takes 1.3 times the evaluations."""
 _SMALLEST = 1e-16
-"""Local tolerance below which the error of a step is rounding. Where more is lost it is larger, but leaves two finer
-runs: the distance of the first two runs is that of the nudge."""
+"""Local tolerance below which the error of a step is rounding."""
 _STALLED = 0.75
 """Distance of two runs over that of the two runs before, above which the finer runs were no progress."""
 _PATIENCE = 2
 """Number of times in a row that finer runs may be no progress: with too large steps their distance is arbitrary."""
 _EVERY = 2
-"""Runs of DOP853 are compared at the end of every second step. Each that is looked at takes three evaluations of the
-next run, and what is brief takes some steps."""
+"""Runs of DOP853 are compared at the end of every second step: each comparison takes the next run three evaluations."""
 _EVALUATIONS = 5_000_000
 """Largest number of evaluations in one run, which take some seconds. A smooth motion takes thousands."""
 _STABLE = 6.4 / 12
@@ -70,8 +66,7 @@ _NEAREST = 10.0
 """How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
 runs shows how much the motion amplifies."""
 _NO_LOSS = 1e-2
-"""Relative error of the model's accelerations over the tolerance, below which its effect is not looked at: it would
-have to grow a hundredfold."""
+"""Relative error of the model's accelerations over the tolerance, below which it would have to grow a hundredfold."""
 _LOSS = 2.0
 """Estimated effect of that error over the effect of an equal nudge of the start (measured: up to 1.8)."""
 
@@ -96,21 +91,16 @@ class _Ends:
     """Keeps the ends of all steps of a run, and shows them to another `Watcher`, too."""
 
     def __init__(self, further: Watcher | None = None) -> None:
-        self._further, self._times, self._states = further, [np.zeros(0)], list[np.ndarray]()
+        self._further, self._kept = further, list[tuple[np.ndarray, np.ndarray]]()
 
     def __call__(self, times: np.ndarray, states: np.ndarray, slopes: np.ndarray | None) -> None:
-        self._times.append(times.copy())
-        self._states.append(states.copy())
+        self._kept.append((times.copy(), states.copy()))
         if self._further:
             self._further(times, states, slopes)
 
-    @property
-    def times(self) -> np.ndarray:
-        return np.concatenate(self._times)
-
-    @property
-    def states(self) -> np.ndarray:
-        return np.concatenate(self._states)
+    def times_and_states(self) -> tuple[np.ndarray, np.ndarray]:
+        times, states = zip(*self._kept, strict=True)
+        return np.concatenate(times), np.concatenate(states)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,20 +123,20 @@ class _Run:
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData | None = None) -> None:
+    def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData) -> None:
         self._model, self._scene, self._dop853 = model, scene, Integrator(model, data)
         self._scale, form = scales(model, scene), scene.oscillator
         # phi and u/a are sums of components of the state.
         unit = read(model, scene, np.eye(model.nq + model.nv), times=np.zeros(model.nq + model.nv))
         self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
         rounding = max(1.0, _CANCELLED * form.swing / form.base)
-        self._nudge, self._smallest = _NUDGE * rounding, _SMALLEST * max(1.0, rounding / _RATIO**2)
+        self._nudge, self._smallest = _NUDGE * rounding * self._scale, _SMALLEST * max(1.0, rounding / _RATIO**2)
         try:
             self._gauss_jackson: GaussJackson | None = GaussJackson(model, self._dop853)
         except UnsupportedError:
             self._gauss_jackson = None
 
-    def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float = math.inf) -> Solution:
+    def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
         Each run has a local tolerance of an eighth of that of the run before, and the first starts a nudge from
@@ -161,8 +151,7 @@ class Solver:
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
-        rate = _stiffest(self._scene)
-        if rate * times[-1] > _STABLE * _EVALUATIONS:
+        if (rate := _stiffest(self._scene)) * times[-1] > _STABLE * _EVALUATIONS:
             raise _not_reached(
                 tolerance,
                 f"damping brings can and load together {rate:.2g} times a second, and steps as short as that would be "
@@ -186,21 +175,20 @@ class Solver:
             (end,) = self._dop853.run(
                 start, times[-1:], tolerance=_PILOT, scale=self._scale, limit=_EVALUATIONS, watch=pilot
             )
-            timestep, evaluations = plan(pilot.times, tolerance, _PILOT)
+            timestep, evaluations = plan(pilot.times_and_states()[0], tolerance, _PILOT)
             local = _FIRST * tolerance / _RATIO
             if not evaluations < _CHEAPER * self._dop853.evaluations * (_PILOT / local) ** (1 / 8):
                 return None
-            coarse = self._take(partial(method.run, timestep=timestep), self._aside(start), times, stride=_SHARED)
+            coarse = self._take(partial(method.run, timestep=timestep), start + self._nudge, times, stride=_SHARED)
             safety, rounding = _safety(tolerance), 0.0
             for further in (False, True):
                 timestep /= _FINER
                 fine = self._take(
                     partial(method.run, timestep=timestep), start, times, coarse, friction, stride=_SHARED
                 )
-                assert fine.record is not None
                 if not further:
                     rounding = _ROUNDING_OVER_NUDGE * fine.distance  # the first distance includes the nudge
-                error = max(safety * fine.distance, self._drift(fine.record), rounding)
+                error = max(safety * fine.distance, self._drift(fine), rounding)
                 if error <= tolerance and self._distance(end[None], fine.states[-1:], start) <= _ASTRAY:
                     return Solution(fine.states, fine.record, error, GAUSS_JACKSON)
                 if _SAFETY_BY_CHANCE * fine.distance > _GAIN * tolerance:  # the next run would not reach it
@@ -214,57 +202,48 @@ class Solver:
         """Return the solution by ever finer runs of DOP853."""
         local, stalled = max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest), 0
         run = partial(self._integrate, times=times, tolerance=tolerance)
-        coarse = run(self._aside(start), local=local)
+        coarse = run(start + self._nudge, local=local)
         local /= _RATIO
         fine = run(start, local=local, before=coarse, friction=friction)
-        assert fine.record is not None
         first, further = fine.distance, False
-        error, drift = _safety(tolerance) * first, self._drift(fine.record)
+        error, drift = _safety(tolerance) * first, self._drift(fine)
         while max(error, drift) > tolerance:
             if error <= tolerance:  # the drift may be that of a model which no smaller steps can cure
-                self._loss(fine.states, start=start, times=times, local=local, tolerance=tolerance)
+                self._loss(fine.states, start, partial(run, local=local), tolerance)
             if local < _RATIO * self._smallest:
-                raise _not_reached(
-                    tolerance,
-                    f"two runs at the limit of rounding differ by {fine.distance:.2g} rad"
-                    if error > tolerance
-                    else _lost(drift),
-                )
+                reason = f"two runs at the limit of rounding differ by {fine.distance:.2g} rad"
+                raise _not_reached(tolerance, reason if error > tolerance else _lost(drift))
             coarse, local, drift_before, further = fine, local / _RATIO, drift, True
             fine = run(start, local=local, before=coarse, friction=friction)
-            assert fine.record is not None
-            error, drift = _SAFETY_BY_CHANCE * max(fine.distance, coarse.distance / _RATIO), self._drift(fine.record)
+            error, drift = _SAFETY_BY_CHANCE * max(fine.distance, coarse.distance / _RATIO), self._drift(fine)
             now, then = (fine.distance, coarse.distance) if error > tolerance else (drift, drift_before)
             stalled = 0 if now <= _STALLED * then else stalled + 1
             if max(error, drift) > tolerance and stalled > _PATIENCE:
-                raise _not_reached(
-                    tolerance,
+                reason = (
                     f"two runs differ by {coarse.distance:.2g} rad, and finer ones by {fine.distance:.2g} rad; the "
                     "motion is not smooth enough, or rounding has the upper hand"
-                    if error > tolerance
-                    else _lost(drift),
                 )
+                raise _not_reached(tolerance, reason if error > tolerance else _lost(drift))
         rounding = _ROUNDING_OVER_NUDGE * first if further else 0.0  # the first distance includes the nudge
         if rounding > tolerance:
-            rounding = self._rounding_effect(fine, start=start, times=times, local=local, tolerance=tolerance)
-        loss = self._loss(fine.states, start=start, times=times, local=local, tolerance=tolerance)
+            # On either side of the start, because from one side of a barrier's top all motions fall the same way.
+            starts = start + self._nudge, start - self._nudge
+            rounding = _ROUNDING_OVER_NUDGE * max([run(each, local=local, before=fine).distance for each in starts])
+            if rounding > tolerance:
+                raise _not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
+        loss = self._loss(fine.states, start, partial(run, local=local), tolerance)
         return Solution(fine.states, fine.record, max(error, drift, rounding, loss), DOP853)
-
-    def _aside(self, start: np.ndarray, distance: float | None = None) -> np.ndarray:
-        """Return a start at a `distance` from `start`, relative to `scales`; that of the nudge if none is given."""
-        return start + (self._nudge if distance is None else distance) * self._scale
 
     def _distance(self, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
         """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
         angles, truth, first = coarse @ self._angles, fine @ self._angles, start @ self._angles
         return max(angle_distance(angles[:, column], truth[:, column], float(first[column])) for column in (0, 1))
 
-    def _drift(self, record: Record) -> float:
-        """Return the error of phi and u/a [rad] that the drift of energy and momentum implies.
-
-        A contact has no such drift to judge by: it takes energy, and gives it back.
-        """
-        if self._model.npair:
+    def _drift(self, run: _Run) -> float:
+        """Return the error of phi and u/a [rad] that the drift of energy and momentum in a run's record implies."""
+        record = run.record
+        assert record is not None
+        if self._model.npair:  # a contact takes energy, and gives it back
             return 0.0
         gap = _FAR * record.to_barrier
         share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST
@@ -291,13 +270,13 @@ class Solver:
             along = np.concatenate([times, before.ends])
             order, found = np.argsort(along, kind="stable"), np.empty((len(along), len(start)))
             found[order] = method(start, along[order], watch=watch)
-            states, at_ends = found[: len(times)], found[len(times) :]
+            states = found[: len(times)]
             distance = self._distance(before.states, states, start)
-            if len(at_ends):
-                distance = max(distance, self._distance(before.at_ends, at_ends, start))
-        ends, record = watch.times, None if recorder is None else recorder.record
+            if len(before.ends):
+                distance = max(distance, self._distance(before.at_ends, found[len(times) :], start))
+        ends, at_ends = watch.times_and_states()
         chosen = slice(stride, int(np.searchsorted(ends, times[-1])), stride)
-        return _Run(states, ends[chosen], watch.states[chosen], record, distance)
+        return _Run(states, ends[chosen], at_ends[chosen], recorder.record if recorder else None, distance)
 
     def _integrate(
         self,
@@ -315,24 +294,7 @@ class Solver:
         except DivergenceError as error:
             raise _not_reached(tolerance, str(error)) from error
 
-    def _rounding_effect(
-        self, fine: _Run, start: np.ndarray, times: np.ndarray, local: float, tolerance: float
-    ) -> float:
-        """Return the estimated effect of rounding on phi and u/a [rad], from two runs that start beside `start`.
-
-        They start on either side, because from one side of a barrier's top all motions fall the same way.
-
-        Raises:
-          ToleranceError: if the effect is above `tolerance` [rad].
-        """
-        starts = (self._aside(start, side * self._nudge) for side in (1, -1))
-        distances = [self._integrate(each, times, local, tolerance, fine).distance for each in starts]
-        effect = _ROUNDING_OVER_NUDGE * max(distances)
-        if effect > tolerance:
-            raise _not_reached(tolerance, f"the rounding of the start grows to {effect:.2g} rad")
-        return effect
-
-    def _loss(self, fine: np.ndarray, start: np.ndarray, times: np.ndarray, local: float, tolerance: float) -> float:
+    def _loss(self, fine: np.ndarray, start: np.ndarray, run: Callable[[np.ndarray], _Run], tolerance: float) -> float:
         """Return the estimated effect on phi and u/a [rad] of what MuJoCo's sums lose in rounding, if it may matter.
 
         It is that of a start as far aside as the model's accelerations are from theory's, relative to them. Only an
@@ -347,8 +309,7 @@ class Solver:
         _, loss = check.residual(self._model, self._scene, fine[chosen], exact_constraint=True)
         if loss <= _NO_LOSS * tolerance:
             return 0.0
-        aside = self._integrate(self._aside(start, min(loss, 1.0)), times, local, tolerance)
-        effect = _LOSS * self._distance(aside.states, fine, start)
+        effect = _LOSS * self._distance(run(start + min(loss, 1.0) * self._scale).states, fine, start)
         if effect > tolerance:
             raise _not_reached(
                 tolerance,
@@ -395,13 +356,3 @@ def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     positions = np.where(model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE, radius, 1.0)
     rate = np.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
     return np.concatenate([positions, positions * rate])
-
-
-def tuning(scene: Scene, rolling: str, timestep: float) -> float:
-    """Return the timestep [s] to which a model's constraints are tuned if the integrator chooses its own steps.
-
-    A rigid equality only has to correct the slip that rounding causes. With sqrt(a/g)/2, a twelfth of the period
-    of a pendulum of length a, the correction is too slow to limit the steps.
-    """
-    slow = scene.gravity > 0 and rolling == "equality"
-    return float(np.sqrt(scene.can.radius / scene.gravity)) / 2 if slow else timestep

@@ -41,7 +41,7 @@ class Record:
     """
 
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
-        """Begin the record of a motion whose can would slip where rolling needs more than a coefficient `friction`."""
+        """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
         self.scene, self.friction = scene, friction
         self.slip = 0.0
         """Largest distance that the can has slid instead of rolled [m]."""
@@ -85,7 +85,7 @@ class Record:
         """
         record, order = cls(scene, friction), np.argsort(motion.time)
         record._all_steps = False
-        record.add(Coordinates(**{name: getattr(motion, name)[order] for name in Coordinates.__dataclass_fields__}))
+        record.add(_samples(motion, order))
         return record
 
     def add(self, motion: Coordinates) -> None:
@@ -97,7 +97,7 @@ class Record:
         """Add the next piece of the motion to everything but what rests on forces."""
         scene, radius = self.scene, self.scene.can.radius
         if self._first is None or self._last is None:
-            self._first = self._last = _piece(motion, 0)
+            self._first = self._last = _samples(motion, [0])
             self._energy = energy(scene, self._first)
         first, last = self._first, self._last
         slid = (motion.u - first.u) - radius * (motion.roll - first.roll)
@@ -110,7 +110,7 @@ class Record:
         kinetic, form = kinetic_energy(scene, motion), scene.oscillator
         swing = form.inertia(motion.phi) * motion.phi_dot**2 / 2
         self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
-        self._last, change = _piece(motion, -1), kinetic + potential_energy(scene, motion) - self._energy
+        self._last, change = _samples(motion, [-1]), kinetic + potential_energy(scene, motion) - self._energy
         if scene.dissipates:
             self._add_losses(motion, last, change)
             return
@@ -156,15 +156,13 @@ class Record:
     def energy_drift(self) -> float:
         """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
-        With damping or drag it is the change of the energy and the work that they have taken together, and needs a
-        record of all steps. It includes slip and lift, and is what users see; the implied error rests on the energy of
-        the swing instead, where that of a can that runs away down the incline cannot hide a drift. The denominator is
-        at least `_SMALL_SWING` of the well's depth. A balanced load, as in a full can, has no well and no swing of its
-        own: there the denominator is the largest kinetic energy of all that moves, from rest m g u sin(alpha).
+        With damping or drag it is the change of the energy and of the work that they have taken, and needs a record of
+        all steps. Unlike the implied error it includes slip and lift. The denominator is at least `_SMALL_SWING` of the
+        well's depth; a balanced load has no well, and there it is the largest kinetic energy of all that moves.
         """
-        balanced = self.scene.load.offset == 0
-        swing = max(self._least_swing, _ROUNDING * self._kinetic)
-        return _ratio(self._energy_change, self._kinetic if balanced else swing)
+        if self.scene.load.offset == 0:
+            return _ratio(self._energy_change, self._kinetic)
+        return _ratio(self._energy_change, max(self._least_swing, _ROUNDING * self._kinetic))
 
     @property
     def implied_error(self) -> float:
@@ -178,8 +176,7 @@ class Record:
     def swing_error(self) -> float:
         """Return the error of phi [rad], relative beyond 1 rad, that the drift of the swing's energy implies.
 
-        A relative error of the swing's energy is about as large a relative error of its speed or its period, and so of
-        the path that phi covers meanwhile.
+        A relative error of the energy is about that of the speed or the period, and so of the path of phi meanwhile.
         """
         return _ratio(self._largest_swing_drift, self._least_swing) / max(1.0, self.turned)
 
@@ -273,9 +270,8 @@ def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
     return step * (power[:-1] + power[1:]) / 2 - step**2 * np.diff(change) / 12
 
 
-def _piece(motion: Coordinates, place: int) -> Coordinates:
-    """Return one sample of a motion, as a motion with one sample."""
-    return Coordinates(**{name: getattr(motion, name)[[place]] for name in Coordinates.__dataclass_fields__})
+def _samples(motion: Coordinates, places: np.ndarray | list[int]) -> Coordinates:
+    return Coordinates(**{name: getattr(motion, name)[places] for name in Coordinates.__dataclass_fields__})
 
 
 def _largest(so_far: float, values: np.ndarray | float) -> float:
