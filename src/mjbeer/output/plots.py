@@ -53,7 +53,6 @@ STYLE: Any = {
 """Settings of matplotlib."""
 _TITLE, _SUBTITLE, _EDGE = 0.32, 0.24, 0.1
 """Heights of the title's and the subtitle's lines, and their distance from the edge [inches]."""
-
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -84,9 +83,8 @@ def chart(
         for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(_power))
-        named = {"Title": ": ".join(filter(None, (title, subtitle)))} if title else {}
-        for kind in (".svg", ".png"):
-            metadata = {"Date": None, **named} if kind == ".svg" else {}
+        described = {"Date": None, "Title": ": ".join(filter(None, (title, subtitle))) or None}
+        for kind, metadata in ((".svg", described), (".png", {})):
             with files.whole(path.with_name(path.name + kind)) as temporary:
                 figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
                 if kind == ".svg":
