@@ -38,8 +38,6 @@ _SMALL_SWING = 0.1
 motion that hardly swings would otherwise divide rounding by nearly nothing."""
 _OF_SLIP = 8 * float(np.finfo(float).eps)
 """Rounding of a slip rate, over the rates whose difference it is: each is rounded a few times."""
-_ROWS = {"reduced": (0,), "equality": (1,)}
-"""Rows of constraints that a model of each rolling has."""
 
 
 def require_theory(model: mujoco.MjModel, scene: Scene, setting: Setting) -> None:
@@ -86,7 +84,8 @@ def _other_elements(model: mujoco.MjModel, scene: Scene, setting: Setting, motio
         with quiet():
             mujoco.mj_forward(model, data)
         per_contact = 3 if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else 4
-        rows = _ROWS.get(setting.rolling) or tuple(per_contact * count for count in range(1, 5))
+        contacts = tuple(per_contact * count for count in range(1, 5))
+        rows = {"reduced": (0,), "equality": (1,), "contact": contacts}[setting.rolling]
         if data.nefc not in rows:
             return f"gives {data.nefc} rows of constraints instead of {rows[0]}"
         if any(warning.number for warning in data.warning):
