@@ -83,8 +83,8 @@ def chart(
         for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(_power))
-        described = {"Date": None, "Title": ": ".join(filter(None, (title, subtitle))) or None}
-        for kind, metadata in ((".svg", described), (".png", {})):
+        named = {"Title": ": ".join(filter(None, (title, subtitle)))} if title else {}
+        for kind, metadata in ((".svg", {"Date": None, **named}), (".png", {})):
             with files.whole(path.with_name(path.name + kind)) as temporary:
                 figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
                 if kind == ".svg":
