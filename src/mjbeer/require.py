@@ -21,22 +21,18 @@ from mjbeer.exceptions import AngleWarning, ParameterError
 T = TypeVar("T")
 Name = TypeVar("Name", bound=str)
 
-SIZE = 1e-4, 1e2
-"""Smallest and largest radius and length of a can [m]."""
-MASS = 1e-9, 1e9
-"""Smallest and largest mass that is not 0 [kg]."""
-RATIO = 1e6
-"""Largest ratio of two masses, or of inertias compared with masses at the radius, either way."""
-GRAVITY = 1e-3, 1e3
-"""Smallest and largest gravity that is not 0 [m/s^2]."""
-ANGLE = 1e4
-"""Largest start angle, either way [rad]."""
-RATE = 1e6
-"""Largest start rate, either way [rad/s]."""
-DAMPING_RATE = 1e9
-"""Largest rate at which damping may decay [1/s]."""
-TIMESTEP = 1e-7, 10.0
-"""Smallest and largest timestep [s]."""
+# The domain: the smallest and the largest value.
+SIZE = 1e-4, 1e2  # of radius and length of a can [m]
+MASS = 1e-9, 1e9  # that is not 0 [kg]
+RATIO = 1e6  # of two masses, or of inertias compared with masses at the radius, either way
+GRAVITY = 1e-3, 1e3  # that is not 0 [m/s^2]
+ANGLE = 1e4  # at the start, either way [rad]
+RATE = 1e6  # at the start, either way [rad/s]
+DAMPING_RATE = 1e9  # at which damping may decay [1/s]
+TIMESTEP = 1e-7, 10.0  # [s]
+
+_SHORT = reprlib.Repr()
+_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 
 
 def number(name: str, value: Any, unit: str = "") -> float:
@@ -100,14 +96,12 @@ def radians(phi0: float) -> None:
 
 def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
     """Return a list, a tuple, a range or a one-dimensional array of finite numbers as doubles, of shape (samples,)."""
-    array = None
-    if isinstance(value, (list, tuple, range)) or (hasattr(value, "__array__") and not isinstance(value, type)):
-        try:
-            array = np.asarray(value)
-        except (TypeError, ValueError):
-            array = None  # lists of different lengths
-    masked = isinstance(value, np.ma.MaskedArray)
-    if array is None or masked or array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
+    listed = isinstance(value, (list, tuple, range)) or hasattr(value, "__array__")
+    try:
+        array = np.asarray(value if listed and not isinstance(value, np.ma.MaskedArray) else None)
+    except (TypeError, ValueError):  # lists of different lengths
+        array = np.asarray(None)
+    if array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
         raise ParameterError(
             f"{name} must be a list or a one-dimensional array of one or more numbers{_in_unit(unit)}, "
             f"got {shown(value)}"
@@ -182,11 +176,8 @@ def from_given(**given: object) -> Generator[None]:
 
 def shown(value: object) -> str:
     """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
-    plain = value.item() if isinstance(value, np.generic) else value
-    if isinstance(value, np.ndarray):
-        plain = value.tolist()
     try:
-        text = _SHORT.repr(plain)
+        text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)
     except (ValueError, RuntimeError):  # an integer of 5000 digits, and what a foreign __repr__ raises
         text = f"<{type(value).__name__}>"
     return " ".join(text.splitlines())
@@ -196,10 +187,6 @@ def spelled_alike(word: str, allowed: Iterable[str]) -> list[str]:
     """Return the one or two allowed words that are spelled most like this one, in capitals or not; empty if none is."""
     folded = {each.casefold(): each for each in allowed}
     return [folded[each] for each in difflib.get_close_matches(word.casefold(), folded, n=2)]
-
-
-_SHORT = reprlib.Repr()
-_SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 
 
 def _in_unit(unit: str) -> str:

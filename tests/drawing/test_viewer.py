@@ -16,7 +16,7 @@ from mjbeer.drawing import viewer
 from mjbeer.drawing.viewer import Player, view
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import looks
-from mjbeer.model.build import compile_spec, is_rigid
+from mjbeer.model.build import compile_spec
 from mjbeer.model.export import present
 from mjbeer.model.setting import Setting
 from tests.support import processes
@@ -109,7 +109,7 @@ def test_without_a_display_there_is_one_line_with_two_ways_on() -> None:
 
 def player(speed: float = 1.0, phi0: float = 2.0) -> Player:
     setting = Setting("equality")
-    return Player(compile_spec(present(SCENE, setting, phi0, 0.0), is_rigid(setting)), speed)
+    return Player(compile_spec(present(SCENE, setting, phi0, 0.0), setting.rigid), speed)
 
 
 def test_a_player_moves_as_theory_says() -> None:

@@ -26,9 +26,9 @@ from mjbeer.exceptions import NoLibrationError, OutputError, ParameterError, Uns
 from mjbeer.model import export as exporting
 from mjbeer.model import looks, state
 from mjbeer.model.build import build, compose
-from mjbeer.model.check import effective_softness
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
+from mjbeer.studies.benchmark.measure import effective_softness
 from mjbeer.theory.equations import kinetic_energy, potential_energy
 from mjbeer.theory.liquid import Damping
 from tests.support import others

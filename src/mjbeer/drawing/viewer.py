@@ -9,7 +9,7 @@ from mjbeer import require
 from mjbeer.drawing import opengl
 from mjbeer.drawing.window import require_window
 from mjbeer.exceptions import RenderingError, UnsupportedError
-from mjbeer.model.build import START, compile_spec, is_rigid
+from mjbeer.model.build import START, compile_spec
 from mjbeer.model.export import CAMERA, present
 from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting, supported
 from mjbeer.theory.scene import Scene
@@ -94,7 +94,7 @@ def view(
     rolling = rolling or ("equality" if supported(scene, "equality") else "reduced")
     setting = Setting(rolling, integrator, timestep, friction=friction)
     require.positive("speed", speed)
-    model = compile_spec(present(scene, setting, *require.start(phi0, phi_dot0)), is_rigid(setting))
+    model = compile_spec(present(scene, setting, *require.start(phi0, phi_dot0)), setting.rigid)
     opengl.rasterize_in_one_thread()
     require_window()
     _play(Player(model, speed))

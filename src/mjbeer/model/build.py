@@ -39,9 +39,6 @@ _TURNED = [math.sqrt(0.5), 0, math.sqrt(0.5), 0]
 would move a centre of mass within 1e-6 m of the origin to the origin, and lose the weight's torque. The inertia is the
 same in both frames."""
 _DISABLE, _ENABLE = mujoco.mjtDisableBit, mujoco.mjtEnableBit
-_UNUSED = ("AUTORESET", "CLAMPCTRL", "FRICTIONLOSS", "ISLAND", "LIMIT", "MIDPHASE", "SENSOR", "SPRING")
-"""The stages of a step that no scene needs. Autoreset must go: it would hide a divergence by starting again."""
-_UNCONSTRAINED = ("CONSTRAINT", "CONTACT", "EQUALITY", "WARMSTART")
 _SINGULAR = "Inertia matrix is too close to singular"
 """What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
 _skeletons: dict[Kind, mujoco.MjModel] = {}
@@ -94,7 +91,7 @@ def compile_model(
     """Return the compiled model of a scene in a setting, with the same errors as `build`."""
     spec = compose(scene, setting, visuals)
     add_start(spec, scene, phi0, phi_dot0)
-    model = compile_spec(spec, rigid=is_rigid(setting))
+    model = compile_spec(spec, rigid=setting.rigid)
     if visuals:
         check.require_theory(model, scene, setting)
     return model
@@ -135,7 +132,9 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     made = Numbers.of(scene, setting, visuals)
     if visuals:
         spec = looks.dressed(scene)
-        _tilt(spec, scene.incline)
+        for element, angle in ((spec.body("incline"), scene.incline), (spec.frame("level"), -scene.incline)):
+            element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
+            element.quat = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
         if "slide" in made.joints and "roll" not in made.joints:  # nothing turns with the can, but these with the load
             for geom in filter(None, map(spec.geom, looks.TURNING)):
                 spec.delete(geom)
@@ -144,7 +143,8 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
         can = spec.worldbody.add_body(name="incline").add_body(name="can")
         if "load" in made.bodies:
             can.add_body(name="load")
-        _disable_unused(spec, made.kind)
+        for stage in _unused(made.kind):
+            spec.option.disableflags |= int(_DISABLE.__members__[f"mjDSBL_{stage}"])
     # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
     # in contact, must lie on the incline.
     spec.compiler.fusestatic = not visuals
@@ -198,11 +198,7 @@ class Stepped:
         self.write(made)
 
     def write(self, made: Numbers) -> None:
-        """Write numbers of the same kind into the model, and reset the data.
-
-        Raises:
-          UnsupportedError: if MuJoCo cannot have such a model.
-        """
+        """Write numbers of the same kind into the model, with the same errors, and reset the data."""
         model, data = self.model, self.data
         numbers.write(made, model)
         mujoco.mj_resetData(model, data)
@@ -216,11 +212,6 @@ class Stepped:
         if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
             raise _refused(_SINGULAR)
         mujoco.mj_resetData(model, data)
-
-
-def is_rigid(setting: Setting) -> bool:
-    """Return whether a model's rolling is a joint equality that is solved exactly."""
-    return setting.rolling == "equality" and setting.softness == TUNED
 
 
 def _make_rigid(model: mujoco.MjModel) -> None:
@@ -240,22 +231,12 @@ def _refused(reason: str) -> UnsupportedError:
     return UnsupportedError(f"MuJoCo cannot represent this scene: {reason}")
 
 
-def _tilt(spec: mujoco.MjSpec, incline: float) -> None:
-    """Tilt the incline, and keep the frame of the cameras level."""
-    for element, angle in ((spec.body("incline"), incline), (spec.frame("level"), -incline)):
-        element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
-        element.quat = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
-
-
-def _disable_unused(spec: mujoco.MjSpec, kind: Kind) -> None:
-    stages = (
-        *_UNUSED,
-        *(() if kind.dissipates else ("DAMPER",)),
-        *(() if kind.pushed else ("ACTUATION",)),
-        *{"reduced": _UNCONSTRAINED, "equality": ("CONTACT",), "contact": ()}[kind.rolling],
-    )
-    for stage in stages:
-        spec.option.disableflags |= int(_DISABLE.__members__[f"mjDSBL_{stage}"])
+def _unused(kind: Kind) -> tuple[str, ...]:
+    """Return the stages of a step that a kind of model does not need. Autoreset would hide a divergence."""
+    never = ("AUTORESET", "CLAMPCTRL", "FRICTIONLOSS", "ISLAND", "LIMIT", "MIDPHASE", "SENSOR", "SPRING")
+    constraint = {"reduced": ("CONSTRAINT", "CONTACT", "EQUALITY", "WARMSTART"), "equality": ("CONTACT",)}
+    forces = (*(() if kind.dissipates else ("DAMPER",)), *(() if kind.pushed else ("ACTUATION",)))
+    return (*never, *forces, *constraint.get(kind.rolling, ()))
 
 
 def _add(spec: mujoco.MjSpec, kind: Kind) -> None:

@@ -1,4 +1,4 @@
-"""What a compiled model does: its accelerations beside those of theory, and the softness that its solver gives.
+"""What a compiled model does: its accelerations beside those of theory.
 
 A model that is right accelerates as theory says, at some states. One from an edited template may not, and is refused.
 One of a scene with unequal masses may have lost something in rounding: MuJoCo adds masses, and multiplies arms by
@@ -9,7 +9,7 @@ wrong alike, so that no comparison of runs can show it.
 
 import copy
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -38,8 +38,6 @@ _SMALL_SWING = 0.1
 motion that hardly swings would otherwise divide rounding by nearly nothing."""
 _OF_SLIP = 8 * float(np.finfo(float).eps)
 """Rounding of a slip rate, over the rates whose difference it is: each is rounded a few times."""
-_ROWS = {"reduced": (0,), "equality": (1,)}
-"""Rows of constraints that a model of each rolling has."""
 
 
 def require_theory(model: mujoco.MjModel, scene: Scene, setting: Setting) -> None:
@@ -86,7 +84,8 @@ def _other_elements(model: mujoco.MjModel, scene: Scene, setting: Setting, motio
         with quiet():
             mujoco.mj_forward(model, data)
         per_contact = 3 if model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC else 4
-        rows = _ROWS.get(setting.rolling) or tuple(per_contact * count for count in range(1, 5))
+        contacts = tuple(per_contact * count for count in range(1, 5))
+        rows = {"reduced": (0,), "equality": (1,), "contact": contacts}[setting.rolling]
         if data.nefc not in rows:
             return f"gives {data.nefc} rows of constraints instead of {rows[0]}"
         if any(warning.number for warning in data.warning):
@@ -166,46 +165,3 @@ def _rolling(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
         return along[None]
     along[joints["swing"]], turning[joints["swing"]] = -1.0, 1.0
     return np.stack([along, turning])
-
-
-@dataclass(frozen=True)
-class EffectiveSoftness:
-    """The softness of a constraint, as asked for and as the solver used it."""
-
-    timeconst: float
-    """Time constant that solref asks for [s]."""
-    effective_timeconst: float
-    """Time constant that the solver used [s]: `refsafe` raises one below two timesteps."""
-    impedance: float
-    """d of solimp: the share of its reference acceleration that a row with the exact diagonal would reach."""
-    effective_impedance: float
-    """The share that the row reached, with the regularizer that the solver used and the exact diagonal."""
-
-    @property
-    def changed(self) -> bool:
-        """Return whether the solver used another time constant than solref asks for."""
-        return abs(self.effective_timeconst / self.timeconst - 1) > 1e-9
-
-
-def effective_softness(model: mujoco.MjModel, state: np.ndarray) -> EffectiveSoftness | None:
-    """Return the softness of the rolling constraint at a `state`, shape (nq + nv,); None if no constraint is active.
-
-    The time constant comes from the stiffness K = 1/(d tau)^2 (damping ratio 1) of MuJoCo's reference acceleration, and
-    the impedance from the regularizer R and the diagonal A = J M^-1 J^T of the constraint's first row.
-    """
-    data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:] = state[: model.nq], state[model.nq :]
-    with quiet():
-        mujoco.mj_forward(model, data)
-    if data.nefc == 0:
-        return None
-    solref, solimp = (model.eq_solref, model.eq_solimp) if model.neq else (model.pair_solref, model.pair_solimp)
-    jacobian, mass = np.array(data.efc_J).reshape(-1, model.nv)[0], np.zeros((model.nv, model.nv))
-    mujoco.mj_fullM(model, data, mass)
-    diagonal = float(jacobian @ np.linalg.solve(mass, jacobian))
-    return EffectiveSoftness(
-        timeconst=float(solref[0, 0]),
-        effective_timeconst=1 / (float(solimp[0, 1]) * float(data.efc_KBIP[0, 0]) ** 0.5),
-        impedance=float(data.efc_KBIP[0, 2]),
-        effective_impedance=diagonal / (diagonal + float(data.efc_R[0])),
-    )

@@ -36,22 +36,19 @@ _DIGITS = 17
 PORTABLE = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
-_METRE = 1.0
-"""Radius [m] from which on a portable equality is about distances instead of angles."""
 _PORTABLE_CONTACT = Softness(exact_diagonal=False, impedance=(0.999, 0.999), impratio=10.0)
 """The softness of a portable contact. With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double
 precision, but in single precision, as in mujoco_warp, the solver then ends with NaN."""
+# What a model that was read back must have: the rows of its bodies (a portable one lacks those without mass), and all
+# of the other arrays, options and, where the joints are, places and directions in the world.
 _INERTIALS = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
-"""Arrays of which a portable model lacks the rows of bodies without mass."""
 _EXACT = (
     "jnt_axis", "dof_armature", "dof_damping", "dof_dampingpoly", "tendon_armature", "tendon_damping",
     "tendon_dampingpoly", "wrap_prm", "actuator_gainprm", "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp",
     "pair_friction", "pair_solref", "pair_solimp", "key_qpos", "key_qvel",
 )  # fmt: skip
-"""Arrays that are the same in whatever bodies the model has."""
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
 _POSES = ("geom_xpos", "geom_xmat", "site_xpos", "site_xmat", "cam_xpos", "cam_xmat", "light_xpos", "light_xdir")
-"""Arrays of positions and orientations in the world."""
 _LEFT_OUT = float(np.finfo(float).eps)
 """Largest difference that is allowed. MuJoCo does not write a number that is this near to its default, such as a force
 of 1e-16 N. The numbers that it writes are read back to the last bit, except quaternions, which it normalizes again."""
@@ -163,14 +160,10 @@ def _add_sensors(spec: mujoco.MjSpec, scene: Scene) -> None:
     the can may leave the incline; and the potential and the kinetic energy [J].
     """
     joints, radius = {joint.name for joint in spec.joints}, scene.can.radius
+    _add_sensor(spec, "u", {"slide": 1.0} if "slide" in joints else {"phi": radius}, rate=True)
+    _add_sensor(spec, "phi", {name: 1.0 for name in ("phi", "roll", "swing") if name in joints}, rate=True)
     if "roll" in joints:
-        phi = {"roll": 1.0, "swing": 1.0} if "swing" in joints else {"roll": 1.0}
-        _add_sensor(spec, "u", {"slide": 1.0}, rate=True)
-        _add_sensor(spec, "phi", phi, rate=True)
         _add_sensor(spec, "slip", {"slide": 1.0, "roll": -radius})
-    else:  # a reduced model, in which u is a coordinate or follows from phi
-        _add_sensor(spec, "u", {"slide": 1.0} if "slide" in joints else {"phi": radius}, rate=True)
-        _add_sensor(spec, "phi", {"phi": 1.0}, rate=True)
     if "lift" in joints:
         _add_sensor(spec, "lift", {"lift": 1.0})
     # MuJoCo counts no constant force that stands for a weight as potential energy, and has what multiplied masses have.
@@ -210,13 +203,10 @@ def _text(spec: mujoco.MjSpec) -> str:
 
 
 def _require_same(built: mujoco.MjModel, reread: mujoco.MjModel) -> None:
-    """Check that a model that was read back from MJCF moves as the one that was written, and looks like it.
-
-    Its bodies have the same inertias, and no mass is missing. Its joints, constraints and options are the same, and
-    everything is at the same place in two positions of the joints.
+    """Check that a model that was read back from MJCF has the same numbers, and all in the same place in two positions.
 
     Raises:
-      MjbeerError: if it is not so; the message has the first number that differs.
+      MjbeerError: if not; the message has the first number that differs.
     """
     kept = [built.body(reread.body(body).name).id for body in range(reread.nbody)]
     for name in _INERTIALS:
@@ -269,7 +259,7 @@ def _portable_softness(scene: Scene, made: Setting) -> Softness:
         )
     if made.rolling == "contact":
         return _PORTABLE_CONTACT
-    return Softness(exact_diagonal=False, first="hinge" if scene.can.radius < _METRE else "slide")
+    return Softness(exact_diagonal=False, first="hinge" if scene.can.radius < 1.0 else "slide")
 
 
 def _portable(text: str) -> str:

@@ -86,11 +86,7 @@ def name(scene: Scene) -> str:
 
 
 def template(scene: Scene) -> pathlib.Path:
-    """Return the template's file for a scene.
-
-    Raises:
-      TemplateError: if there are no templates.
-    """
+    """Return the template's file for a scene, with the errors of `folder`."""
     return folder() / f"{name(scene)}.xml"
 
 
@@ -139,15 +135,15 @@ def _remove_mechanics(spec: mujoco.MjSpec) -> None:
 
 def _reset(element: Any, fresh: Any) -> None:
     """Give an element the attributes of a fresh one of its kind, except those that identify it."""
-    for name in _attributes(type(fresh)):
-        setattr(element, name, getattr(fresh, name))
+    for attribute in _attributes(type(fresh)):
+        setattr(element, attribute, getattr(fresh, attribute))
 
 
 @functools.cache
 def _attributes(kind: type) -> tuple[str, ...]:
     """Return the names of the attributes that can be set in a kind of element, except those that identify it."""
-    settable = (name for name in dir(kind) if getattr(getattr(kind, name), "fset", None) is not None)
-    return tuple(name for name in settable if name not in _IDENTITY)
+    settable = (each for each in dir(kind) if getattr(getattr(kind, each), "fset", None) is not None)
+    return tuple(each for each in settable if each not in _IDENTITY)
 
 
 def _fit(spec: mujoco.MjSpec, scene: Scene) -> None:
@@ -219,7 +215,7 @@ def _fit_mesh(element: mujoco.MjsMesh, place: pathlib.Path, size: float, length:
 
 @functools.lru_cache(maxsize=32)
 def _triangles(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Return vertices, their places in a texture as one row, and faces of a file as mjbeer's are, None for another one.
+    """Return vertices, their places in a texture as one row, and faces of a file; None for one unlike mjbeer's.
 
     mjbeer's files have triangles, and as many places in a texture as vertices, or none.
     """
@@ -229,8 +225,8 @@ def _triangles(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarra
     alike = len(places) in (0, len(vertices)) and all(len(set(each)) == 1 for each in corners)
     if not alike or any(len(face) != 3 for face in faces):
         return None
-    numbers = np.array([int(first) - 1 for first, *_ in corners]).reshape(-1, 3)
-    return np.array(vertices, float), np.array(places, float).ravel(), numbers
+    indices = np.array([int(first) - 1 for first, *_ in corners]).reshape(-1, 3)
+    return np.array(vertices, float), np.array(places, float).ravel(), indices
 
 
 def _reshape(element: mujoco.MjsMesh, shape: Mesh) -> None:
@@ -271,16 +267,12 @@ def _fill(spec: mujoco.MjSpec, scene: Scene, fill: float) -> None:
         across = np.sqrt((1 - heights) * (1 + heights)) * [-1, 1, 1, -1]
         _reshape(foam, _prism(radius * np.stack([across, heights], axis=1), length))
     else:
-        for element in (spec.geom("foam"), foam):
-            if element is not None:
-                spec.delete(element)
+        for element in filter(None, (spec.geom("foam"), foam)):
+            spec.delete(element)
 
 
 def beer(fill: float, radius: float, length: float, edges: int = EDGES) -> Mesh:
-    """Return the beer of a given `fill`, eq. (32), below its horizontal surface in a can of `radius` and `length` [m].
-
-    It is a prism along the can's axis.
-    """
+    """Return the beer of a given `fill`, eq. (32), in a can of `radius` and `length` [m]: a prism along the axis."""
     beta = segment(fill).half_angle
     # The arc of a full can closes on itself, so that its last vertex would repeat the first.
     angles = np.linspace(-beta, beta, edges + 1)[: None if fill < 1 else -1]

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import mujoco
 
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.model.setting import DOP853, OWN, TUNED, FirstJoint, Setting
+from mjbeer.model.setting import DOP853, OWN, FirstJoint, Setting
 from mjbeer.theory.scene import Scene
 
 Made: TypeAlias = mujoco.MjSpec | mujoco.MjModel
@@ -148,7 +148,7 @@ class Numbers:
             chord=self.chord > 0,
             damped=damped,
             dissipates=damped or self.drag > 0,
-            rigid=self.setting.rolling == "equality" and soft == TUNED,
+            rigid=self.setting.rigid,
             first=soft.first,
             refsafe=soft.refsafe,
             exact_diagonal=soft.exact_diagonal,
@@ -171,7 +171,7 @@ def mass_unit(scene: Scene) -> float:
         values = can.mass - moved, can.inertia, load.mass, load.inertia, base
     smallest = min(value for value in values if value > _NOTHING * max(values))
     up = math.ceil(math.log2(_SMALLEST / smallest))
-    down = math.floor(math.log2(_LARGEST / (scene.effective_mass)))
+    down = math.floor(math.log2(_LARGEST / scene.effective_mass))
     return 2.0 ** max(up, min(0, down))
 
 
@@ -286,8 +286,8 @@ def _scaled(unit: float, body: Inertial) -> Inertial:
 
 def write(numbers: Numbers, made: Made) -> None:
     """Write all numbers into a specification that has the elements of their kind, or a model compiled from it."""
-    scene, setting = numbers.scene, numbers.setting
-    option = made.opt if isinstance(made, mujoco.MjModel) else made.option
+    scene, setting, compiled = numbers.scene, numbers.setting, isinstance(made, mujoco.MjModel)
+    option = made.opt if compiled else made.option
     integrator = "RK4" if setting.integrator in OWN else setting.integrator  # mjbeer's own step by themselves
     option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
     option.timestep = numbers.timestep
@@ -301,15 +301,18 @@ def write(numbers: Numbers, made: Made) -> None:
     if numbers.force != 0:
         made.actuator("weight").biasprm[0] = numbers.force
     if numbers.chord > 0:
-        _write_tendon(made, "chord", armature=numbers.chord)
+        chord = made.tendon("chord")
+        if compiled:
+            made.tendon_armature[chord.id] = numbers.chord
+        else:
+            chord.armature = numbers.chord
     # MuJoCo's polynomials of a rate v: d1 v + d2 v |v| + d3 v^3. A drag of 0 may follow another one in a model.
     if numbers.kind.dissipates:
         _write_damping(made, "slide", (0.0, numbers.drag, 0.0))
-    if any(numbers.damping):
-        if "swing" in numbers.joints:
-            _write_damping(made, "swing", numbers.damping)
-        else:
-            _write_tendon(made, "damper", damping=numbers.damping, slide=-1 / scene.can.radius)
+    if numbers.kind.damped and "swing" in numbers.joints:
+        _write_damping(made, "swing", numbers.damping)
+    elif numbers.kind.damped:
+        _write_damper(made, numbers.damping, -1 / scene.can.radius)
     if setting.rolling == "equality":
         rolling, radius = made.equality("rolling"), scene.can.radius
         rolling.data[:5] = [0, radius if setting.softness.first == "slide" else 1 / radius, 0, 0, 0]
@@ -349,17 +352,12 @@ def _write_damping(made: Made, joint: str, damping: tuple[float, ...]) -> None:
         made.joint(joint).damping = damping
 
 
-def _write_tendon(
-    made: Made, name: str, armature: float = 0.0, damping: tuple[float, ...] = (0.0, 0.0, 0.0), slide: float = 0.0
-) -> None:
-    """Write the numbers of a tendon; in a specification, the weight of the joint "slide" in "damper" is there."""
+def _write_damper(made: Made, damping: tuple[float, ...], slide: float) -> None:
+    """Write the damping of the tendon "damper", and the weight with which the joint "slide" is part of its length."""
+    damper = made.tendon("damper")
     if isinstance(made, mujoco.MjModel):
-        tendon = made.tendon(name).id
-        made.tendon_armature[tendon] = armature
-        made.tendon_damping[tendon], made.tendon_dampingpoly[tendon] = damping[0], damping[1:]
-        if slide:
-            made.wrap_prm[made.tendon_adr[tendon] + 1] = slide
+        made.tendon_damping[damper.id], made.tendon_dampingpoly[damper.id] = damping[0], damping[1:]
+        made.wrap_prm[made.tendon_adr[damper.id] + 1] = slide
     else:
-        made.tendon(name).armature, made.tendon(name).damping = armature, damping
-        if slide:
-            made.tendon(name).wrap_joint("slide", slide)
+        damper.damping = damping
+        damper.wrap_joint("slide", slide)

@@ -122,6 +122,11 @@ class Setting:
             )
         require.instance("softness", self.softness, Softness)
 
+    @property
+    def rigid(self) -> bool:
+        """Whether rolling is a joint equality that is solved exactly."""
+        return self.rolling == "equality" and self.softness == TUNED
+
     @classmethod
     def of(
         cls,

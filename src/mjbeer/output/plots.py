@@ -53,7 +53,6 @@ STYLE: Any = {
 """Settings of matplotlib."""
 _TITLE, _SUBTITLE, _EDGE = 0.32, 0.24, 0.1
 """Heights of the title's and the subtitle's lines, and their distance from the edge [inches]."""
-
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -85,8 +84,7 @@ def chart(
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(_power))
         named = {"Title": ": ".join(filter(None, (title, subtitle)))} if title else {}
-        for kind in (".svg", ".png"):
-            metadata = {"Date": None, **named} if kind == ".svg" else {}
+        for kind, metadata in ((".svg", {"Date": None, **named}), (".png", {})):
             with files.whole(path.with_name(path.name + kind)) as temporary:
                 figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
                 if kind == ".svg":

@@ -96,10 +96,9 @@ def error(integrator: str, swing: float, drift: float = 0.0, pace: float = 1.0) 
 
 
 def stable_limit(integrator: str) -> float:
-    """Return the largest omega h with a bounded swing.
+    """Return the largest omega h with a bounded swing: 2 for semi-implicit Euler, 2 sqrt(2) for RK4, 5.97 for DOP853.
 
-    It is 2 for semi-implicit Euler, 2 sqrt(2) for RK4 and 5.97 for DOP853; but 0.15 % more for RK4, as an instability
-    needs time to grow.
+    For RK4 it is 0.15 % more, as an instability needs time to grow.
     """
     return first(lambda swing: growth(integrator, swing) - math.log(GROWTH), 0.05, 20.0)
 
@@ -110,9 +109,7 @@ def accurate_limit(integrator: str) -> float:
 
 
 def first(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Return the smallest value between `low` and `high`, both positive, from which on `excess` is positive.
-
-    If there is none, return `high`.
+    """Return the smallest value from `low` to `high`, both positive, from which on `excess` is positive, or `high`.
 
     Raises:
       ValueError: if `excess` is positive at `low`.

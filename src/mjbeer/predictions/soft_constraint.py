@@ -22,6 +22,11 @@ import numpy as np
 
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
 
+MAX_IMPEDANCE = 0.9999
+"""Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
+_BOUNDED = 1 + 1e-9
+"""Largest spectral radius that counts as bounded."""
+
 
 def residual_slip(penetration: float, radius: float) -> float:
     """Return the slip over the distance rolled of a can that sinks by `penetration` [m] into the incline: -delta/2a.
@@ -40,15 +45,9 @@ def reached_share(impedance: float, excess: float) -> float:
     return 1 / (1 + (1 - impedance) / impedance * excess)
 
 
-MAX_IMPEDANCE = 0.9999
-"""Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
-_BOUNDED = 1 + 1e-9
-"""Largest spectral radius that counts as bounded."""
-
-
 @dataclass(frozen=True)
 class SoftRow:
-    """One row of a soft constraint: its reference acceleration -b r' - k r, and its impedance."""
+    """One row of a soft constraint, with the reference acceleration -b r' - k r."""
 
     stiffness: float
     """k [1/s^2], MuJoCo's K times the impedance."""

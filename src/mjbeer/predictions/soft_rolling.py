@@ -46,11 +46,9 @@ class System:
     def step(self, integrator: str, row: SoftRow, timestep: float) -> np.ndarray:
         """Return the matrix of one step of (q, h q') with a `timestep` h [s]; all but friction rows are like `row`."""
         friction = SoftRow(0.0, row.damping, row.impedance)
-        damped = self.mass + timestep * self.damping
-        mass = self.mass
+        mass, damped = self.mass, self.mass + timestep * self.damping
         if integrator == "discrete":
-            row, friction = row.at_end_of_step(timestep), friction.at_end_of_step(timestep)
-            mass = damped
+            mass, row, friction = damped, row.at_end_of_step(timestep), friction.at_end_of_step(timestep)
         stiffness, damping = np.linalg.solve(mass, self.gravity), np.linalg.solve(mass, self.damping)
         if self.rows:
             jacobian = np.array([row_jacobian for row_jacobian, _ in self.rows])
@@ -95,11 +93,8 @@ def by_equality(scene: Scene, excess: float = 1.0, angle: float = 0.0) -> System
     A frozen load is on level ground, at phi = 0, its equilibrium.
     """
     joints, mass, gravity, damping = _matrices(scene, angle)
-    row = np.zeros(len(joints))
-    row[:2] = 1.0, -scene.can.radius
-    return System(
-        coordinates=joints, mass=mass, gravity=gravity, damping=damping, rows=((row, "equality"),), excess=excess
-    )
+    row = np.array([1.0, -scene.can.radius, 0.0])[: len(joints)], "equality"
+    return System(coordinates=joints, mass=mass, gravity=gravity, damping=damping, rows=(row,), excess=excess)
 
 
 def diagonal_excess(scene: Scene) -> float:
@@ -127,9 +122,7 @@ def by_contact(scene: Scene, depth: float, points: int, impratio: float, angle: 
     mass[others], gravity[others], damping[others] = inertias, stiffness, between
     mass[1, 1] = scene.mass
     mass[1, 2:] = mass[2:, 1] = scene.load.moment * math.sin(angle)
-    normal, sliding = np.zeros(count), np.zeros(count)
-    normal[1] = 1.0
-    sliding[[0, 2]] = -1.0, scene.can.radius - depth / 2
+    normal, sliding = np.array([[0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, scene.can.radius - depth / 2, 0.0]])[:, :count]
     rows = ((normal, "normal"), (sliding, "friction")) * points
     names = (joints[0], "lift", *joints[1:])
     return System(coordinates=names, mass=mass, gravity=gravity, damping=damping, rows=rows, impratio=impratio)

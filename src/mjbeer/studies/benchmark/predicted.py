@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.model.build import compile_model
-from mjbeer.model.check import effective_softness
 from mjbeer.model.setting import TUNED, USUAL
 from mjbeer.output.terminal import Table
 from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.simulation.simulate import simulate
+from mjbeer.studies.benchmark.measure import effective_softness
 from mjbeer.studies.cases import CASES, Case
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
