@@ -7,7 +7,6 @@ from collections.abc import Collection
 import pytest
 
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA
 from mjbeer.predictions.soft_rolling import System
 from mjbeer.studies.stability import damped_maps, damped_plots, stored
 from mjbeer.studies.stability.damped_runs import EXPLODED, INACCURATE, SILENT, TRUSTED, WARNED, DampedRuns
@@ -110,20 +109,15 @@ def test_the_errors_of_the_document_are_measured_now() -> None:
 def test_the_counts_of_the_document_are_those_of_the_stored_maps() -> None:
     kept = stored.load()["damped"]
 
-    def count(outcomes: Collection[int], integrators: Collection[str] = (*INTEGRATORS, DOP853)) -> int:
-        cells = "".join(row for result in kept if result["integrator"] in integrators for row in result["measured"])
+    def count(outcomes: Collection[int]) -> int:
+        cells = "".join(row for result in kept for row in result["measured"])
         return sum(cells.count(str(outcome)) for outcome in outcomes)
 
-    accurate, first, high = (WARNED, TRUSTED), ("Euler", "implicit", "implicitfast", "discrete"), RUNGE_KUTTA
     words = " ".join(DOCUMENT.split())
     assert f"Of the {count(range(5)):,} runs in the maps {count([EXPLODED])} explode." in words
     assert f"{count([INACCURATE]):,} are inaccurate, and say it." in words
-    assert f"Of {count(accurate, first)} accurate runs of `Euler`" in words
-    assert count([TRUSTED], first) == 2
-    assert f"of {count(accurate, high)} of RK4 and DOP853 only {count([WARNED], high)} do." in words
+    assert f"Of {count((WARNED, TRUSTED)):,} accurate runs {count([WARNED])} warn all the same." in words
     worst = {result["name"]: f"{100 * result['worst']:.1f} %" for result in kept}
     borders = {number for name, number in worst.items() if not name.startswith("contact")}
     assert f"agree within {max(borders)}, in contact within {worst['contact, RK4']} under RK4" in words
     assert f"and {worst['contact, DOP853']} under DOP853" in words
-    drifts = [result["warned"] for result in kept if result["rolling"] == "reduced" and result["integrator"] in first]
-    assert f"up to {max(run['implied'] / run['error'] for run in drifts):.0f} times as large" in words
