@@ -9,8 +9,7 @@ from mjbeer.drawing.race import Race
 from mjbeer.paper.stories import report
 from mjbeer.report import races
 from mjbeer.report.films import FILMS
-from mjbeer.theory.liquid import LIQUIDS
-from mjbeer.theory.scene import liquid_in
+from mjbeer.theory.liquid import LIQUIDS, liquid_in
 from tests.support.labels import faults
 
 ALL: dict[str, tuple[Film, float]] = {

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING
 
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
 from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import Damping
+from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, frozen, hoop, liquid, pendulum, register_views, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene, pictures
 from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -58,7 +60,7 @@ _LAZY = {
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep.run",
 }
-register_views(lambda: import_module("mjbeer.drawing.views"))
+pictures[:] = [lambda: import_module("mjbeer.drawing.views")]
 
 
 def __getattr__(name: str) -> object:

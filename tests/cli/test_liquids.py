@@ -11,7 +11,7 @@ import mjbeer
 from mjbeer.cli.app import main
 from mjbeer.cli.studies import Paper
 from mjbeer.exceptions import LiquidWarning
-from mjbeer.theory.scene import liquid_in
+from mjbeer.theory.liquid import liquid_in
 
 
 def test_what_a_liquid_uses_is_told(capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,8 +18,8 @@ from mjbeer.model.build import Stepped, compile_model, compose
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, USUAL, MujocoIntegrator, Rolling, Setting, Softness, supported
 from mjbeer.model.state import places, read
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, kinetic_energy
-from mjbeer.theory.liquid import Damping
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
 
 # Sums of a few products each, some of which cancel in part on a random scene; compared with their largest term.

@@ -29,8 +29,8 @@ from mjbeer.model.build import build, compose
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.studies.benchmark.measure import effective_softness
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy, potential_energy
-from mjbeer.theory.liquid import Damping
 from tests.support import others
 from tests.support.others import BY_NAME, FRICTION, START
 from tests.support.scenes import METAL, SCENES, scenes

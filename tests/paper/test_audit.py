@@ -15,7 +15,7 @@ from mjbeer.paper.equations import frozen, massive_can, pendulum
 from mjbeer.paper.equations import sliding as equations
 from mjbeer.paper.letters import Quantities, Terms
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.named import sliding
 
 CLAIMS = chapters.claims()
 NAMES = [f"{claim.equation} {claim.quantity}" for claim in CLAIMS]

@@ -14,9 +14,9 @@ from mjbeer import exact, liquid, sliding
 from mjbeer.paper.stories import real_beer
 from mjbeer.paper.stories.real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.liquid import ENDS, FIT_ERROR, LIQUIDS, NAMES, WALL
+from mjbeer.theory.liquid import ENDS, FIT_ERROR, LIQUIDS, NAMES, WALL, liquid_in
 from mjbeer.theory.load import segment
-from mjbeer.theory.scene import Scene, liquid_in
+from mjbeer.theory.scene import Scene
 from tests.support.full_can import FullCan
 
 pytestmark = pytest.mark.slow

@@ -16,7 +16,7 @@ from mjbeer.paper.stories import report
 from mjbeer.paper.stories.frozen import _contact_at_equilibrium, _footnote_8_as_printed
 from mjbeer.paper.stories.hopping import _skids
 from mjbeer.paper.stories.sliding import _least_push
-from mjbeer.theory.scene import in_words
+from mjbeer.theory.named import in_words
 from tests.support import figures, stubs
 
 pytestmark = pytest.mark.slow

@@ -13,9 +13,9 @@ from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import ToleranceError
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, stiffness
 from mjbeer.theory.exact import phi_error
-from mjbeer.theory.liquid import Damping
 from mjbeer.theory.trajectory import distance
 from tests.support import damped
 from tests.support.scenes import METAL, error, scenes

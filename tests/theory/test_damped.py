@@ -12,8 +12,8 @@ from scipy.linalg import expm
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import AngleWarning, ToleranceError
 from mjbeer.theory import damped
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import energy, slip_rate
-from mjbeer.theory.liquid import Damping
 from tests.support import damped_taylor, taylor
 from tests.support.scenes import METAL, scenes
 

@@ -11,9 +11,8 @@ from scipy.optimize import brentq
 from mjbeer import Can, LiquidWarning, exact, liquid, sliding
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL, about_run, lost_at
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL, about_run, liquid_in
 from mjbeer.theory.load import segment
-from mjbeer.theory.scene import liquid_in
 from tests.support.scenes import METAL
 
 # The coefficients are rounded to four and five digits.
@@ -182,7 +181,7 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     """At sqrt(g a cos(alpha)) = 0.565 m/s; and where the slip rates are not those of the law."""
     scene = liquid("water", incline=math.radians(10))
     run = exact(scene, np.linspace(0, 1, 1001), 0.0)
-    time = lost_at(scene, run.time, run.u_dot)
+    time = run.record.no_lump_at
     speed = float(np.interp(time, run.time, run.u_dot))
     assert speed == pytest.approx(math.sqrt(9.81 * math.cos(scene.incline) * 0.033), rel=2e-3)  # a sample later
     slips = np.abs(slip_rate(scene, run.phi_dot, run.u_dot))
@@ -193,7 +192,7 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     )
     assert about_run(scene, 50.0, math.inf) is None
     assert "17.8 to 178 rad/s between can and liquid, but 200" in (about_run(scene, 200.0, math.inf) or "")
-    assert lost_at(scene, run.time[:10], run.u_dot[:10]) == math.inf
+    assert exact(scene, run.time[:10], 0.0).record.no_lump_at == math.inf
     assert about_run(sliding(damping=1e-3), 1e9, 0.0) is None  # what is no liquid's may be anything
 
 

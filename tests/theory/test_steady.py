@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
+from mjbeer.theory import damping
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations
-from mjbeer.theory.liquid import Damping
-from mjbeer.theory.steady import _roots
 from tests.support.scenes import METAL, scenes
 
 # A few sums and products.
@@ -108,7 +108,7 @@ def test_roots_of_any_cubic() -> None:
             continue
         with mpmath.workdps(40):
             expected = [complex(each) for each in mpmath.polyroots([1, square, linear, constant], 500, extraprec=200)]
-        found, sizes = _roots(square, linear, constant, square * linear - constant), np.abs(expected)
+        found, sizes = damping.roots(square, linear, constant, square * linear - constant), np.abs(expected)
         gaps = np.abs(np.subtract.outer(expected, expected)) / np.maximum.outer(sizes, sizes) + np.eye(3)
         if gaps.min() > 1e-2:
             tried += 1

@@ -12,9 +12,10 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
-from mjbeer.theory.liquid import NAMES, Name
+from mjbeer.theory.liquid import NAMES, Name, liquid, liquid_in
 from mjbeer.theory.load import BEER
-from mjbeer.theory.scene import DURATION, GRAVITY, PHI0, Scene, frozen, hoop, liquid, liquid_in, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import DURATION, GRAVITY, PHI0, Scene
 
 if TYPE_CHECKING:
     from mjbeer.theory.trajectory import Trajectory

@@ -11,8 +11,9 @@ import numpy as np
 
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
+from mjbeer.theory.named import damping_in_words
 from mjbeer.theory.record import Record
-from mjbeer.theory.scene import Scene, damping_in_words
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 

@@ -19,7 +19,7 @@ from mjbeer.drawing.world.view import View
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import in_degrees
+from mjbeer.theory.named import in_degrees
 
 APART = 0.225
 """Distance from lane to lane as drawn [m]; a can is 0.12 m long."""

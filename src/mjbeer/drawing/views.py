@@ -15,7 +15,8 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.theory.exact import solution
-from mjbeer.theory.scene import Scene, damping_in_words, in_words
+from mjbeer.theory.named import damping_in_words, in_words
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from mjbeer.drawing.studio import Order
 from mjbeer.paper.stories import report as stories_report
 from mjbeer.report import races
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 
 FILMS: dict[str, Film] = {
     "race": Race(

@@ -10,8 +10,9 @@ from mjbeer.drawing.runner import Runner
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import Name
-from mjbeer.theory.scene import Scene, frozen, in_degrees, liquid_in, sliding
+from mjbeer.theory.liquid import Name, liquid_in
+from mjbeer.theory.named import frozen, in_degrees, sliding
+from mjbeer.theory.scene import Scene
 
 METAL = Can.sheet_metal()
 LENGTH = 1.0

@@ -6,7 +6,8 @@ import numpy as np
 
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 SAMPLES = 65

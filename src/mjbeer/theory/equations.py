@@ -1,4 +1,4 @@
-"""The equations of motion of a can that rolls without slipping: accelerations, forces, energy and momentum.
+"""The equations of motion of a can that rolls without slipping: accelerations, forces and energy.
 
 The accelerations are those of eqs. (46) and (47), with the damping between can and load and the drag of the air added.
 The normal force N and the friction force F, with which the incline keeps the can rolling, follow from Newton's second
@@ -36,6 +36,10 @@ class Coordinates:
     lift_dot: np.ndarray
     """Velocity of the can away from the incline [m/s]."""
 
+    def at(self, samples: np.ndarray | list[int] | slice) -> "Coordinates":
+        """Return some of the samples."""
+        return Coordinates(**{name: getattr(self, name)[samples] for name in Coordinates.__dataclass_fields__})
+
 
 @dataclass(frozen=True, eq=False)
 class Forces:
@@ -60,29 +64,17 @@ def accelerations(
 
     The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to damping and drag alone.
     """
-    u_ddot, phi_ddot, _, _ = _accelerations(scene, phi, phi_dot, u_dot)
-    return u_ddot, phi_ddot
-
-
-def _accelerations(
-    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return u_ddot [m/s^2], phi_ddot [rad/s^2], and how the load's centre of mass accelerates relative to the axis.
-
-    The latter are over b [1/s^2]: away from the incline, and uphill.
-    """
-    sin, cos, square, moment = np.sin(phi), np.cos(phi), phi_dot**2, scene.load.moment
+    moment, cos = scene.load.moment, np.cos(phi)
     phi_ddot, along = scene.oscillator.acceleration(phi, phi_dot), 0.0
+    if scene.attachment == "frozen":
+        return scene.can.radius * phi_ddot, phi_ddot
     if scene.dissipates:
         # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
         # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
         torque, along = dissipation(scene, phi_dot, u_dot)
         phi_ddot = phi_ddot + (torque + moment * cos / scene.effective_mass * along) / scene.oscillator.inertia(phi)
-    across, uphill = sin * phi_ddot + cos * square, cos * phi_ddot - sin * square
-    if scene.attachment == "frozen":
-        return scene.can.radius * phi_ddot, phi_ddot, across, uphill
-    u_ddot = (scene.drive + moment * uphill + along) / scene.effective_mass  # eq. (46)
-    return u_ddot, phi_ddot, across, uphill
+    swung = moment * (cos * phi_ddot - np.sin(phi) * phi_dot**2)
+    return (scene.drive + swung + along) / scene.effective_mass, phi_ddot  # eq. (46)
 
 
 def dissipation(
@@ -101,30 +93,26 @@ def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | flo
 def stiffness(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> np.ndarray:
-    """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J).
-
-    J_f is the inertia against which can and load turn as one.
-    """
-    radius, moment = scene.can.radius, scene.load.mass * scene.load.offset
-    mass = scene.mass + scene.can.inertia / radius**2
-    frozen = mass * radius**2 + scene.load.inertia + moment * (scene.load.offset - 2 * radius * np.cos(phi))
+    """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J)."""
+    radius, mass = scene.can.radius, scene.effective_mass
     slope = scene.damping_law.slope(slip_rate(scene, phi_dot, u_dot))
-    return slope * frozen / (radius**2 * mass * scene.oscillator.inertia(phi)) + 2 * scene.drag * np.abs(u_dot) / mass
+    resists = scene.frozen.inertia(phi) / (radius**2 * mass * scene.oscillator.inertia(phi))
+    return slope * resists + 2 * scene.drag * np.abs(u_dot) / mass
 
 
 def rolling_forces(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> Forces:
     """Return N and F [N] that rolling without slipping needs in a state, as `accelerations` takes it."""
-    u_ddot, _, across, uphill = _accelerations(scene, phi, phi_dot, u_dot)
-    moment = scene.load.moment
-    normal = scene.mass * scene.gravity * math.cos(scene.incline) + moment * across
-    if scene.attachment == "sliding":  # friction and the damping turn the can: F a - T = I_can u_ddot / a
-        friction = scene.can.inertia / scene.can.radius**2 * u_ddot
-        if scene.damping_law:
-            friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
-        return Forces(normal, friction)
-    return Forces(normal, scene.drive - (scene.mass * u_ddot - moment * uphill))
+    sin, cos, square, moment = np.sin(phi), np.cos(phi), phi_dot**2, scene.load.moment
+    u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
+    normal = scene.mass * scene.gravity * math.cos(scene.incline) + moment * (sin * phi_ddot + cos * square)
+    if scene.attachment == "frozen":
+        return Forces(normal, scene.drive - (scene.mass * u_ddot - moment * (cos * phi_ddot - sin * square)))
+    friction = scene.can.inertia / scene.can.radius**2 * u_ddot  # it and the damping turn the can
+    if scene.damping_law:
+        friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
+    return Forces(normal, friction)
 
 
 def energy(scene: Scene, motion: Coordinates) -> np.ndarray:
@@ -151,14 +139,3 @@ def kinetic_energy(scene: Scene, motion: Coordinates) -> np.ndarray:
         + load.mass * (along**2 + across**2)
         + load.inertia * motion.phi_dot**2
     ) / 2
-
-
-def axis_without_swing(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
-    """Return u - (m b / M) sin(phi) [m] and its rate [m/s], which the swing of a sliding load leaves alone."""
-    arm = scene.load.moment / scene.effective_mass
-    return motion.u - arm * np.sin(motion.phi), motion.u_dot - arm * np.cos(motion.phi) * motion.phi_dot
-
-
-def steady_acceleration(scene: Scene) -> float:
-    """Return the derivative of that rate [m/s^2]: eq. (46)."""
-    return scene.drive / scene.effective_mass

@@ -34,14 +34,15 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
 
 def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
     """Return what `exact` returns, without a warning about the start."""
+    radius = scene.can.radius
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
-                phi, phi_dot, u, u_dot = damped.solve(scene, time, phi0=phi0, phi_dot0=phi_dot0)
+                phi, phi_dot, u, u_dot = damped.solve(scene, time, phi0, phi_dot0)
             else:
-                phi, phi_dot = motion.solve(scene.oscillator, time, phi0=phi0, phi_dot0=phi_dot0)
-                u, u_dot = _axis(scene, time, phi=phi, phi_dot=phi_dot, start=scene.start(phi0, phi_dot0))
-            roll, roll_dot = u / scene.can.radius, u_dot / scene.can.radius
+                phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
+                u, u_dot = _axis(scene, time, phi, phi_dot, scene.start(phi0, phi_dot0))
+            roll, roll_dot = u / radius, u_dot / radius
     except ParameterError:
         raise
     except (ArithmeticError, ValueError) as error:
@@ -49,31 +50,10 @@ def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Tr
             f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
             f"until {float(time.max())!r} s in {scene!r}"
         ) from error
-    zeros = np.zeros_like(time)
-    return Trajectory(
-        scene=scene,
-        phi0=phi0,
-        phi_dot0=phi_dot0,
-        time=time,
-        u=u,
-        phi=phi,
-        u_dot=u_dot,
-        phi_dot=phi_dot,
-        roll=roll,
-        roll_dot=roll_dot,
-        lift=zeros,
-        lift_dot=zeros,
-    )
-
-
-def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
-    """Return the largest distance of phi [rad] from the exact motion with the same start.
-
-    If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
-    error that a tolerance bounds.
-    """
-    truth = solution(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
-    return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
+    still = np.zeros_like(time)
+    names = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot")
+    arrays = zip(names, (time, u, phi, u_dot, phi_dot, roll, roll_dot, still, still), strict=True)
+    return Trajectory(scene=scene, phi0=phi0, phi_dot0=phi_dot0, **dict(arrays))
 
 
 def _axis(
@@ -90,3 +70,13 @@ def _axis(
     momentum = scene.drive * time + rolling * start[1]
     u = scene.drive * time**2 / 2 + moment * np.sin(phi) + rolling * (start[0] + start[1] * time)
     return u / scene.effective_mass, (momentum + moment * np.cos(phi) * phi_dot) / scene.effective_mass
+
+
+def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
+    """Return the largest distance of phi [rad] from the exact motion with the same start.
+
+    If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
+    error that a tolerance bounds.
+    """
+    truth = solution(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
+    return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)

@@ -1,6 +1,6 @@
-"""The torque between can and load, which turn at different rates, and what it is for a real liquid.
+"""What a real liquid does to the can: the scene that has its damping.
 
-A real liquid is one lump here, as in the rest of the theory, that lies still in the rolling can. Three things drag it
+The liquid is one lump here, as in the rest of the theory, that lies still in the rolling can. Three things drag it
 along, at a slip rate W:
 
 - on the wall and the ends of a can that rolls on, a thin liquid's layers, which enter the liquid at one edge and
@@ -16,21 +16,24 @@ One law follows, continuous in the incline, the viscosity and all the rest. MuJo
 and so is the law. It has the larger of the first two torques at the slip rate of steady rolling; but where a swing of
 some two radians slips faster than that, it has the swing's torque at the rate at which the layers of rolling drag as
 much as those of swinging. Where steady rolling is slower than `DECADE` of that, the swing's layers take over, until on
-level ground they are all there is. A real liquid sloshes as well, 1.5 times faster than the lump swings.
+level ground they are all there is: it then rolls more slowly than the layers of rolling alone would have it, which a
+`LiquidWarning` says. A real liquid sloshes as well, 1.5 times faster than the lump swings.
 """
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+import warnings
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError
+from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, ParameterError
+from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import segment
-
-if TYPE_CHECKING:
-    from mjbeer.theory.scene import Scene
+from mjbeer.theory.named import named, sliding
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
 NAMES: tuple[Name, ...] = get_args(Name)
@@ -87,75 +90,6 @@ _CARRIED = 1 / 3
 
 
 @dataclass(frozen=True)
-class Damping:
-    """A torque c1 w + c2 w |w| + c3 w^3 against the slip rate w of can and load [rad/s].
-
-    The slip rate is roll_dot - phi_dot, by which the can turns faster than its load. The torque acts on the load with
-    the sign of w and on the can with the other one. MuJoCo's damping of a joint or a tendon is the same polynomial.
-
-    Raises:
-      ParameterError: if a coefficient is negative or not finite.
-    """
-
-    linear: float = 0.0
-    """c1 [N m s], of a torque that is proportional to the slip rate."""
-    quadratic: float = 0.0
-    """c2 [N m s^2]."""
-    cubic: float = 0.0
-    """c3 [N m s^3]."""
-    holds: tuple[float, float] | None = field(default=None, compare=False, repr=False, kw_only=True)
-    """Slip rates [rad/s] between which it is the damping of a real liquid; None if it is not one's."""
-
-    def __post_init__(self) -> None:
-        require.store(
-            self,
-            linear=require.non_negative("damping", self.linear, "N m s"),
-            quadratic=require.non_negative("quadratic damping", self.quadratic, "N m s^2"),
-            cubic=require.non_negative("cubic damping", self.cubic, "N m s^3"),
-        )
-
-    def __bool__(self) -> bool:
-        """Return whether there is any torque."""
-        return any(self.coefficients)
-
-    @property
-    def coefficients(self) -> tuple[float, float, float]:
-        """Return c1, c2 and c3."""
-        return self.linear, self.quadratic, self.cubic
-
-    def torque(self, rate: np.ndarray | float) -> np.ndarray | float:
-        """Return the torque [N m] at a slip rate [rad/s]."""
-        size = np.abs(rate)
-        return rate * (self.linear + size * (self.quadratic + size * self.cubic))
-
-    def slope(self, rate: np.ndarray | float) -> np.ndarray | float:
-        """Return the derivative of the torque by the slip rate [N m s] at a slip rate [rad/s]."""
-        size = np.abs(rate)
-        return self.linear + size * (2 * self.quadratic + size * 3 * self.cubic)
-
-    def rate(self, torque: float) -> float:
-        """Return the slip rate [rad/s] at which the torque is `torque` [N m]; it is infinite if there is no damping."""
-        return root(self.coefficients, torque)
-
-
-def root(coefficients: tuple[float, float, float], value: float) -> float:
-    """Return x with c1 x + c2 x |x| + c3 x^3 = `value`, where no coefficient is negative; infinite if all are zero."""
-    if value == 0:
-        return 0.0
-    size, (linear, quadratic, cubic) = abs(value), coefficients
-    # Each term alone would need a larger x. Newton's method falls from above, as the sum is convex.
-    terms = enumerate(coefficients, start=1)
-    x = min(((size / share) ** (1 / power) for power, share in terms if share > 0), default=math.inf)
-    while x < math.inf:
-        excess = x * (linear + x * (quadratic + x * cubic)) - size
-        lower = x - excess / (linear + x * (2 * quadratic + x * 3 * cubic))
-        if not lower < x:
-            break
-        x = lower
-    return math.copysign(x, value)
-
-
-@dataclass(frozen=True)
 class Liquid:
     """A liquid in a can, and the damping that follows."""
 
@@ -175,26 +109,85 @@ class Liquid:
     damping: Damping
 
     def __str__(self) -> str:
-        """Return what was used, in one line."""
         return (
             f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s, damped by {self.law} at a slip rate of "
             f"{self.slip:.3g} rad/s, with a film of {1e3 * self.film:.2g} mm on the wall"
         )
 
 
-def liquid_law(name: str, viscosity: float, density: float, free: "Scene") -> Liquid:
-    """Return what a liquid does to a `free` scene, in which it slides without friction.
+@named
+def liquid(
+    name: str = "water",
+    incline: float = INCLINE,
+    fill: float = 0.5,
+    can: Can | None = None,
+    density: float | None = None,
+    viscosity: float | None = None,
+    gravity: float = GRAVITY,
+    drag: float = 0.0,
+) -> Scene:
+    """Return the scene of a can with a real liquid in it, whose damping follows from viscosity and geometry.
+
+    `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density` [kg/m^3] and
+    kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is h/2a of eq. (32), less than 1;
+    `drag` [kg/m] is that of the air. `liquid_in` tells what was used; the laws are those of the module `liquid`.
+
+    A `LiquidWarning` says where the damping is an order of magnitude only: where the liquid is no lump at the terminal
+    speed, as its film on the wall can hold a third of it or the wall's centrifugal acceleration exceeds g cos(alpha),
+    and where that speed is beyond the slip rates for which the damping is.
 
     Raises:
-      ParameterError: if the can is full, there is no gravity, or the layers would be turbulent.
+      ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
-    can, load, nu = free.can, free.load, viscosity
-    if load.offset == 0 or free.gravity == 0 or load.fill is None:
+    used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
+    with require.from_given(viscosity=used.viscosity):
+        scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
+    try:
+        speed = scene.terminal_speed()
+    except NoEquilibriumError:  # none on so steep an incline
+        speed = 0.0
+    reasons = []
+    if used.carried > _CARRIED:
+        share = f"{100 * used.carried:.0f} %" if used.carried < 1 else "all"
+        reasons.append(
+            f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold {share} of "
+            "the liquid"
+        )
+    if (ratio := float(centrifugal(scene, speed))) > 1:
+        reasons.append(
+            f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times "
+            "g cos(alpha), which spreads it round the can"
+        )
+    if reason := _no_lump(name, scene, abs(speed) / scene.can.radius, reasons, "steady rolling"):
+        warnings.warn(reason, LiquidWarning, stacklevel=3)
+    return scene
+
+
+def liquid_in(
+    name: str = "water",
+    incline: float = INCLINE,
+    fill: float = 0.5,
+    can: Can | None = None,
+    density: float | None = None,
+    viscosity: float | None = None,
+    gravity: float = GRAVITY,
+) -> Liquid:
+    """Return what `liquid` uses for the same arguments: density, viscosity, law and damping.
+
+    Raises:
+      ParameterError: as `liquid`.
+    """
+    own = LIQUIDS[require.choice("liquid", name, NAMES)]
+    density = own.density if density is None else require.positive("density", density, "kg/m^3")
+    nu = own.viscosity if viscosity is None else require.positive("viscosity", viscosity, "m^2/s")
+    free = sliding(incline, fill, can, density, gravity)
+    load, a, length = free.load, free.can.radius, free.can.length
+    if load.offset == 0 or free.gravity == 0:
         raise ParameterError(
             "a liquid's damping is that of a can which it fills in part, under gravity: fill must be less than 1 and "
-            f"gravity more than 0, got fill = {load.fill!r} and gravity = {free.gravity!r} m/s^2"
+            f"gravity more than 0, got fill = {fill!r} and gravity = {free.gravity!r} m/s^2"
         )
-    a, length, shape = can.radius, can.length, segment(load.fill)
+    shape = segment(fill)
     moment = shape.area * (shape.inertia + shape.offset**2)  # second moment of the wetted area of an end, over a^4
     arc = 2 * shape.half_angle
     layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
@@ -221,64 +214,29 @@ def liquid_law(name: str, viscosity: float, density: float, free: "Scene") -> Li
     return Liquid(name, density, nu, law, steady, film, FILM_LOAD * film / (shape.area * a), damping)
 
 
-def about_scene(liquid: Liquid, speed: float, scene: "Scene") -> str | None:
-    """Return what speaks against one lump of a liquid at a terminal `speed` [m/s]; None if nothing does."""
-    reasons = []
-    if liquid.carried > _CARRIED:
-        share = f"{100 * liquid.carried:.0f} %" if liquid.carried < 1 else "all"
-        reasons.append(
-            f"it coats the can: the wall carries round a film of {1e3 * liquid.film:.2g} mm, which can hold {share} of "
-            "the liquid"
-        )
-    if (ratio := float(centrifugal(scene, speed))) > 1:
-        reasons.append(
-            f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times "
-            "g cos(alpha), which spreads it round the can"
-        )
-    if outside := _outside(scene, abs(speed) / scene.can.radius):
-        reasons.append(f"steady rolling is not what {outside}")
-    return _order_of_magnitude(liquid.name, reasons)
-
-
-def about_run(scene: "Scene", fastest: float, spread_at: float) -> str | None:
+def about_run(scene: Scene, fastest: float, spread_at: float) -> str | None:
     """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
 
-    `fastest` is the largest slip rate of the run [rad/s], and `spread_at` when it is no lump any more [s],
-    as `lost_at` has it.
+    `fastest` is the largest slip rate of the run [rad/s], and from `spread_at` [s] on `centrifugal` was more than 1.
     """
-    if scene.damping_law.holds is None:
-        return None
-    reasons = []
-    if spread_at < math.inf:
-        reasons.append(
-            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
-            "spreads it round the can"
-        )
-    if outside := _outside(scene, fastest):
-        reasons.append(f"the run is not what {outside}")
-    return _order_of_magnitude("the liquid", reasons)
+    spread = (
+        f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
+        "spreads it round the can"
+    )
+    return _no_lump("the liquid", scene, fastest, [spread] if spread_at < math.inf else [], "the run")
 
 
-def centrifugal(scene: "Scene", u_dot: np.ndarray | float) -> np.ndarray | float:
+def centrifugal(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
 
 
-def lost_at(scene: "Scene", time: np.ndarray, u_dot: np.ndarray) -> float:
-    """Return the first of the times [s] at which `centrifugal` is more than 1; infinite if there is none."""
-    fast = np.flatnonzero(np.square(u_dot) > scene.can.radius * scene.gravity * math.cos(scene.incline))
-    return float(time[fast[0]]) if len(fast) else math.inf
-
-
-def _outside(scene: "Scene", slip: float) -> str:
-    """Return for what the damping of a liquid is meant, if that is not a largest slip rate [rad/s]; empty if it is."""
-    lowest, highest = scene.damping_law.holds or (0.0, math.inf)
-    if lowest * (1 - 1e-9) <= slip <= highest:
-        return ""
-    return f"the damping is for, {lowest:.3g} to {highest:.3g} rad/s between can and liquid, but {slip:.3g}"
-
-
-def _order_of_magnitude(name: str, reasons: list[str]) -> str | None:
-    """Return the reasons in one sentence."""
-    said = "; ".join(reasons)
-    return f"{name} as one lump is an order of magnitude only: {said}" if reasons else None
+def _no_lump(name: str, scene: Scene, slip: float, reasons: list[str], what: str) -> str | None:
+    """Return the reasons in one sentence, with a largest slip rate [rad/s] of `what` for which the damping is not."""
+    if scene.damping_law.holds is None:
+        return None
+    lowest, highest = scene.damping_law.holds
+    if not lowest * (1 - 1e-9) <= slip <= highest:
+        meant = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid, but {slip:.3g}"
+        reasons = [*reasons, f"{what} is not what the damping is for, {meant}"]
+    return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}" if reasons else None

@@ -4,19 +4,9 @@ import math
 
 import numpy as np
 
-from mjbeer.theory.equations import (
-    Coordinates,
-    accelerations,
-    axis_without_swing,
-    dissipation,
-    energy,
-    kinetic_energy,
-    potential_energy,
-    rolling_forces,
-    slip_rate,
-    steady_acceleration,
-)  # fmt: skip
-from mjbeer.theory.liquid import lost_at
+from mjbeer.theory import equations
+from mjbeer.theory.equations import Coordinates, accelerations, slip_rate
+from mjbeer.theory.liquid import centrifugal
 from mjbeer.theory.motion import energy_to_barrier
 from mjbeer.theory.scene import Scene
 
@@ -69,10 +59,9 @@ class Record:
         """First time at which the wall of a can with a liquid is too fast for a lump [s]; infinite if there is none."""
         self.axis_drift = 0.0
         """Largest distance of the axis from where the momentum at the start has it [m]; 0 with damping or drag."""
-        self._kinetic = self._energy_change = self._work = 0.0
+        self._kinetic = self._energy = self._energy_change = self._work = 0.0
         self._swing_drift = self._largest_swing_drift = self._swing_change = 0.0
         self._first: Coordinates | None = None
-        self._energy = np.zeros(1)
         self._last: Coordinates | None = None
         self._before: tuple[float, float] | None = None
         self._all_steps = True
@@ -83,9 +72,9 @@ class Record:
 
         They do not tell what damping and drag take between them, so that the energy is then not looked at.
         """
-        record, order = cls(scene, friction), np.argsort(motion.time)
+        record = cls(scene, friction)
         record._all_steps = False
-        record.add(_samples(motion, order))
+        record.add(motion.at(np.argsort(motion.time)))
         return record
 
     def add(self, motion: Coordinates) -> None:
@@ -95,48 +84,45 @@ class Record:
 
     def add_conserved(self, motion: Coordinates) -> None:
         """Add the next piece of the motion to everything but what rests on forces."""
-        scene, radius = self.scene, self.scene.can.radius
+        scene, form = self.scene, self.scene.oscillator
+        kinetic = equations.kinetic_energy(scene, motion)
+        energy = kinetic + equations.potential_energy(scene, motion)
         if self._first is None or self._last is None:
-            self._first = self._last = _samples(motion, [0])
-            self._energy = energy(scene, self._first)
-        first, last = self._first, self._last
-        slid = (motion.u - first.u) - radius * (motion.roll - first.roll)
-        self.slip, self.lift = _largest(self.slip, slid), _largest(self.lift, motion.lift)
+            self._first = self._last = motion.at([0])
+            self._energy = float(energy[0])
+        first, last, self._last = self._first, self._last, motion.at([-1])
+        self.slip = _largest(self.slip, motion.u - first.u - scene.can.radius * (motion.roll - first.roll))
+        self.lift = _largest(self.lift, motion.lift)
         self.turned = _largest(self.turned, motion.phi - first.phi)
         self.rolled = _largest(self.rolled, motion.u - first.u)
         self.fastest = _largest(self.fastest, motion.phi_dot)
         covered = np.abs(np.diff(motion.phi, prepend=last.phi))
         self.path += float(covered.sum())
-        kinetic, form = kinetic_energy(scene, motion), scene.oscillator
         swing = form.inertia(motion.phi) * motion.phi_dot**2 / 2
         self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
-        self._last, change = _samples(motion, [-1]), kinetic + potential_energy(scene, motion) - self._energy
         if scene.dissipates:
-            self._add_losses(motion, last, change)
+            self.fastest_slip = _largest(self.fastest_slip, slip_rate(scene, motion.phi_dot, motion.u_dot))
+            if scene.damping_law.holds is not None:
+                fast = np.flatnonzero(centrifugal(scene, motion.u_dot) > 1)
+                self.no_lump_at = min(self.no_lump_at, *motion.time[fast[:1]].tolist(), math.inf)
+            if self._all_steps:
+                work = self._work + np.cumsum(_work(scene, motion, last))
+                self._work = float(work[-1])
+                self._energy_change = _largest(self._energy_change, energy - self._energy + work)
             return
-        self._energy_change = _largest(self._energy_change, change)
+        self._energy_change = _largest(self._energy_change, energy - self._energy)
         swing -= form.inertia(first.phi) * first.phi_dot**2 / 2 + form.drop(motion.phi, first.phi)
         self._swing_change = _largest(self._swing_change, swing)
         drift = self._swing_drift + np.cumsum(swing * covered)
         self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
         self.axis_drift = _largest(self.axis_drift, axis_drift(scene, motion, first))
 
-    def _add_losses(self, motion: Coordinates, last: Coordinates, change: np.ndarray) -> None:
-        """Add the next piece of a motion with damping or drag, and the `change` of its energy [J]."""
-        scene = self.scene
-        self.fastest_slip = _largest(self.fastest_slip, slip_rate(scene, motion.phi_dot, motion.u_dot))
-        if scene.damping_law.holds is not None:
-            self.no_lump_at = min(self.no_lump_at, lost_at(scene, motion.time, motion.u_dot))
-        if self._all_steps:
-            work = self._work + np.cumsum(_work(scene, motion, last))
-            self._work, self._energy_change = float(work[-1]), _largest(self._energy_change, change + work)
-
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
         """Add the normal and friction forces that rolling needs at times [s] in the states of the motion there.
 
         `u_dot` [m/s] matters to damping and drag alone.
         """
-        forces = rolling_forces(self.scene, phi, phi_dot, u_dot)
+        forces = equations.rolling_forces(self.scene, phi, phi_dot, u_dot)
         self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
         self.needed = _largest(self.needed, forces.needed)
         if not math.isinf(self.fails_at):
@@ -160,9 +146,9 @@ class Record:
         all steps. Unlike the implied error it includes slip and lift. The denominator is at least `_SMALL_SWING` of the
         well's depth; a balanced load has no well, and there it is the largest kinetic energy of all that moves.
         """
-        if self.scene.load.offset == 0:
-            return _ratio(self._energy_change, self._kinetic)
-        return _ratio(self._energy_change, max(self._least_swing, _ROUNDING * self._kinetic))
+        balanced = self.scene.load.offset == 0
+        scale = self._kinetic if balanced else max(self._least_swing, _ROUNDING * self._kinetic)
+        return _ratio(self._energy_change, scale)
 
     @property
     def implied_error(self) -> float:
@@ -205,8 +191,7 @@ class Record:
         """
         if self.scene.dissipates or self._first is None:
             return math.inf
-        start = float(self._first.phi[0]), float(self._first.phi_dot[0])
-        return energy_to_barrier(self.scene.oscillator, *start)
+        return energy_to_barrier(self.scene.oscillator, float(self._first.phi[0]), float(self._first.phi_dot[0]))
 
 
 def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
@@ -227,15 +212,14 @@ def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str
         reasons.append(
             f"the can parts from the incline, or sinks in, by {record.lift / radius:.2g} radii (trusted up to {LIFT:g})"
         )
-    if rolling != "contact":
-        if math.isfinite(record.fails_at):
-            reasons.append(
-                f"from t = {record.fails_at:.6g} s the incline would have to pull at the can (N < 0): a real one "
-                "leaves it there"
-            )
-    elif not record.needed <= friction:
+    if rolling == "contact" and not record.needed <= friction:
         reasons.append(
             f"rolling needs a friction coefficient of {record.needed:.3g}, and the contact has {friction:g}: it slides"
+        )
+    if rolling != "contact" and math.isfinite(record.fails_at):
+        reasons.append(
+            f"from t = {record.fails_at:.6g} s the incline would have to pull at the can (N < 0): a real one leaves it "
+            "there"
         )
     return reasons
 
@@ -248,9 +232,10 @@ def axis_drift(scene: Scene, motion: Coordinates, start: Coordinates) -> np.ndar
     """
     if scene.attachment == "frozen":
         return np.zeros_like(motion.time)
-    time = motion.time - start.time
-    (place, _), (begin, speed) = axis_without_swing(scene, motion), axis_without_swing(scene, start)
-    return place - begin - speed * time - steady_acceleration(scene) * time**2 / 2
+    time, mass, arm = motion.time - start.time, scene.effective_mass, scene.load.moment / scene.effective_mass
+    moved = motion.u - arm * np.sin(motion.phi) - (start.u - arm * np.sin(start.phi))
+    speed = start.u_dot - arm * np.cos(start.phi) * start.phi_dot
+    return moved - speed * time - scene.drive / mass * time**2 / 2
 
 
 def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
@@ -261,17 +246,13 @@ def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
     time, phi, phi_dot, u_dot = (
         np.append(getattr(last, name), getattr(motion, name)) for name in ("time", "phi", "phi_dot", "u_dot")
     )
-    (torque, along), slip = dissipation(scene, phi_dot, u_dot), slip_rate(scene, phi_dot, u_dot)
+    (torque, along), slip = equations.dissipation(scene, phi_dot, u_dot), slip_rate(scene, phi_dot, u_dot)
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
     power = -along * u_dot - torque * phi_dot
     change = (torque + slip * scene.damping_law.slope(slip)) * slip_rate(scene, phi_ddot, u_ddot)
     change = change + 3 * scene.drag * np.abs(u_dot) * u_dot * u_ddot
     step = np.diff(time)
     return step * (power[:-1] + power[1:]) / 2 - step**2 * np.diff(change) / 12
-
-
-def _samples(motion: Coordinates, places: np.ndarray | list[int]) -> Coordinates:
-    return Coordinates(**{name: getattr(motion, name)[places] for name in Coordinates.__dataclass_fields__})
 
 
 def _largest(so_far: float, values: np.ndarray | float) -> float:

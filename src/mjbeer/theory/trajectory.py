@@ -14,7 +14,7 @@ from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, rolling_forces
 from mjbeer.theory.record import Record, doubts
-from mjbeer.theory.scene import Scene, views
+from mjbeer.theory.scene import Scene, pictures
 
 _LEAST_SWING = 1e-10
 """Smallest swing whose frequency is measured [rad], relative beyond 1 rad: a million times the rounding of phi."""
@@ -97,7 +97,7 @@ class Trajectory(Coordinates):
     @property
     def slip(self) -> np.ndarray:
         """Return the distance that the can has slid instead of rolled, u - a roll [m], at each sample."""
-        return slip(self, self.scene.can.radius)
+        return self.u - self.scene.can.radius * self.roll
 
     @cached_property
     def forces(self) -> Forces:
@@ -108,17 +108,71 @@ class Trajectory(Coordinates):
         """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.
 
         It is infinite if rolling was possible to the end. Infinite friction, the default, leaves only N > 0 to hold.
+
+        Raises:
+          ParameterError: if `friction` is negative or no number.
         """
         return Record.of(self, self.scene, require.friction(friction)).fails_at
 
     def takeoff(self) -> float | None:
-        """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays."""
-        return takeoff(self, self.scene.can.radius)
+        """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
+
+        A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
+        """
+        above = self.lift > 1e-9 * self.scene.can.radius
+        return math.pi - float(self.phi[np.argmax(above)]) if above.any() else None
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
         return tuple(doubts(self.record, self.rolling))
+
+    @property
+    def trusted(self) -> bool:
+        """Return whether there are no warnings."""
+        return not self.warnings
+
+    def frequency(self) -> float:
+        """Return the angular frequency of the swing [rad/s], measured at all its turning points.
+
+        With damping or drag these are the turning points until the swing has died away.
+
+        Raises:
+          NoEquilibriumError: if the load has no equilibrium to swing about.
+          NoLibrationError: if the damping lets it creep back without a swing.
+          MjbeerError: if the motion hardly swings, if its samples are further apart than about a third of a period, or
+            if there are fewer than three turning points among them, which bound a whole period.
+        """
+        scene, form = self.scene, self.scene.oscillator
+        # After the last sample that swings phi_dot is rounding, whose changes of sign are no turning points.
+        least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
+        swing = self.at(slice(int(np.flatnonzero(np.abs(self.phi_dot) > least).max(initial=-1)) + 1))
+        time, phi, rate = swing.time, swing.phi, swing.phi_dot
+        _, change = accelerations(scene, phi, rate, swing.u_dot)
+        turns = _zeros(time, rate, change)
+        if len(turns) < 3:
+            raise MjbeerError(
+                f"no frequency: the motion turns {len(turns)} times in {self.time[-1]:.6g} s, 3 are needed"
+            )
+        if not scene.dissipates:
+            rest = scene.equilibrium()
+            rest += 2 * math.pi * round((self.phi0 - rest) / (2 * math.pi))
+            energy = float(form.inertia(self.phi0)) * self.phi_dot0**2 / 2 + float(form.drop(rest, self.phi0))
+            kinetic = float((form.inertia(phi) * rate**2).max()) / 2
+            if kinetic > 2 * energy:
+                raise MjbeerError(
+                    f"no frequency: the load starts with {energy:.2g} J above its equilibrium, a swing that is hidden "
+                    f"by what else moves the load, up to {kinetic:.2g} J"
+                )
+        step = np.diff(time)
+        turned = step * (rate[:-1] + rate[1:]) / 2 - step**2 * np.diff(change) / 12
+        if not np.abs(turned - np.diff(phi)).max() <= _FOLLOWED * np.ptp(phi):
+            raise MjbeerError(
+                f"no frequency: the samples, up to {step.max():.3g} s apart, do not follow the swing; at least three a "
+                "period are needed"
+            )
+        periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
+        return float(2 * np.pi * periods / (turns[2 * periods] - turns[0]))
 
     def plot(self, *names: str, theory: bool = False) -> Any:
         """Plot quantities, as "phi", "u" and "energy", in a new figure, and return the matplotlib axes of each.
@@ -128,45 +182,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        return views().plot(self, *names, theory=theory)
-
-    def to_dataframe(self) -> Any:
-        """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
-
-        Raises:
-          MjbeerError: if pandas is not installed.
-        """
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise MjbeerError("to_dataframe needs pandas: pip install pandas") from error
-        return pd.DataFrame(self._columns())
-
-    def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Write the motion as CSV: one line per sample, units in the header, numbers with all their digits.
-
-        Raises:
-          OutputError: if the file cannot be written.
-        """
-        from mjbeer.output import files
-
-        files.write(require.path(path), csv(self))
-
-    def _columns(self) -> dict[str, np.ndarray]:
-        """Return the columns of the motion's table by their names, which end with the unit."""
-        return {
-            "time [s]": self.time,
-            "u [m]": self.u,
-            "phi [rad]": self.phi,
-            "u_dot [m/s]": self.u_dot,
-            "phi_dot [rad/s]": self.phi_dot,
-            "roll [rad]": self.roll,
-            "lift [m]": self.lift,
-            "slip [m]": self.slip,
-            "energy [J]": self.energy,
-            "normal force needed [N]": self.forces.normal,
-            "friction force needed [N]": self.forces.friction,
-        }
+        return pictures[0]().plot(self, *names, theory=theory)
 
     def video(
         self,
@@ -187,54 +203,67 @@ class Trajectory(Coordinates):
           RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
           OutputError: if the file cannot be written.
         """
-        return views().video(self, path, width, height, fps, speed, camera, progress)
+        return pictures[0]().video(self, path, width, height, fps, speed, camera, progress)
+
+    def to_dataframe(self) -> Any:
+        """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
+
+        Raises:
+          MjbeerError: if pandas is not installed.
+        """
+        try:
+            import pandas as pd
+        except ImportError as error:
+            raise MjbeerError("to_dataframe needs pandas: pip install pandas") from error
+        return pd.DataFrame(_columns(self))
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the motion as CSV: one line per sample, units in the header, numbers with all their digits.
+
+        Raises:
+          OutputError: if the file cannot be written.
+        """
+        from mjbeer.output import files
+
+        files.write(require.path(path), csv(self))
 
     def __repr__(self) -> str:
         """Return the motion in one line; whether it is trusted is not in it, as that may take a second run."""
-        time = self.time
+        count = len(self.time)
         return (
-            f"<{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}: {len(time)} "
-            f"sample{'s' * (len(time) != 1)} to t = {time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, "
+            f"<{type(self).__name__} {self.scene.attachment}, {self.rolling}, {self.integrator}: {count} "
+            f"sample{'s' * (count != 1)} to t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, "
             f"u = {self.u[-1]:.6g} m>"
         )
 
     def _repr_html_(self) -> str:
         """Return the motion's key figures, and what it says about itself, for a notebook."""
-        return views().trajectory_html(self)
-
-    @property
-    def trusted(self) -> bool:
-        """Return whether there are no warnings."""
-        return not self.warnings
-
-    def frequency(self) -> float:
-        """Return the angular frequency of the swing [rad/s], measured at all its turning points.
-
-        With damping or drag these are the turning points until the swing has died away.
-
-        Raises:
-          NoEquilibriumError: if the load has no equilibrium to swing about.
-          NoLibrationError: if the damping lets it creep back without a swing.
-          MjbeerError: if the motion hardly swings, if its samples are further apart than about a third of a period, or
-            if there are fewer than three turning points among them, which bound a whole period.
-        """
-        swing = swinging(self, self.scene)
-        turns = turning_times(swing, self.scene)
-        if len(turns) < 3:
-            raise MjbeerError(
-                f"no frequency: the motion turns {len(turns)} times in {self.time[-1]:.6g} s, 3 are needed"
-            )
-        require_swing(swing, self.scene, phi0=self.phi0, phi_dot0=self.phi_dot0)
-        periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
-        return float(2 * np.pi * periods / (turns[2 * periods] - turns[0]))
+        return pictures[0]().trajectory_html(self)
 
 
 def csv(motion: Trajectory) -> str:
     """Return a motion as CSV: one line per sample, units in the header, numbers with all their digits."""
-    table, text = motion._columns(), io.StringIO()
+    table, text = _columns(motion), io.StringIO()
     rows, header = np.column_stack(list(table.values())), ",".join(table)
     np.savetxt(text, rows, fmt="%.17g", delimiter=",", header=header, comments="")
     return text.getvalue()
+
+
+def _columns(motion: Trajectory) -> dict[str, np.ndarray]:
+    """Return the columns of a motion's table by their names, which end with the unit."""
+    return {
+        "time [s]": motion.time,
+        "u [m]": motion.u,
+        "phi [rad]": motion.phi,
+        "u_dot [m/s]": motion.u_dot,
+        "phi_dot [rad/s]": motion.phi_dot,
+        "roll [rad]": motion.roll,
+        "lift [m]": motion.lift,
+        "slip [m]": motion.slip,
+        "energy [J]": motion.energy,
+        "normal force needed [N]": motion.forces.normal,
+        "friction force needed [N]": motion.forces.friction,
+    }
 
 
 def angle_distance(angles: np.ndarray, truth: np.ndarray, start: float | None = None) -> float:
@@ -244,9 +273,9 @@ def angle_distance(angles: np.ndarray, truth: np.ndarray, start: float | None = 
     there so far, where that exceeds 1 rad: this is the error that a tolerance bounds. `truth` is then in order of time.
     """
     apart = np.abs(angles - truth)
-    if start is None:
-        return float(np.max(apart))
-    return float(np.max(apart / np.maximum(1, np.maximum.accumulate(np.abs(truth - start)))))
+    if start is not None:
+        apart = apart / np.maximum(1, np.maximum.accumulate(np.abs(truth - start)))
+    return float(np.max(apart))
 
 
 def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tuple[float, float] | None = None) -> float:
@@ -254,16 +283,8 @@ def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tupl
 
     `start` has phi [rad] and u [m] at time 0, from which the distance is made relative.
     """
-    phi, u = start if start is not None else (None, None)
-    return max(
-        angle_distance(motion.phi, truth.phi, phi),
-        angle_distance(motion.u / radius, truth.u / radius, u / radius if u is not None else None),
-    )
-
-
-def slip(motion: Coordinates, radius: float) -> np.ndarray:
-    """Return the distance that a can of this `radius` [m] has slid instead of rolled [m]: u - a roll."""
-    return motion.u - radius * motion.roll
+    phi, rolled = (None, None) if start is None else (start[0], start[1] / radius)
+    return max(angle_distance(motion.phi, truth.phi, phi), angle_distance(motion.u / radius, truth.u / radius, rolled))
 
 
 def mean_acceleration(motion: Coordinates) -> float:
@@ -271,71 +292,14 @@ def mean_acceleration(motion: Coordinates) -> float:
     return float(2 * (motion.u[-1] - motion.u[0]) / motion.time[-1] ** 2)
 
 
-def takeoff(motion: Coordinates, radius: float) -> float | None:
-    """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
-
-    A lift of up to 1e-9 radii counts as touching: a soft contact sinks in by more than that.
-    """
-    above = np.flatnonzero(motion.lift > 1e-9 * radius)
-    return None if not len(above) else math.pi - float(motion.phi[above[0]])
-
-
-def turning_times(motion: Coordinates, scene: Scene) -> np.ndarray:
-    """Return the times [s] at which phi_dot changes sign, with an error of fourth order in the sampling interval.
-
-    Between the two samples around a change of sign, phi_dot is replaced by the cubic that has its values and its
-    derivatives at both. The derivatives, phi_ddot, come from the equation of motion.
-    """
-    time, phi_dot = motion.time, motion.phi_dot
-    _, phi_ddot = accelerations(scene, motion.phi, phi_dot, motion.u_dot)
-    turns = []
-    for before in np.flatnonzero((phi_dot[:-1] > 0) != (phi_dot[1:] > 0)):
-        step = time[before + 1] - time[before]
-        p0, p1 = phi_dot[before], phi_dot[before + 1]
-        m0, m1 = step * phi_ddot[before], step * phi_ddot[before + 1]
-        cubic = np.polynomial.Polynomial([p0, m0, 3 * (p1 - p0) - 2 * m0 - m1, 2 * (p0 - p1) + m0 + m1])
-        roots = cubic.roots()
-        real = roots.real[np.abs(roots.imag) < 1e-9]
-        inside = real[(real >= -1e-9) & (real <= 1 + 1e-9)]
-        turns.append(time[before] + step * (inside[0] if len(inside) else p0 / (p0 - p1)))
-    return np.array(turns)
-
-
-def swinging(motion: Coordinates, scene: Scene) -> Coordinates:
-    """Return the samples of a motion up to the last that still swings, where damping or drag ends the swing.
-
-    What is left then is the rounding of phi_dot, whose changes of sign are no turning points.
-    """
-    if not scene.dissipates:
-        return motion
-    least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(motion.phi).max()))
-    last = int(np.flatnonzero(np.abs(motion.phi_dot) > least).max(initial=-1)) + 1
-    return Coordinates(**{name: getattr(motion, name)[:last] for name in Coordinates.__dataclass_fields__})
-
-
-def require_swing(motion: Coordinates, scene: Scene, phi0: float, phi_dot0: float) -> None:
-    """Check that turning points of the motion from a start [rad, rad/s] are those of a swing that its samples follow.
-
-    Raises:
-      NoEquilibriumError: if the load has no equilibrium to swing about.
-      MjbeerError: if the motion rests but for rounding and the softness of a contact, or its samples are too far apart.
-    """
-    rest, oscillator = scene.equilibrium(), scene.oscillator
-    rest += 2 * math.pi * round((phi0 - rest) / (2 * math.pi))
-    if not scene.dissipates:  # `swinging` does it where the energy is not that of a swing alone
-        energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + float(oscillator.drop(rest, phi0))
-        least = oscillator.stiffness() * (_LEAST_SWING * max(1.0, abs(phi0))) ** 2 / 2
-        kinetic = float((oscillator.inertia(motion.phi) * motion.phi_dot**2).max()) / 2
-        if not energy > least or kinetic > 2 * energy:
-            raise MjbeerError(
-                f"no frequency: the load starts with {energy:.2g} J above its equilibrium, which is a swing of less "
-                f"than {_LEAST_SWING:g} rad, or one that is hidden by what else moves the load, up to {kinetic:.2g} J"
-            )
-    phi, phi_dot, step = motion.phi, motion.phi_dot, np.diff(motion.time)
-    _, phi_ddot = accelerations(scene, phi, phi_dot, motion.u_dot)
-    turned = step * (phi_dot[:-1] + phi_dot[1:]) / 2 - step**2 * np.diff(phi_ddot) / 12
-    if len(phi) > 1 and not np.abs(turned - np.diff(phi)).max() <= _FOLLOWED * np.ptp(phi):
-        raise MjbeerError(
-            f"no frequency: the samples, up to {step.max():.3g} s apart, do not follow the swing; at least three a "
-            "period are needed"
-        )
+def _zeros(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """Return the times [s] at which `rate` changes sign; in between it is the cubic with its values and derivatives."""
+    before = np.flatnonzero(np.diff(rate > 0))
+    step, p0, p1 = np.diff(time)[before], rate[before], rate[before + 1]
+    m0, m1 = step * change[before], step * change[before + 1]
+    low, high = np.zeros_like(step), np.ones_like(step)
+    for _ in range(54):  # bisection to the last digit
+        x = (low + high) / 2
+        value = p0 + x * (m0 + x * (3 * (p1 - p0) - 2 * m0 - m1 + x * (2 * (p0 - p1) + m0 + m1)))
+        low, high = np.where((value > 0) == (p0 > 0), (x, high), (low, x))
+    return time[before] + step * high

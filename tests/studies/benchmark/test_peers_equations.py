@@ -18,8 +18,8 @@ from mjbeer import Scene, exact, frozen, sliding
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.studies.benchmark.peers import equations
 from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations
-from mjbeer.theory.liquid import Damping
 from tests.support.scenes import METAL, SCENES, scenes
 
 pytestmark = pytest.mark.slow

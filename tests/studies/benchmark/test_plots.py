@@ -8,7 +8,7 @@ import pytest
 from mjbeer.studies.benchmark import ablation, advice, overview, plots
 from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.cases import CASES
-from mjbeer.theory.scene import in_words
+from mjbeer.theory.named import in_words
 from tests.support import figures
 
 pytestmark = pytest.mark.slow

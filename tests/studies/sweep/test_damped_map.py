@@ -7,7 +7,7 @@ import pytest
 
 from mjbeer.studies.sweep import damped_map
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import frozen
+from mjbeer.theory.named import frozen
 
 pytestmark = pytest.mark.slow
 DAMPING = 3e-3

@@ -11,7 +11,7 @@ from mjbeer import Scene, build, simulate
 from mjbeer.simulation.run import Run
 from mjbeer.studies.check import Check
 from mjbeer.studies.validation import damped, loops, modes
-from mjbeer.theory.liquid import Damping
+from mjbeer.theory.damping import Damping
 
 CHECKS = {f"{check.quantity} - {check.by}": check for check in damped.checks()}
 

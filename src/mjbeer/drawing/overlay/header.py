@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from mjbeer.drawing.overlay.look import Look
 from mjbeer.drawing.overlay.marks import LEGENDS
 from mjbeer.drawing.overlay.sheet import Sheet
-from mjbeer.theory.scene import in_words
+from mjbeer.theory.named import in_words
 from mjbeer.theory.trajectory import Trajectory
 
 HEIGHT = 4.1

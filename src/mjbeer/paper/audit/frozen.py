@@ -27,7 +27,8 @@ from mjbeer.paper.audit.witness import examine
 from mjbeer.paper.equations import frozen as equations
 from mjbeer.paper.letters import Terms
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.named import frozen
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 _CREEP = 1e-3

@@ -13,7 +13,8 @@ from mjbeer.paper.equations import hopping
 from mjbeer.paper.letters import Terms
 from mjbeer.paper.scenarios import GRIP, MU, RATIO, TOP
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, hoop
+from mjbeer.theory.named import hoop
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 

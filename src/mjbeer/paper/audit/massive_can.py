@@ -12,7 +12,8 @@ from mjbeer.paper.equations import massive_can
 from mjbeer.paper.equations.sliding import kinetic_11, potential_14, potential_17
 from mjbeer.paper.letters import Letters, Terms
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.named import sliding
+from mjbeer.theory.scene import Scene
 
 
 def claims() -> Iterator[Claim]:

@@ -8,7 +8,8 @@ from mjbeer.paper.audit.witness import Witness, watch
 from mjbeer.paper.scenarios import footnote_scene
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.named import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 LARGE, MODERATE, SMALL = 2.0, 1.0, 1e-3

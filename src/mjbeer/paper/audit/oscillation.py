@@ -15,7 +15,8 @@ from mjbeer.paper.letters import Letters, Terms
 from mjbeer.paper.looping import Looping, cosines, loop
 from mjbeer.paper.scenarios import DECADE
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.named import sliding
+from mjbeer.theory.scene import Scene
 
 FAST = 350.0
 """phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop."""

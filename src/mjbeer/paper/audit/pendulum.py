@@ -7,7 +7,8 @@ from mjbeer.paper.audit.claim import Claim, confirmed, corrected, limit
 from mjbeer.paper.audit.motions import DRIFT, EQUALITY, EXACT, HELD, REDUCED, ROUNDING, SMALL, long_swing, wheel
 from mjbeer.paper.equations import pendulum as equations
 from mjbeer.paper.letters import Terms
-from mjbeer.theory.scene import Scene, pendulum
+from mjbeer.theory.named import pendulum
+from mjbeer.theory.scene import Scene
 
 
 def claims() -> Iterator[Claim]:

@@ -12,7 +12,7 @@ from mjbeer.paper.equations import segment as equations
 from mjbeer.paper.letters import Terms
 from mjbeer.theory.can import ALUMINIUM, LENGTH, RADIUS, THICKNESS, Can
 from mjbeer.theory.load import BEER, Load, Segment, segment
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.named import sliding
 
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the formulas of section 3 are compared with quadrature, on both sides of a half-full can."""

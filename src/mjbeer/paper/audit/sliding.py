@@ -24,7 +24,7 @@ from mjbeer.paper.equations import sliding as equations
 from mjbeer.paper.letters import Terms
 from mjbeer.paper.scenarios import balanced
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.named import sliding
 
 
 def claims() -> Iterator[Claim]:

@@ -28,7 +28,8 @@ from mjbeer.output.plots import (
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import INCLINE, Scene, frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory
 
 _MARGIN = 0.02

@@ -17,7 +17,7 @@ from mjbeer.paper.scenarios import GRIP, MU, RATIO, fall_from_top
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import hoop, in_degrees, in_words
+from mjbeer.theory.named import hoop, in_degrees, in_words
 from mjbeer.theory.trajectory import Trajectory
 
 _SCENE = f"{in_words(hoop(), {'load'})}; M: mass of the hoop, m: mass of the weight"

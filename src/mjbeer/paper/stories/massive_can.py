@@ -16,7 +16,8 @@ from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import INCLINE, Scene, frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory, mean_acceleration
 
 _METAL, _HOOP = Can.sheet_metal(), Can.hoop(mass=0.05)

@@ -15,8 +15,9 @@ from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS, NAMES
-from mjbeer.theory.scene import INCLINE, Scene, frozen, in_degrees, in_words, liquid_in, sliding
+from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS, NAMES, liquid_in
+from mjbeer.theory.named import frozen, in_degrees, in_words, sliding
+from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory
 
 CAN = Can.sheet_metal(thickness=THICKNESS * 0.013 / Can.sheet_metal().mass)

@@ -30,7 +30,8 @@ from mjbeer.paper.scenarios import DECADE
 from mjbeer.paper.stories.story import Story
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene, in_degrees, in_words, sliding
+from mjbeer.theory.named import in_degrees, in_words, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 _GHOST: tuple[Mark, ...] = ("phi", "ghost")

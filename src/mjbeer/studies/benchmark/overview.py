@@ -12,7 +12,7 @@ from mjbeer.output.plots import COLOURS, chart
 from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.cases import CASES
-from mjbeer.theory.scene import in_degrees, in_words
+from mjbeer.theory.named import in_degrees, in_words
 
 _CASES = ("frozen", "sliding")
 

@@ -15,7 +15,7 @@ from mjbeer.studies.benchmark.curves import CHOSEN, TOLERANCE, Curve
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import MEASURED
-from mjbeer.theory.scene import in_degrees, in_words
+from mjbeer.theory.named import in_degrees, in_words
 
 _METHODS = {"Euler": 0, "implicit": 4, "implicitfast": 5, "discrete": 3, "RK4": 1, "DOP853": 2, "GaussJackson": 6}
 _METHODS[CHOSEN] = _METHODS["DOP853"]

@@ -14,7 +14,8 @@ from mjbeer.studies.benchmark.measure import effective_softness
 from mjbeer.studies.cases import CASES, Case
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.named import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,9 @@ from mjbeer.studies.stability.truth import angles
 from mjbeer.theory.can import Can
 from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.exact import exact
+from mjbeer.theory.named import sliding
 from mjbeer.theory.record import ERROR
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.scene import Scene
 
 EXPLODED, INACCURATE, WARNED, TRUSTED, SILENT = range(5)
 """Outcomes of a run, as numbers for the cells of a map. It exploded, or was refused; its error is above `record.ERROR`,

@@ -15,7 +15,8 @@ from mjbeer.predictions.semi_implicit_euler import energy_per_swing
 from mjbeer.simulation.prepare import Prepared
 from mjbeer.studies.study import Task
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.named import sliding
+from mjbeer.theory.scene import Scene
 
 AMPLITUDE = 1.0
 """Amplitude of the swing [rad]."""

@@ -16,7 +16,8 @@ from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.study import Task
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.named import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 _BESIDE_FOLD = np.array([1e-6, 1e-7, 1e-8])
 """Relative distances of sin(alpha) from that of the steepest incline with an equilibrium, the fold."""

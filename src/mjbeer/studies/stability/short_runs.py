@@ -20,7 +20,8 @@ from mjbeer.predictions.soft_constraint import SoftRow
 from mjbeer.predictions.soft_rolling import diagonal_excess
 from mjbeer.simulation import dop853
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.named import frozen
+from mjbeer.theory.scene import Scene
 
 FREE = ("gravity", "spring")
 """Families without a constraint."""

@@ -12,7 +12,8 @@ from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.named import frozen, sliding
+from mjbeer.theory.scene import Scene
 
 DURATION = 4.0
 """Time after the release in which the load of a can may be carried over the top [s]."""

@@ -21,7 +21,8 @@ from mjbeer.studies.sweep import damped_map
 from mjbeer.studies.sweep.arrays import Sweep
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.named import frozen
+from mjbeer.theory.scene import Scene
 
 DURATION = 2.0
 """Time after the release in which a can of the map of outcomes may slip, part or roll down [s]."""

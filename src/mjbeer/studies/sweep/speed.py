@@ -21,7 +21,7 @@ from mjbeer.output.terminal import Table
 from mjbeer.studies.sweep.ensemble import Propagate, ensemble, installed
 from mjbeer.studies.sweep.run import sweep
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import sliding
+from mjbeer.theory.named import sliding
 
 TOLERANCE = 1e-6
 """Error of phi and u/a that every scene must keep [rad], relative beyond 1 rad."""

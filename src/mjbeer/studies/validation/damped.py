@@ -14,7 +14,9 @@ from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.validation import loops, modes
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
-from mjbeer.theory.scene import Scene, frozen, liquid_in, sliding
+from mjbeer.theory.liquid import liquid_in
+from mjbeer.theory.named import frozen, sliding
+from mjbeer.theory.scene import Scene
 
 CANS = {"massless can": Can(), "metal can": Can.sheet_metal()}
 """The cans of the paper's sections 2 and 3."""

@@ -13,7 +13,8 @@ from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Check
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.named import sliding
+from mjbeer.theory.scene import Scene
 
 _SETTLED = 30.0
 """Time after which a loop is steady [s]: what distinguishes it decays in a second or faster."""

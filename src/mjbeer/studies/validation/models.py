@@ -19,7 +19,8 @@ from mjbeer.studies.convergence import order
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import BEER, Load
-from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 ORDERS: dict[Integrator, tuple[int, float]] = {
     "RK4": (4, 0.2),

@@ -13,7 +13,8 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Check
 from mjbeer.theory.can import Can
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.scene import Scene, sliding
+from mjbeer.theory.named import sliding
+from mjbeer.theory.scene import Scene
 
 SIX_DECADES = tuple(float(c) for c in np.geomspace(1e-5, 10, 7))
 """Damping from nearly free to stiff [N m s]: the fast mode decays with 9e4 1/s at the end."""

@@ -13,7 +13,8 @@ from mjbeer.studies.check import Check
 from mjbeer.studies.validation import damped, models
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.named import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import mean_acceleration
 
 _FRICTION = 10.0

@@ -7,7 +7,8 @@ from mjbeer.studies.stability.catalogue.case import SWINGS, CatalogueCase, attem
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED, UNSTABLE
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 _FILLS = (1e-5, 1e-3, 1 - 1e-3, 1 - 1e-6, 1.0)
 """Heights of the beer over the can's diameter."""

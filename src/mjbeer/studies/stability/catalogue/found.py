@@ -10,7 +10,8 @@ from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE, REFUSED
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.named import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene
 
 
 def cases() -> Iterator[CatalogueCase]:

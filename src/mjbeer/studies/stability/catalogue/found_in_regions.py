@@ -12,7 +12,8 @@ from mjbeer.studies.stability.catalogue.case import Attempt, CatalogueCase
 from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.named import frozen
+from mjbeer.theory.scene import Scene
 
 
 def cases() -> Iterator[CatalogueCase]:

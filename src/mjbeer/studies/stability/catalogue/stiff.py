@@ -13,7 +13,7 @@ from mjbeer.studies.stability.outcome import ACCURATE, INACCURATE
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import frozen, pendulum, sliding
+from mjbeer.theory.named import frozen, pendulum, sliding
 
 _TIMESTEP = 1e-3
 """Timestep of the runs with a constraint [s]."""

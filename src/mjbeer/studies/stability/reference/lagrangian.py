@@ -28,8 +28,7 @@ import numpy as np
 
 from mjbeer.studies.stability.reference.taylor import integrate
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.steady import require_no_dissipation
+from mjbeer.theory.scene import Scene, require_no_dissipation
 
 MOST_STEPS = 400_000
 """Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""

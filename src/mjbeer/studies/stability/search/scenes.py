@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from mjbeer.studies.stability.search.pick import Pick
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import Damping
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
 
 
 def slow(scene: Scene) -> float:
