@@ -37,44 +37,37 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 
 def number(name: str, value: Any, unit: str = "") -> float:
     """Return a real number of Python's or NumPy's as a finite float."""
-    result = _float(value)
-    if not math.isfinite(result):
-        raise ParameterError(f"{name} must be a finite number{_in_unit(unit)}, got {shown(value)}")
+    if not math.isfinite(result := _float(value)):
+        raise _refused(f"{name} must be a finite number", unit, value)
     return result
 
 
 def within(name: str, value: Any, lowest: float, highest: float, unit: str = "", zero: bool = False) -> float:
     """Return `value` as a float from `lowest` to `highest`, or 0 if `zero` is allowed as well."""
-    result = number(name, value, unit)
-    if not (lowest <= result <= highest or (zero and result == 0)):
+    if not (lowest <= (result := number(name, value, unit)) <= highest or (zero and result == 0)):
         either = "0, or " if zero and lowest > 0 else ""
-        raise ParameterError(
-            f"{name} must be {either}between {lowest:.6g} and {highest:.6g}{_in_unit(unit)}, got {shown(value)}"
-        )
+        raise _refused(f"{name} must be {either}between {lowest:.6g} and {highest:.6g}", unit, value)
     return result
 
 
 def positive(name: str, value: Any, unit: str = "") -> float:
     """Return `value` as a finite float greater than 0."""
-    result = number(name, value, unit)
-    if result <= 0:
-        raise ParameterError(f"{name} must be greater than 0{_in_unit(unit)}, got {shown(value)}")
+    if not (result := number(name, value, unit)) > 0:
+        raise _refused(f"{name} must be greater than 0", unit, value)
     return result
 
 
 def non_negative(name: str, value: Any, unit: str = "") -> float:
     """Return `value` as a finite float of 0 or more."""
-    result = number(name, value, unit)
-    if result < 0:
-        raise ParameterError(f"{name} must be 0 or greater{_in_unit(unit)}, got {shown(value)}")
+    if not (result := number(name, value, unit)) >= 0:
+        raise _refused(f"{name} must be 0 or greater", unit, value)
     return result
 
 
 def friction(value: Any) -> float:
     """Return a coefficient of friction as a float of 0 or more, infinity included."""
-    result = _float(value)
-    if not result >= 0:
-        raise ParameterError(f"friction must be 0 or greater (infinity is allowed), got {shown(value)}")
+    if not (result := _float(value)) >= 0:
+        raise _refused("friction must be 0 or greater (infinity is allowed)", "", value)
     return result
 
 
@@ -102,24 +95,20 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
     except (TypeError, ValueError):  # lists of different lengths
         array = np.asarray(None)
     if array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
-        raise ParameterError(
-            f"{name} must be a list or a one-dimensional array of one or more numbers{_in_unit(unit)}, "
-            f"got {shown(value)}"
-        )
-    array = array.astype(float, copy=False)
+        raise _refused(f"{name} must be a list or a one-dimensional array of one or more numbers", unit, value)
     for index in np.flatnonzero(~np.isfinite(array)):
         number(f"{name}[{index}]", array[index], unit)
-    return array
+    return array.astype(float, copy=False)
 
 
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     """Return times [s], none before 0, as a new array of shape (samples,); a single number will do as well."""
-    single = not increasing and math.isfinite(_float(value))
-    array = np.array([_float(value)]) if single else samples(name, value, "s").copy()
+    if not increasing and math.isfinite(_float(value)):
+        return np.array([non_negative(name, value, "s")])
+    array = samples(name, value, "s").copy()
     for index in np.flatnonzero(array < 0):
-        non_negative(name if single else f"{name}[{index}]", array[index], "s")
-    back = np.flatnonzero(np.diff(array) <= 0) + 1
-    if increasing and len(back):
+        non_negative(f"{name}[{index}]", array[index], "s")
+    if increasing and len(back := np.flatnonzero(np.diff(array) <= 0) + 1):
         earlier, later = (shown(array[index]) for index in (back[0] - 1, back[0]))
         raise ParameterError(f"{name} must increase, but {name}[{back[0]}] is {later} s after {earlier} s")
     return array
@@ -130,10 +119,9 @@ def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
     names = {str(each): each for each in allowed}
     if isinstance(value, str) and value in names:
         return names[value]
-    listed = ", ".join(map(repr, names))
     alike = " or ".join(map(repr, spelled_alike(value, names))) if isinstance(value, str) else ""
     question = f": did you mean {alike}?" if alike else ""
-    raise ParameterError(f"{name} must be one of {listed}; got {shown(value)}{question}")
+    raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {shown(value)}{question}")
 
 
 def path(value: Any) -> pathlib.Path:
@@ -189,8 +177,8 @@ def spelled_alike(word: str, allowed: Iterable[str]) -> list[str]:
     return [folded[each] for each in difflib.get_close_matches(word.casefold(), folded, n=2)]
 
 
-def _in_unit(unit: str) -> str:
-    return f" [{unit}]" if unit else ""
+def _refused(what: str, unit: str, value: object) -> ParameterError:
+    return ParameterError(f"{what}{f' [{unit}]' if unit else ''}, got {shown(value)}")
 
 
 def _float(value: Any) -> float:

@@ -36,9 +36,10 @@ class Coordinates:
     lift_dot: np.ndarray
     """Velocity of the can away from the incline [m/s]."""
 
-    def at(self, samples: np.ndarray | list[int] | slice) -> "Coordinates":
-        """Return some of the samples."""
-        return Coordinates(**{name: getattr(self, name)[samples] for name in Coordinates.__dataclass_fields__})
+
+def part(motion: Coordinates, samples: np.ndarray | list[int] | slice) -> Coordinates:
+    """Return some of the samples of a motion."""
+    return Coordinates(**{name: getattr(motion, name)[samples] for name in Coordinates.__dataclass_fields__})
 
 
 @dataclass(frozen=True, eq=False)

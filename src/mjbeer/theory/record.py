@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from mjbeer.theory import equations
-from mjbeer.theory.equations import Coordinates, accelerations, slip_rate
+from mjbeer.theory.equations import Coordinates, accelerations, part, slip_rate
 from mjbeer.theory.liquid import centrifugal
 from mjbeer.theory.motion import energy_to_barrier
 from mjbeer.theory.scene import Scene
@@ -33,32 +33,21 @@ class Record:
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
         """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
         self.scene, self.friction = scene, friction
-        self.slip = 0.0
-        """Largest distance that the can has slid instead of rolled [m]."""
-        self.lift = 0.0
-        """Largest distance between can and incline, or depth of the can in it [m]."""
-        self.turned = 0.0
-        """Largest angle by which the load has turned from its start [rad]."""
-        self.rolled = 0.0
-        """Largest distance of the axis from its start [m]."""
-        self.path = 0.0
-        """Angle that the load has covered, forth and back [rad]."""
-        self.fastest = 0.0
-        """Largest rate of the load, |phi_dot| [rad/s]."""
-        self.lowest_normal = math.inf
-        """Smallest normal force that rolling needed [N]; negative where the incline would have to pull."""
-        self.needed = 0.0
-        """Largest friction coefficient that rolling needed; infinite where the incline would have to pull."""
-        self.fails_at = math.inf
-        """Time [s] at which N < 0 or |F| > friction N for the first time, interpolated; infinity if it never was."""
-        self.swing = 0.0
-        """Largest kinetic energy of the swing, J phi_dot^2 / 2 [J]."""
-        self.fastest_slip = 0.0
-        """Largest rate between can and load in a scene with damping, |u_dot/a - phi_dot| [rad/s]."""
-        self.no_lump_at = math.inf
-        """First time at which the wall of a can with a liquid is too fast for a lump [s]; infinite if there is none."""
-        self.axis_drift = 0.0
-        """Largest distance of the axis from where the momentum at the start has it [m]; 0 with damping or drag."""
+        self.slip = 0.0  # largest distance that the can has slid instead of rolled [m]
+        self.lift = 0.0  # largest distance between can and incline, or depth of the can in it [m]
+        self.turned = 0.0  # largest angle by which the load has turned from its start [rad]
+        self.rolled = 0.0  # largest distance of the axis from its start [m]
+        self.path = 0.0  # angle that the load has covered, forth and back [rad]
+        self.fastest = 0.0  # largest rate of the load, |phi_dot| [rad/s]
+        self.swing = 0.0  # largest kinetic energy of the swing, J phi_dot^2 / 2 [J]
+        self.axis_drift = 0.0  # largest distance of the axis from where its momentum has it [m]; 0 with damping or drag
+        self.fastest_slip = 0.0  # largest rate between can and load with damping or drag, |u_dot/a - phi_dot| [rad/s]
+        self.no_lump_at = math.inf  # when the wall of a can with a liquid is first too fast for a lump [s]
+        self.lowest_normal = (
+            math.inf
+        )  # smallest N that rolling needed [N]; negative where the incline would have to pull
+        self.needed = 0.0  # largest friction coefficient that rolling needed; infinite where N < 0
+        self.fails_at = math.inf  # when N < 0 or |F| > friction N for the first time, interpolated [s]
         self._kinetic = self._energy = self._energy_change = self._work = 0.0
         self._swing_drift = self._largest_swing_drift = self._swing_change = 0.0
         self._first: Coordinates | None = None
@@ -74,7 +63,7 @@ class Record:
         """
         record = cls(scene, friction)
         record._all_steps = False
-        record.add(motion.at(np.argsort(motion.time)))
+        record.add(part(motion, np.argsort(motion.time)))
         return record
 
     def add(self, motion: Coordinates) -> None:
@@ -88,9 +77,9 @@ class Record:
         kinetic = equations.kinetic_energy(scene, motion)
         energy = kinetic + equations.potential_energy(scene, motion)
         if self._first is None or self._last is None:
-            self._first = self._last = motion.at([0])
+            self._first = self._last = part(motion, [0])
             self._energy = float(energy[0])
-        first, last, self._last = self._first, self._last, motion.at([-1])
+        first, last, self._last = self._first, self._last, part(motion, [-1])
         self.slip = _largest(self.slip, motion.u - first.u - scene.can.radius * (motion.roll - first.roll))
         self.lift = _largest(self.lift, motion.lift)
         self.turned = _largest(self.turned, motion.phi - first.phi)
@@ -185,10 +174,7 @@ class Record:
 
     @property
     def to_barrier(self) -> float:
-        """Return how far the energy of the motion is from that of the next barrier [J]; infinite if there is none.
-
-        With damping or drag the energy falls, or is driven, and no barrier has a fixed distance from it.
-        """
+        """Return how far the energy is from that of the next barrier [J]; infinite with damping or drag, or without."""
         if self.scene.dissipates or self._first is None:
             return math.inf
         return energy_to_barrier(self.scene.oscillator, float(self._first.phi[0]), float(self._first.phi_dot[0]))

@@ -205,7 +205,7 @@ class Scene:
         """
         if self.dissipates:
             return self.terminal_tilt()
-        if self.oscillator.depth > 0 and abs(self.oscillator.slope) > self.oscillator.depth:
+        if abs(self.oscillator.slope) > self.oscillator.depth > 0:
             raise NoEquilibriumError(
                 f"no equilibrium at an incline of {math.degrees(self.incline):.4g} degrees: a frozen load holds the "
                 f"can only up to {math.degrees(self.largest_incline()):.1f} degrees, where sin(alpha) = m b / "
@@ -296,7 +296,7 @@ class Scene:
     def terminal_speed(self) -> float:
         """Return the speed of the axis down the incline [m/s] at which a can with damping or drag rolls steadily.
 
-        Its load then stands still at `terminal_tilt`. With linear damping alone it is m_t g sin(alpha) a^2/c.
+        Its load then stands still at `terminal_tilt`. Linear damping alone gives m_t g sin(alpha) a^2/c.
 
         Raises:
           DissipationError: if the scene has neither damping nor drag.

@@ -12,7 +12,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import equations
-from mjbeer.theory.equations import Coordinates, Forces, accelerations, rolling_forces
+from mjbeer.theory.equations import Coordinates, Forces, accelerations, part, rolling_forces
 from mjbeer.theory.record import Record, doubts
 from mjbeer.theory.scene import Scene, pictures
 
@@ -146,7 +146,7 @@ class Trajectory(Coordinates):
         scene, form = self.scene, self.scene.oscillator
         # After the last sample that swings phi_dot is rounding, whose changes of sign are no turning points.
         least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
-        swing = self.at(slice(int(np.flatnonzero(np.abs(self.phi_dot) > least).max(initial=-1)) + 1))
+        swing = part(self, slice(int(np.flatnonzero(np.abs(self.phi_dot) > least).max(initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
         _, change = accelerations(scene, phi, rate, swing.u_dot)
         turns = _zeros(time, rate, change)
