@@ -38,22 +38,6 @@ def test_samples_are_one_list_of_numbers(value: object) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "zero", "message"),
-    [
-        (0.0, False, "gravity must be between 0.001 and 1000 [m/s^2], got 0.0"),
-        (9e-4, True, "gravity must be 0, or between 0.001 and 1000 [m/s^2], got 0.0009"),
-        (1001.0, False, "gravity must be between 0.001 and 1000 [m/s^2], got 1001.0"),
-    ],
-)
-def test_a_range_has_its_ends_and_the_error_outside_of_it_has_the_range(value: float, zero: bool, message: str) -> None:
-    for inside in (1e-3, 0.5, 1e3, *([0.0] if zero else [])):
-        assert require.within("gravity", inside, 1e-3, 1e3, "m/s^2", zero) == inside
-    with pytest.raises(ParameterError) as caught:
-        require.within("gravity", value, 1e-3, 1e3, "m/s^2", zero)
-    assert str(caught.value) == message
-
-
-@pytest.mark.parametrize(
     ("value", "message"),
     [
         ([0.0, math.nan], r"time\[1\] must be a finite number \[s\], got nan"),

