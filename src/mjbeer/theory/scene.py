@@ -20,15 +20,11 @@ from mjbeer.theory.oscillator import Oscillator
 
 Attachment = Literal["sliding", "frozen"]
 ATTACHMENTS: tuple[Attachment, ...] = get_args(Attachment)
-"""The ways in which a load can be attached; see `Scene.attachment`."""
-INCLINE = math.radians(10)
-"""Default incline [rad]: 10 degrees, as in the paper's footnote 8."""
-DURATION = 2.0
-"""Default duration of a motion [s]."""
-PHI0 = math.radians(60)
-"""Default angle at its start [rad]."""
-GRAVITY = 9.81
-"""Default acceleration of gravity [m/s^2]; the paper's footnote 8 has 9.8."""
+# What scenes and motions have unless told otherwise.
+INCLINE = math.radians(10)  # [rad], as in the paper's footnote 8
+DURATION = 2.0  # [s]
+PHI0 = math.radians(60)  # at the start [rad]
+GRAVITY = 9.81  # [m/s^2]; the paper's footnote 8 has 9.8
 _LEAST_OFFSET = 1e-14
 """Smallest offset of a load that is not balanced, over the radius: less than with a billionth of the height empty."""
 _LEAST_RATE = 1e-12
@@ -52,16 +48,14 @@ class Scene:
     incline: float = INCLINE
     """Angle alpha of the incline to the horizontal [rad]; if positive, u grows downhill."""
     attachment: Attachment = "sliding"
-    """"sliding": the load slides about the axis, without friction unless there is `damping`; "frozen": it is rigidly
-    attached."""
+    """"sliding": the load slides about the axis, with no friction but `damping`; "frozen": it turns with the can."""
     gravity: float = GRAVITY
     """Acceleration of gravity g [m/s^2]."""
     damping: float | Damping = 0.0
     """Torque between a sliding load and the can per slip rate roll_dot - phi_dot, c [N m s], or a `Damping` whose
     torque does not grow in proportion."""
     drag: float = 0.0
-    """Force of the air against the motion of the axis, over the square of its speed, C_d rho A / 2 [kg/m]. Only a scene
-    with a sliding load has it."""
+    """Force of the air on the axis over the square of its speed, C_d rho A / 2 [kg/m]; for a sliding load only."""
     made_by: tuple[Callable[..., "Scene"], dict[str, Any]] | None = field(default=None, init=False, compare=False)
     """The function that made the scene, as `mjbeer.sliding`, and the arguments that it was given; None if none did."""
 
@@ -341,8 +335,7 @@ class Scene:
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
 
-        The load may stand still, or loop with a rate that is periodic in phi; then the variance of the slip rate is D
-        times the load's mean rate.
+        The load may stand still, or loop; then the variance of the slip rate is D times the load's mean rate.
 
         Raises:
           DissipationError: if the damping is not linear, or there is none, or there is drag.
@@ -358,10 +351,9 @@ class Scene:
     def acceleration(self) -> float:
         """Return the acceleration of the axis down the incline [m/s^2] when it is steady: footnote 4, or eq. (1).
 
-        A frozen load has none; returned is that of a load that is balanced with the same inertia about the axis,
-        (2/3) g sin(alpha) for half a massless can of beer (A.3). In the long run the unbalanced one rolls down faster,
-        by the factor mean(J) / mean(sqrt(J))^2. With damping or drag the speed is bounded and the acceleration 0, but
-        for a balanced load without drag, which ends as a frozen one.
+        A frozen load has none; returned is that of a balanced load with the same inertia about the axis (A.3), than
+        which the unbalanced one rolls down faster in the long run, by the factor mean(J) / mean(sqrt(J))^2. With
+        damping or drag it is 0, but for a balanced load without drag, which ends as a frozen one.
         """
         if self.dissipates and (self.load.offset > 0 or self.drag > 0):
             return 0.0

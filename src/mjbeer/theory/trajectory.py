@@ -27,13 +27,10 @@ the range of phi. Four samples a period of a small swing have 0.007, three have 
 class Trajectory(Coordinates):
     """A motion of a scene, with the energy, forces and warnings that follow from it.
 
-    The coordinates are those of Fig. 3 of the paper. `u` is the place of the can's axis along the incline [m],
-    positive downhill. It starts at b sin(phi0) for a sliding load, whose centre of mass starts at
-    s = u - b sin(phi) = 0 (eq. 12), and at a phi0 for a frozen one (eq. 50): `distance` is counted from the start.
-    `phi` is the angle of the load to the incline [rad]: 0 where its centre of mass is nearest to the incline, and
-    growing as the can rolls downhill. `roll` is the angle by which the can itself has turned [rad], which is u/a as
-    long as it does not slip. `lift` is its height above the incline [m]. `u_dot`, `phi_dot`, `roll_dot` and `lift_dot`
-    are their rates.
+    The coordinates are those of Fig. 3 of the paper. `phi` is 0 where the load's centre of mass is nearest to the
+    incline, and grows as the can rolls downhill. `u` starts at b sin(phi0) for a sliding load, whose centre of mass
+    starts at s = u - b sin(phi) = 0 (eq. 12), and at a phi0 for a frozen one (eq. 50): `distance` is counted from the
+    start.
 
     Raises:
       ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
@@ -199,9 +196,7 @@ class Trajectory(Coordinates):
         The other arguments are those of `mjbeer.render`.
 
         Raises:
-          ParameterError: if an argument is not allowed.
-          RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
-          OutputError: if the file cannot be written.
+          ParameterError, RenderingError, OutputError: as `mjbeer.render`.
         """
         return pictures[0]().video(self, path, width, height, fps, speed, camera, progress)
 
