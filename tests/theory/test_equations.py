@@ -1,10 +1,9 @@
-"""Accelerations against the corrected equations, forces against the motion of the centre of mass, and hopping."""
+"""Accelerations against the corrected equations, and forces against the motion of the centre of mass."""
 
 import math
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, minimize_scalar
 
 from mjbeer import Scene, frozen, hoop
 from mjbeer.paper.audit.claim import miss
@@ -77,39 +76,6 @@ def test_forces_move_the_centre_of_mass(scene: Scene) -> None:
     if scene.incline >= 0 and scene.attachment == "frozen":  # footnote 7: at rest it needs tan(alpha)
         forces = rolling_forces(scene, np.array([scene.equilibrium()]), np.zeros(1), 0.0)
         assert forces.needed == pytest.approx([math.tan(scene.incline)], rel=ROUNDING, abs=ROUNDING)
-
-
-def falling(scene: Scene, phi: float) -> float:
-    """N / mg of a hoop with a load on its rim that fell from rest at the top; phi_dot^2 by energy, by hand.
-
-    With k = M/m: (2k + 4 sin^2(phi/2)) a^2 phi_dot^2 / 2 = g a (1 + cos phi).
-    """
-    k, a, g = scene.can.mass / scene.load.mass, scene.can.radius, scene.gravity
-    rate = math.sqrt(2 * g / a * math.cos(phi / 2) ** 2 / (k / 2 + math.sin(phi / 2) ** 2) / 2)
-    forces = rolling_forces(scene, np.array([phi]), np.array([rate]), 0.0)
-    return float(forces.normal[0]) / (scene.load.mass * g)
-
-
-def test_littlewood_s_hoop_lifts_off_when_its_load_is_level() -> None:
-    """A.4. For M = 0 the energy above gives phi_dot^2 = (g/a) cot^2(phi/2), and with it N = -m g cos(phi)."""
-    scene = hoop(hoop_mass=1e-6 * 0.2, load_mass=0.2)
-    for phi in (3.0, 2.0, 1.2):
-        assert falling(scene, phi) == pytest.approx(-math.cos(phi), abs=2e-5)  # (M/m) / sin^2(phi/2), times a few
-    assert math.degrees(brentq(lambda phi: falling(scene, phi), 1.0, 3.0)) == pytest.approx(90, abs=1e-3)
-
-
-def test_hoop_hops_only_below_a_thirteenth() -> None:
-    """Pritchett's condition: the least N of the fall is 0 at M/m = 1/13, and grows with M."""
-
-    def least(ratio: float) -> float:
-        scene = hoop(hoop_mass=ratio, load_mass=1.0)
-        found = minimize_scalar(lambda phi: falling(scene, phi), bounds=(0.5, 3), options={"xatol": 1e-9})
-        return float(found.fun)
-
-    # N is linear in M/m there with a slope of some 10, so 1e-6 is 1e-5 of mg; rounding is 1e-15.
-    assert least(1 / 13 - 1e-6) < -1e-7
-    assert least(1 / 13 + 1e-6) > 1e-7
-    assert abs(least(1 / 13)) < ROUNDING
 
 
 def test_forces_where_the_incline_would_have_to_pull() -> None:

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,20 +51,6 @@ def test_ends_are_von_karman_s_layers() -> None:
     )
     assert found.success
     assert -2 * found.y[3, 0] == pytest.approx(ENDS, rel=DIGITS)
-
-
-def test_creep_has_the_shear_of_stokes_flow_in_a_half_disc() -> None:
-    """The stream function sum b_n (r^n - r^(n+2)) sin(n theta), n odd, is biharmonic and odd, so that the flat side is
-    free. On the wall it has the speed 2 sum b_n sin(n theta), which is 1 for b_n = 2/(pi n), and the shear
-    4 sum n b_n sin(n theta). Abel's sums with r = 1 - 1e-4 give both to about that."""
-    n = np.arange(1, 400_000, 2)
-    damped = np.exp(-1e-4 * n)
-    for theta in (0.3, 1.2):
-        sines = damped * np.sin(n * theta)
-        assert (sines / n).sum() * 4 / math.pi == pytest.approx(1, abs=1e-3)
-        assert sines.sum() * 8 / math.pi == pytest.approx(4 / (math.pi * math.sin(theta)), rel=1e-3)
-    integral = 2 * math.log(1 / math.tan(1e-3 / 2))  # of 1/sin(theta) but for 1e-3 at both edges
-    assert integral == pytest.approx(2 * math.log(2 / 1e-3), rel=1e-6)
 
 
 def test_the_wall_carries_round_what_moffatt_says() -> None:
@@ -149,10 +136,8 @@ def test_the_law_says_where_it_holds() -> None:
 
 WARNED = {
     "water": "terminal speed of 4.2 m/s the wall's centrifugal acceleration is 56 times",
-    "beer": "terminal speed of 3.6 m/s the wall's centrifugal acceleration is 41 times",
     "olive oil": "terminal speed of 0.96 m/s the wall's centrifugal acceleration is 2.9 times",
     "glycerol": "it coats the can: the wall carries round a film of 5.3 mm, which can hold 45 % of the liquid",
-    "honey": "it coats the can: the wall carries round a film of 5.3 mm, which can hold 45 % of the liquid",
 }
 
 
@@ -179,10 +164,8 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     speed = float(np.interp(time, run.time, run.u_dot))
     assert speed == pytest.approx(math.sqrt(9.81 * math.cos(scene.incline) * 0.033), rel=2e-3)  # a sample later
     slips = np.abs(slip_rate(scene, run.phi_dot, run.u_dot))
-    said = about_run(scene, float(slips.max()), time) or ""
-    assert said.endswith(
-        f"from t = {time:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
-        "spreads it round the can"
+    assert f"the liquid as one lump is an order of magnitude only: from t = {time:.6g} s on the wall's" in (
+        about_run(scene, float(slips.max()), time) or ""
     )
     assert about_run(scene, 50.0, math.inf) is None
     assert "17.8 to 178 rad/s between can and liquid, but 200" in (about_run(scene, 200.0, math.inf) or "")
@@ -190,12 +173,15 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     assert about_run(sliding(damping=1e-3), 1e9, 0.0) is None  # what is no liquid's may be anything
 
 
-def test_what_is_not_allowed() -> None:
-    with pytest.raises(ParameterError, match=r"liquid must be one of .*; got 'Watr': did you mean 'water'\?"):
-        liquid("Watr")
-    with pytest.raises(ParameterError, match=r"viscosity must be greater than 0 \[m\^2/s\], got -1"):
-        liquid(viscosity=-1)
-    with pytest.raises(ParameterError, match=r"the layer on the wall is turbulent .* got 1e-08 m"):
-        liquid(viscosity=1e-8)
-    with pytest.raises(ParameterError, match="fill must be less than 1 and gravity more than 0"):
-        liquid(fill=1.0)
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"name": "Watr"}, r"liquid must be one of .*; got 'Watr': did you mean 'water'\?"),
+        ({"viscosity": -1}, r"viscosity must be greater than 0 \[m\^2/s\], got -1"),
+        ({"viscosity": 1e-8}, "the layer on the wall is turbulent .* got 1e-08 m"),
+        ({"fill": 1.0}, "fill must be less than 1 and gravity more than 0"),
+    ],
+)
+def test_what_is_not_allowed(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        liquid(**given)

@@ -128,16 +128,6 @@ def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
         assert axis_drift(scene, ahead, exact(scene, [0.0], 0.8))[-1] == pytest.approx(share * ERROR * way, rel=1e-9)
 
 
-def test_the_swing_s_energy_is_that_of_theory() -> None:
-    """Half of the kinetic energy, at the bottom of the swing, is half of it: as much again as its own, over 0.5 rad."""
-    scene = frozen()
-    form, bottom = scene.oscillator, scene.equilibrium()
-    fast = math.sqrt(2 * form.drop(bottom, bottom + 0.5) / form.inertia(bottom))
-    fall = exact(scene, [0.0, scene.period(0.5) / 4], bottom + 0.5)
-    slower = replace(fall, phi=np.array([bottom + 0.5, bottom]), phi_dot=np.array([0.0, fast / math.sqrt(2)]))
-    assert slower.record.swing_error == pytest.approx(0.5, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("estimate", "warning"),
     [
