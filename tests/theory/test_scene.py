@@ -39,7 +39,7 @@ EDGES = [
     ("can inertia", None, 1e6 * 0.1 * 0.033**2, lambda value: Can(mass=0.1, inertia=value)),
     ("load mass", 1e-9, 1e9, lambda value: Load(value, 0.01)),
     ("load offset", 0.0, 1e2, lambda value: Load(1.0, value)),
-    ("load offset inside the can", 1e-14, 1.0, lambda value: wheel(offset=value)),
+    ("load offset", 1e-14, 1.0, lambda value: wheel(offset=value)),
     ("load inertia", None, 2e5, shell),
     ("mass of the can over that of the load", 1e-6, 1e6, lambda value: wheel(value, 1.0)),
     ("gravity", 1e-3, 1e3, lambda value: sliding(gravity=value)),

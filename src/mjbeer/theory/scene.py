@@ -80,7 +80,7 @@ class Scene:
                 f"got damping={require.shown(self.damping)} and drag={require.shown(self.drag)}"
             )
         a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e6 may round up
-        require.within("load offset inside the can", load.offset, _LEAST_OFFSET * a, a, "m", zero=True)
+        require.within("load offset", load.offset, _LEAST_OFFSET * a, a, "m", zero=True)
         ratio = can.mass / load.mass
         require.within("mass of the can over that of the load", ratio, 1 / most, most, zero=True)
         require.within("load inertia", load.inertia, 0, most * load.mass * a**2, "kg m^2")
@@ -108,7 +108,9 @@ class Scene:
         """Return the call that makes the scene, without what it would have anyway."""
         make, given = self._made()
         usual = inspect.signature(make).parameters
-        plain = {name: value.item() if isinstance(value, np.generic) else value for name, value in given.items()}
+        plain = {
+            name: each.item() if isinstance(each, np.generic | np.ndarray) else each for name, each in given.items()
+        }
         told = (f"{name}={value!r}" for name, value in plain.items() if value != usual[name].default)
         return f"{getattr(make, '__name__', '')}({', '.join(told)})"
 
