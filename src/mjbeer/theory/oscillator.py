@@ -168,6 +168,16 @@ class Oscillator:
         middle = (phi + start) / 2 - self.bottom
         return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
 
+    def unevenness(self, phi0: float, phi_dot0: float) -> float:
+        """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
+
+        It is large where neither the energy of the start nor that which a turn downhill adds is much more than the
+        depth of the well.
+        """
+        drive = float(self.inertia(phi0)) * phi_dot0**2 / 2 + abs(self.slope)
+        by_weight = self.depth / drive if drive > 0 else (math.inf if self.depth > 0 else 0.0)
+        return (self.chord + self.swing) / (2 * self.base) + by_weight
+
     def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
         """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""
         inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)

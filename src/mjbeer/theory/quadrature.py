@@ -70,7 +70,9 @@ class Clock:
             panels.append((lows[done], halves[done], rates[:, done]))
             lows, middles, ends = lows[~done], middles[~done], ends[~done]
             lows, ends = np.concatenate([lows, middles]), np.concatenate([middles, ends])
-        starts, halves, rates = (np.concatenate(parts, axis=-min(parts[0].ndim, 2)) for parts in zip(*panels, strict=True))
+        starts, halves, rates = (
+            np.concatenate(parts, axis=-min(parts[0].ndim, 2)) for parts in zip(*panels, strict=True)
+        )
         order = np.argsort(starts)
         self._size, passages = len(order), len(rates)
         self._rates = rates[:, order].reshape(-1, len(_NODES))
