@@ -82,7 +82,8 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
         period.
       ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
     """
-    low, high = (end - oscillator.equilibrium() for end in oscillator.separatrix())
+    rest = oscillator.equilibrium()
+    low, high = (end - rest for end in oscillator.separatrix())
     if not low < amplitude < high:
         raise NoLibrationError(
             f"amplitude {amplitude:.6g} rad is not inside the separatrix: released from rest, the load swings about "

@@ -101,18 +101,12 @@ class Crest:
 class Oscillator:
     """The coefficients of J and V in the formulas above."""
 
-    base: float
-    """Constant part of J [kg m^2]."""
-    chord: float
-    """Coefficient of sin^2(phi/2) in J [kg m^2]."""
-    swing: float
-    """Coefficient of sin^2(phi) in J [kg m^2]."""
-    slope: float
-    """Mean torque downhill [N m]."""
-    depth: float
-    """Amplitude of the cosine in V [J]."""
-    bottom: float
-    """Angle at which the cosine in V has its minimum [rad]."""
+    base: float  # constant part of J [kg m^2]
+    chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
+    swing: float  # coefficient of sin^2(phi) in J [kg m^2]
+    slope: float  # mean torque downhill [N m]
+    depth: float  # amplitude of the cosine in V [J]
+    bottom: float  # angle at which the cosine in V has its minimum [rad]
 
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":

@@ -324,7 +324,7 @@ def require_swing(motion: Coordinates, scene: Scene, phi0: float, phi_dot0: floa
     rest += 2 * math.pi * round((phi0 - rest) / (2 * math.pi))
     if not scene.dissipates:  # `swinging` does it where the energy is not that of a swing alone
         energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + float(oscillator.drop(rest, phi0))
-        least = oscillator.stiffness() * (_LEAST_SWING * max(1.0, abs(phi0))) ** 2 / 2
+        least = oscillator.crest.curvature * (_LEAST_SWING * max(1.0, abs(phi0))) ** 2 / 2
         kinetic = float((oscillator.inertia(motion.phi) * motion.phi_dot**2).max()) / 2
         if not energy > least or kinetic > 2 * energy:
             raise MjbeerError(
