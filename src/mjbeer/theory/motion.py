@@ -5,9 +5,8 @@ Two kinds of path are enough. An arc begins or ends at a turning point, phi = tu
     dt/ds = sqrt(2 J / |mean torque from the turning point on|),    dt/dx = sqrt(J / 2 (level + below(x))),
 
 both smooth and positive, with `level` = E - V at the crest and x the distance past it. A swing is two arcs that meet at
-the equilibrium, forth and back; a load that passes crests goes up in turns, each with a level one step lower, until it
-cannot pass the next crest, swings round in an arc, and goes down in turns for ever. The slope is never negative here:
-what goes the other way is watched in a mirror.
+the equilibrium; a load that passes crests goes up in turns, each with a level one step lower, until it cannot pass the
+next crest, swings round in an arc, and goes down in turns for ever. What goes the other way is watched in a mirror.
 
 Beside a separatrix rounding decides. There the motion is computed for a start and a scene that are changed by their
 rounding as well, both ways, and refused where that matters.
@@ -32,8 +31,6 @@ UNCERTAIN = 1e-4
 """Largest effect of rounding on phi [rad], relative beyond 1 rad: a hundredth of the error of a run that is trusted."""
 _SUSPECT = 0.01 * UNCERTAIN
 """Largest rough estimate of that effect at which no motion is computed again."""
-_LARGEST_TOP = 2000 * math.pi
-"""Largest angle [rad] an eps of which puts a start at rest on the top. Farther out no double is meant as the top."""
 _STILL = 1e-30
 """Amplitude [rad] up to which a swing is rest."""
 MOST_TURNS = 10_000
@@ -127,15 +124,11 @@ class Start:
 
     form: Oscillator
     crest: Crest
-    sign: int
-    """-1 if the motion is watched in a mirror: phi, its rate and the slope have the other sign here."""
-    past: float
-    """Distance past the crest of its turn [rad]."""
-    from_rest: float
-    """Distance past the equilibrium of its well [rad]."""
+    sign: int  # -1 if the motion is watched in a mirror: phi, its rate and the slope have the other sign here
+    past: float  # distance past the crest of its turn [rad]
+    from_rest: float  # distance past the equilibrium of its well [rad]
     phi_dot: float
-    kinetic: float
-    """Kinetic energy [J]."""
+    kinetic: float  # kinetic energy [J]
 
     @classmethod
     def at(cls, form: Oscillator, phi: float, phi_dot: float) -> "Start":
@@ -176,8 +169,7 @@ class Start:
         if self.kinetic > 0 or self.crest.excess > 0:
             return self.still
         nearest = min(abs(self.past), abs(TURN - self.past))
-        top = nearest <= EPS * min(max(abs(phi), math.pi), _LARGEST_TOP)
-        return top or self.crest.depth == 0 or self.still
+        return nearest <= EPS * max(abs(phi), math.pi) or self.crest.depth == 0 or self.still
 
     @property
     def rounding(self) -> float:
@@ -222,20 +214,20 @@ class Start:
         swing = _swing(self) if self.swings else None
         latest, legs = float(np.max(time, initial=0.0)), cycle(swing) if swing else _roll(self)
         first = next(legs)
-        begin = first.path.time(self)
+        begin = first[0].time(self)
         since, cycles = time + begin, 0
         if swing or self.crest.slope == 0:  # all periods, or turns, are alike
-            most, lasts = (MOST_PERIODS, _period(swing)) if swing else (MOST_TURNS, first.path.duration)
+            most, lasts = (MOST_PERIODS, _period(swing)) if swing else (MOST_TURNS, first[0].duration)
             _require_until(latest, most * lasts, f"{most} {'periods' if swing else 'turns'}")
             cycles, since = np.divmod(since, lasts)
         last, place = float(np.max(since, initial=0.0)), self.from_rest if swing else self.past
         turned, phi_dot, margin, ended = np.empty_like(time), np.empty_like(time), math.inf, 0.0
-        for leg in chain([first], legs):
-            begun, ended, margin = ended, ended + leg.path.duration, min(margin, leg.margin)
+        for path, turn, energy in chain([first], legs):
+            begun, ended, margin = ended, ended + path.duration, min(margin, energy)
             now = (begun <= since) & (since < ended)
             if now.any():
-                passage, z, phi_dot[now] = leg.path.state(since[now] - begun)
-                turned[now] = TURN * (leg.turn + passage) + (z - place)
+                passage, z, phi_dot[now] = path.state(since[now] - begun)
+                turned[now] = TURN * (turn + passage) + (z - place)
             if ended > last:
                 break
         else:
@@ -311,19 +303,12 @@ class Turns:
         return passage, x, -speed if self._uphill else speed
 
 
-@dataclass(frozen=True)
-class Leg:
-    """A path that a motion passes."""
-
-    path: Arc | Turns
-    turn: int
-    """Number of its most uphill turn; the start is in turn 0."""
-    margin: float
-    """Energy by which a crest is missed or passed [J]."""
+Leg = tuple[Arc | Turns, int, float]
+"""A path, the number of its most uphill turn from that of the start, and by how much it passes or misses a crest."""
 
 
 def _period(swing: list[Leg]) -> float:
-    return sum(leg.path.duration for leg in swing)
+    return sum(path.duration for path, _, _ in swing)
 
 
 def _swing(start: Start) -> list[Leg]:
@@ -331,7 +316,7 @@ def _swing(start: Start) -> list[Leg]:
     if not start.swings or start.level_ahead == 0:
         raise NoLibrationError("it ends on the crest")
     side = 1 if start.from_rest >= 0 else -1
-    return [Leg(_arc(start, each), 0, -start.level_ahead) for each in (side, -side)]
+    return [(_arc(start, each), 0, -start.level_ahead) for each in (side, -side)]
 
 
 def _arc(start: Start, side: int) -> Arc:
@@ -367,8 +352,8 @@ def _roll(start: Start) -> Iterator[Leg]:
         levels = level - step * np.arange(min(batch, left))
         levels, batch = levels[levels > rise][::-1], min(4 * batch, _BATCH)
         turn, left = turn - len(levels), left - len(levels)
-        yield Leg(Turns(start, levels, uphill=True), turn + 1, levels[0])
-        level, ahead = levels[0] - step, levels[0]
+        yield Turns(start, levels, uphill=True), turn + 1, float(levels[0])
+        level, ahead = float(levels[0]) - step, float(levels[0])
     if level <= rise:
         if level == 0 and crest.excess == 0:
             raise NoLibrationError("it ends on the crest")
@@ -377,9 +362,9 @@ def _roll(start: Start) -> Iterator[Leg]:
         lower, upper = (-math.pi, -crest.well) if level > 0 else (0.0, end)
         at_rest = start.kinetic == 0
         place = start.past if at_rest else root(lambda x: float(crest.below(x)) + level, lower, upper)
-        yield Leg(Arc(start, place, end), turn, min(abs(level), ahead))
+        yield Arc(start, place, end), turn, min(abs(level), ahead)
         level, turn = ahead, turn + 1
     while left:
         levels, batch = level + step * np.arange(min(batch, left)), min(4 * batch, _BATCH)
-        yield Leg(Turns(start, levels), turn, level)
-        level, turn, left = levels[-1] + step, turn + len(levels), left - len(levels)
+        yield Turns(start, levels), turn, level
+        level, turn, left = float(levels[-1]) + step, turn + len(levels), left - len(levels)
