@@ -28,6 +28,8 @@ from mjbeer.theory.load import Load
 TURN = 2 * math.pi
 _SHALLOW = 0.5
 """Width of a well [rad] below which a turn is reckoned from the steepest place of V, and not from the equilibrium."""
+_GAP = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
+"""Coefficients of (1 - sin(x)/x) / x^2 in -x^2, to rounding up to 1."""
 
 
 class Crest:
@@ -228,10 +230,8 @@ def sinc(x: np.ndarray | float) -> np.ndarray:
 
 def sinc_gap(x: np.ndarray | float) -> np.ndarray:
     """Return 1 - sin(x)/x, by its series where the difference would cancel."""
-    square, series = np.square(np.minimum(np.abs(x), 1)), np.ones_like(x)
-    for k in range(17, 1, -2):
-        series = 1 - square / ((k + 1) * (k + 2)) * series
-    return np.where(np.abs(x) < 1, square / 6 * series, 1 - sinc(x))
+    square = np.square(np.minimum(np.abs(x), 1))
+    return np.where(np.abs(x) < 1, square * np.polyval(_GAP, -square), 1 - sinc(x))
 
 
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:
