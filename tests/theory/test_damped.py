@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.linalg import expm
 
-from mjbeer import Can, Load, Scene, exact, frozen, sliding
+from mjbeer import Load, Scene, exact, sliding
 from mjbeer.exceptions import AngleWarning, ToleranceError
 from mjbeer.theory import damped
 from mjbeer.theory.damping import Damping
@@ -106,24 +105,6 @@ def test_steady_rolling_stays(c: float) -> None:
     assert motion.u_dot == pytest.approx(np.full(3, scene.terminal_speed()), rel=10 * ROUNDING)
 
 
-@pytest.mark.parametrize("c", [1e-5, 2e-3, 0.1])
-def test_small_motion_is_a_matrix_exponential(c: float) -> None:
-    """On level ground, at 1e-7 rad: the next terms are cubic, and 1e-14 of the amplitude."""
-    scene, time, rate, amplitude = sliding(0.0, can=METAL, damping=c), 0.5, 3.0, 1e-7
-    can, load = scene.can, scene.load
-    moment, a = load.mass * load.offset, can.radius
-    mass = np.array([[load.inertia + load.mass * load.offset**2, -moment], [-moment, scene.mass + can.inertia / a**2]])
-    coupling = np.array([[1.0], [-1 / a]])
-    matrix = np.zeros((3, 3))
-    matrix[0, 1] = 1
-    matrix[1:, 0] = np.linalg.solve(mass, [-moment * scene.gravity, 0])
-    matrix[1:, 1:] = -c * np.linalg.solve(mass, coupling @ coupling.T)
-    expected = expm(matrix * time) @ [1.0, rate, load.offset * rate]
-    motion = exact(scene, time, amplitude, rate * amplitude)
-    found = np.array([motion.phi[0], motion.phi_dot[0], motion.u_dot[0]]) / amplitude
-    assert np.abs((found - expected) / [1, 20, 1]).max() < 1e-12  # 1e-14 times 10, and the rounding of expm
-
-
 @pytest.mark.parametrize(("damping", "drag"), [(2e-3, 0.0), (1.0, 0.01), (Damping(1e-4, 1e-5, 1e-6), 0.01)])
 def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> None:
     """What is lost is the work of T(w) w and of the drag, summed by Gauss's rule over 400 short intervals.
@@ -141,32 +122,6 @@ def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> No
     begin, end = energy(scene, exact(scene, [0.0, 1.0], 1.0, -30.0))
     bound = 1e-9 if drag or isinstance(damping, Damping) else 20 * ROUNDING
     assert work == pytest.approx(begin - end, rel=bound)
-
-
-@pytest.mark.parametrize("can", [Can(), METAL], ids=["massless", "metal"])
-def test_strong_damping_approaches_frozen(can: Can) -> None:
-    """In proportion to 1/c. A frozen can starts with u = a phi, and a sliding one with u = b sin(phi)."""
-    time = np.linspace(0, 1, 9)
-    ice = exact(frozen(can=can), time, 0.7)
-    runs = [exact(sliding(can=can, damping=c), time, 0.7) for c in (1e2, 1e4)]
-    for low, high in (
-        (np.abs(run.phi - ice.phi).max() for run in runs),
-        (np.abs((run.u - run.u[0]) - (ice.u - ice.u[0])).max() for run in runs),
-    ):
-        assert low / high == pytest.approx(100, rel=5e-3)  # the next order is 1e-5/c or so
-
-
-def test_slip_at_the_start_is_gone_at_once_in_a_stiff_can() -> None:
-    """The angular momentum about the line of contact stays: that of the rolling can and load before."""
-    scene = sliding(damping=3e4)
-    load, a = scene.load, scene.can.radius
-    rate, phi0 = 5.0, 1.0
-    axial, couple = load.inertia + load.mass * load.offset**2, load.mass * load.offset * math.cos(phi0)
-    u_dot = load.offset * math.cos(phi0) * rate
-    before = (a * load.mass - couple) * u_dot + (axial - a * couple) * rate
-    common = before / (a**2 * load.mass + axial - 2 * a * couple)
-    motion = exact(scene, 1e-7, phi0, rate)  # 90 times the fast decay
-    assert motion.phi_dot[0] == pytest.approx(common, abs=2e-5)  # gravity adds 1e-7 s times 2e2 rad/s^2
 
 
 def test_motion_seen_from_behind_and_without_damping() -> None:
@@ -207,6 +162,13 @@ def test_unstable_balance() -> None:
         known = float(time)
         assert abs(exact(scene, time, start + 4.4e-16).phi[0] - motion.phi[0]) < 1e-3
     assert known > 0.8
+
+
+def test_a_corner_takes_forty_steps_or_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Four of them in each period on the level, of |w| and |roll_dot|, which the swing passes until it dies away."""
+    scene = sliding(0.0, can=METAL, damping=Damping(0, 1e-6, 0), drag=1e-3)
+    monkeypatch.setattr(damped, "_STEPS", int(160 * 2 * scene.frequency() / (2 * math.pi)))
+    assert np.isfinite(exact(scene, 2.0, 1.0).phi).all()
 
 
 def test_the_edges_of_the_domain(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -97,16 +97,14 @@ def test_reduction_is_the_lagrangian_s(scene: Scene, phi: float, swing: float) -
     assert abs(taylor.inertia(known, mp.mpf(phi)) - inertia) <= 1e-20 * inertia
     assert abs(taylor.fall(known, mp.mpf(0.5), mp.mpf(phi)) - fall) <= 1e-20 * torque * (1 + abs(phi))
     assert abs(form.drop(phi, 0.5) - fall) <= ROUNDING * torque * (1 + abs(phi))
-    assert abs(form.potential(0.5) - form.potential(phi) - fall) <= ROUNDING * torque * (1 + abs(phi))
 
 
 @pytest.mark.parametrize(("scene", "start"), [(frozen(), 1.0), (sliding(), 3.0), (frozen(can=METAL), -2.0)])
 def test_energy_differences_do_not_cancel(scene: Scene, start: float) -> None:
-    """Over 1e-7 rad, drop keeps the digits that V(start) - V(phi) loses."""
+    """Over 1e-7 rad, where V(start) - V(phi) loses seven digits."""
     form, phi = scene.oscillator, start + 1e-7
     fall = values(scene, start)[3] - values(scene, phi)[3]
     assert abs(form.drop(phi, start) / fall - 1) < 10 * ROUNDING
-    assert abs((form.potential(start) - form.potential(phi)) / fall - 1) > 1e-11
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
@@ -168,7 +166,7 @@ def below(crest: Crest, x: Any) -> Any:
 @given(slopes, sizes, st.sampled_from([-1, 1]), st.floats(0, 1))
 def test_heights_and_mean_torque(slope: float, size: float, sign: int, share: float) -> None:
     """Every term of the mean torque is positive as long as the torque is downhill: up to the next equilibrium."""
-    crest, x = Crest.of(slope, 1.0, -0.2), sign * 3 * size
+    crest, x = Crest(slope, 1.0, -0.2), sign * 3 * size
     turn, length = size * (math.pi - crest.well / 2), share * (math.pi - crest.well / 2)
     with mp.workdps(400):  # 1e-300 of a slope beside 1e-60 of a cosine
         scale = (crest.excess + crest.ramp * x**2) * abs(x) + crest.curvature * x**2
@@ -180,23 +178,11 @@ def test_heights_and_mean_torque(slope: float, size: float, sign: int, share: fl
         assert abs(crest.mean_torque(turn, length) - mean) <= 2 * DIFFERENCE * mean
 
 
-@pytest.mark.parametrize("slope", [0.0, 1e-20, 1 - 1e-9, 1.5])
-def test_crest_and_rest_are_where_v_is_level(slope: float) -> None:
-    crest, bottom = Crest.of(slope, 1.0, -0.2), mp.mpf(-0.2)
-    lean = mp.asin(mp.mpf(slope)) if slope < 1 else mp.pi / 2
-    # asin(slope) changes by eps / curvature with the rounding of 1 - slope.
-    tolerance = DIFFERENCE + 2e-16 / max(crest.curvature, 1e-8)
-    assert abs(crest.offset - (bottom - lean)) < tolerance
-    assert abs(crest.rest - (bottom + lean)) < tolerance
-    assert abs(crest.well - (mp.pi - 2 * lean)) < 2 * tolerance
-    assert crest.step == 2 * math.pi * slope
-
-
 @pytest.mark.parametrize("slope", [0.0, 1e-12, 0.99, 2.0])
 @pytest.mark.parametrize("angle", [0.3, math.pi, -3.0, 40.0, -1e4, 12345 * math.pi])
 def test_place(slope: float, angle: float) -> None:
     """Both distances are those of the angle, and lie in the well and in the turn that belong together."""
-    crest = Crest.of(slope, 1.0, -0.1)
+    crest = Crest(slope, 1.0, -0.1)
     past, from_rest = crest.place(angle)
     with mp.workdps(60):
         assert abs(mp.sin(mp.mpf(angle)) - mp.sin(reduced(angle))) <= 4e-16 * abs(reduced(angle))

@@ -109,8 +109,7 @@ def test_what_is_no_smooth_function_is_refused(rate: Callable) -> None:
 
 def test_passages_in_a_row() -> None:
     """Turns follow each other in time, while x begins anew in each."""
-    clock = Clock(lambda x: 1 + x**2, 0.0, 1.0)
-    clock.repeat(lambda x: np.array([1.0, 3.0])[:, None, None] * (1 + x**2), 2)
+    clock = Clock(lambda x: np.array([1.0, 3.0])[:, None, None] * (1 + x**2), 0.0, 1.0)
     lap, x = 4 / 3, np.array([0.2, 0.9])
     assert clock.duration == pytest.approx(4 * lap, rel=ROUNDING)
     for turn, offset, pace in ((0, 0.0, 1), (1, lap, 3)):

@@ -16,21 +16,22 @@ V is needed only as differences, from where nothing cancels: see `Crest`.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from mjbeer.exceptions import NoEquilibriumError, NoLibrationError
+from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
 
 TURN = 2 * math.pi
 _SHALLOW = 0.5
 """Width of a well [rad] below which a turn is reckoned from the steepest place of V, and not from the equilibrium."""
+_GAP = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
+"""Coefficients of (1 - sin(x)/x) / x^2 in -x^2, to rounding up to 1."""
 
 
-@dataclass(frozen=True)
 class Crest:
     """The shape of V = -slope phi - depth cos(phi - bottom) about its crest, for slope >= 0.
 
@@ -44,46 +45,19 @@ class Crest:
     equilibrium is that at -y past the crest.
     """
 
-    excess: float
-    """Torque at the crest [N m]: 0 if there is a barrier."""
-    ramp: float
-    """Coefficient of 2 sin^2(x/2) in the torque [N m]; slope = excess + ramp."""
-    curvature: float
-    """-V'' at the crest, and V'' at the equilibrium [N m/rad]; 0 if there is no barrier."""
-    lean: float
-    """Angle of the equilibrium past that at which the cosine has its minimum [rad]; pi/2 if there is none."""
-    offset: float
-    """Angle of the crest, less pi [rad]."""
-    rest: float
-    """Angle of the equilibrium [rad]."""
-
-    @classmethod
-    def of(cls, slope: float, depth: float, bottom: float) -> "Crest":
-        """Return the crest of V."""
-        ramp = min(slope, depth)
-        curvature = math.sqrt(depth - ramp) * math.sqrt(depth + ramp)
-        lean = math.atan2(slope, curvature) if curvature > 0 else math.pi / 2
-        return cls(slope - ramp, ramp, curvature, lean, offset=bottom - lean, rest=bottom + lean)
-
-    @property
-    def step(self) -> float:
-        """Return by how much V falls in a turn [J]."""
-        return TURN * (self.excess + self.ramp)
-
-    @cached_property
-    def well(self) -> float:
-        """Return the angle from the equilibrium to the crest [rad]; 0 if there is no equilibrium."""
-        return 2 * math.atan2(self.curvature, self.ramp) if self.curvature > 0 else 0.0
-
-    @property
-    def begins(self) -> float:
-        """Return where a turn begins, past its crest [rad]: not where a load may be slow."""
-        return -math.pi if self.well < _SHALLOW else -self.well
-
-    @property
-    def rise(self) -> float:
-        """Return how much more than to be at the crest it takes to come from where the turn begins [J]."""
-        return max(0.0, -float(self.below(self.begins)))
+    def __init__(self, slope: float, depth: float, bottom: float) -> None:
+        self.slope, self.depth, self.bottom = slope, depth, bottom
+        self.ramp = min(slope, depth)
+        self.excess = slope - self.ramp  # torque at the crest, 0 if there is a barrier
+        self.curvature = math.sqrt(depth - self.ramp) * math.sqrt(depth + self.ramp)  # V'' at rest, -V'' at the crest
+        # The equilibrium is past the minimum of the cosine by so much, and the crest, less pi, before it.
+        self.lean = math.atan2(slope, self.curvature) if self.curvature > 0 else math.pi / 2
+        self.offset, self.rest = bottom - self.lean, bottom + self.lean
+        self.step = TURN * slope
+        self.well = 2 * math.atan2(self.curvature, self.ramp) if self.curvature > 0 else 0.0
+        # A turn begins where no load is slow; to come from there takes `rise` more than to be at the crest [J].
+        self.begins = -math.pi if self.well < _SHALLOW else -self.well
+        self.rise = max(0.0, -float(self.below(self.begins)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
         """Return V(crest) - V(crest + x) [J] for `x` [rad] of either sign; at x = -y it is V(rest + y) - V(rest)."""
@@ -129,18 +103,12 @@ class Crest:
 class Oscillator:
     """The coefficients of J and V in the formulas above."""
 
-    base: float
-    """Constant part of J [kg m^2]."""
-    chord: float
-    """Coefficient of sin^2(phi/2) in J [kg m^2]."""
-    swing: float
-    """Coefficient of sin^2(phi) in J [kg m^2]."""
-    slope: float
-    """Mean torque downhill [N m]."""
-    depth: float
-    """Amplitude of the cosine in V [J]."""
-    bottom: float
-    """Angle at which the cosine in V has its minimum [rad]."""
+    base: float  # constant part of J [kg m^2]
+    chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
+    swing: float  # coefficient of sin^2(phi) in J [kg m^2]
+    slope: float  # mean torque downhill [N m]
+    depth: float  # amplitude of the cosine in V [J]
+    bottom: float  # angle at which the cosine in V has its minimum [rad]
 
     @classmethod
     def sliding(cls, can: Can, load: Load, incline: float, gravity: float) -> "Oscillator":
@@ -172,37 +140,29 @@ class Oscillator:
             bottom=-incline,
         )
 
-    def mirror(self) -> "Oscillator":
-        """Return the oscillator of the same motion seen from behind, with the signs of phi and the incline changed."""
-        return replace(self, slope=-self.slope, bottom=-self.bottom)
+    @property
+    def sign(self) -> int:
+        """Return -1 if the ramp falls with -phi, so that the motion is watched in a mirror, else 1."""
+        return -1 if self.slope < 0 else 1
 
     @cached_property
     def crest(self) -> Crest:
-        """Return the shape of V about its crest, for slope >= 0."""
-        return Crest.of(slope=self.slope, depth=self.depth, bottom=self.bottom)
+        """Return the shape of V about its crest, in the mirror if `sign` is -1."""
+        return Crest(abs(self.slope), self.depth, self.sign * self.bottom)
 
     def inertia(self, phi: np.ndarray | float) -> np.ndarray:
         """Return J [kg m^2] at `phi` [rad]."""
         return self.base + self.chord * np.sin(phi / 2) ** 2 + self.swing * np.sin(phi) ** 2
 
-    def inertia_past_crest(self, x: np.ndarray | float) -> np.ndarray:
-        """Return J [kg m^2] at a distance `x` [rad] past the crest, where pi need not be added, for slope >= 0."""
-        past_pi = self.crest.offset + x
-        return self.base + self.chord * np.cos(past_pi / 2) ** 2 + self.swing * np.sin(past_pi) ** 2
-
-    def potential(self, phi: np.ndarray | float) -> np.ndarray:
-        """Return V [J] at `phi` [rad]."""
-        return -self.slope * phi - self.depth * np.cos(phi - self.bottom)
+    def inertia_past_pi(self, x: np.ndarray | float) -> np.ndarray:
+        """Return J [kg m^2] at pi + `x` [rad], where pi need not be added."""
+        return self.base + self.chord * np.cos(x / 2) ** 2 + self.swing * np.sin(x) ** 2
 
     def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
         turned = phi - start
         middle = (phi + start) / 2 - self.bottom
         return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
-
-    def stiffness(self) -> float:
-        """Return V'' at the equilibrium, which is also -V'' at the barrier [N m/rad]."""
-        return math.sqrt(self.depth - abs(self.slope)) * math.sqrt(self.depth + abs(self.slope))
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
         """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
@@ -234,40 +194,19 @@ class Oscillator:
             )
         if abs(self.slope) > self.depth:
             raise NoEquilibriumError("the incline is steeper than the load can hold")
-        return self.bottom + math.atan2(self.slope, self.stiffness())
+        return self.sign * self.crest.rest
 
     def frequency(self) -> float:
         """Return the angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
-        return math.sqrt(self.stiffness() / float(self.inertia(self.equilibrium())))
-
-    def barrier(self) -> float:
-        """Return the unstable equilibrium that bounds libration on the downhill side [rad], for slope >= 0."""
-        return math.pi + self.crest.offset
+        return math.sqrt(self.crest.curvature / float(self.inertia(self.equilibrium())))
 
     def separatrix(self) -> tuple[float, float]:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
-        if self.slope < 0:
-            low, high = self.mirror().separatrix()
-            return -high, -low
-        crest = self.crest
-        behind = TURN - crest.well
+        crest, behind = self.crest, TURN - self.crest.well
         # As high as the barrier, on the downhill side of the one before it, which is a step higher.
         past = root(lambda x: float(crest.below(x)) - crest.step, 0, behind)
-        return crest.rest - behind + past, self.barrier()
-
-    def require_libration(self, phi: float) -> None:
-        """Check that a release from rest at `phi` [rad] swings about the equilibrium.
-
-        Raises:
-          NoLibrationError: if it does not; the message names the amplitudes of the separatrix.
-        """
-        low, high = self.separatrix()
-        if not low < phi < high:
-            rest = self.equilibrium()
-            raise NoLibrationError(
-                f"amplitude {phi - rest:.6g} rad is not inside the separatrix: released from rest, the load "
-                f"swings about its equilibrium only for amplitudes between {low - rest:.6g} and {high - rest:.6g} rad"
-            )
+        low, high = crest.rest - behind + past, math.pi + crest.offset
+        return (low, high) if self.sign > 0 else (-high, -low)
 
 
 def _past_pi(angle: float) -> float:
@@ -291,10 +230,8 @@ def sinc(x: np.ndarray | float) -> np.ndarray:
 
 def sinc_gap(x: np.ndarray | float) -> np.ndarray:
     """Return 1 - sin(x)/x, by its series where the difference would cancel."""
-    square, series = np.square(np.minimum(np.abs(x), 1)), np.ones_like(x)
-    for k in range(17, 1, -2):
-        series = 1 - square / ((k + 1) * (k + 2)) * series
-    return np.where(np.abs(x) < 1, square / 6 * series, 1 - sinc(x))
+    square = np.square(np.minimum(np.abs(x), 1))
+    return np.where(np.abs(x) < 1, square * np.polyval(_GAP, -square), 1 - sinc(x))
 
 
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:
@@ -306,4 +243,4 @@ def root(function: Callable[[float], float], lower: float, upper: float) -> floa
 
     if function(upper) <= 0:
         return upper
-    return float(brentq(function, lower, upper, xtol=1e-30, rtol=4 * np.finfo(float).eps, maxiter=500))
+    return float(brentq(function, lower, upper, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=500))

@@ -46,6 +46,9 @@ class Clock:
     def __init__(self, rate: Callable[[np.ndarray], np.ndarray], *edges: float) -> None:
         """Set up the clock of a path with dt/dpsi = `rate` [s] from the first to the last of the `edges`.
 
+        For psi of shape (panels, nodes) `rate` returns (panels, nodes), or (passages, panels, nodes) if the path is
+        passed so often in a row, each time with another rate, of which the first one is the roughest.
+
         Raises:
           ToleranceError: if no panels reproduce `rate`: it is not finite, or it is rougher than the rounding of psi
             explains.
@@ -56,35 +59,27 @@ class Clock:
         while len(lows):
             halves = (ends - lows) / 2
             middles, rates = lows + halves, rate(lows[:, None] + halves[:, None] * (1 + _NODES))
+            rates = rates.reshape(-1, *rates.shape[-2:])
             tried += len(lows)
             if tried > _MOST_PANELS or not np.isfinite(rates).all() or not ((lows < middles) & (middles < ends)).all():
                 raise ToleranceError(
                     "the time along this motion is beyond doubles: sizes, masses, gravity or speeds are of too many "
                     "different orders of magnitude"
                 )
-            done = _resolved(rates, lows, halves)
-            panels.append((lows[done], halves[done], rates[done]))
+            done = _resolved(rates[0], lows, halves)
+            panels.append((lows[done], halves[done], rates[:, done]))
             lows, middles, ends = lows[~done], middles[~done], ends[~done]
             lows, ends = np.concatenate([lows, middles]), np.concatenate([middles, ends])
-        starts, halves, rates = (np.concatenate(parts) for parts in zip(*panels, strict=True))
+        starts, halves, rates = (
+            np.concatenate(parts, axis=-min(parts[0].ndim, 2)) for parts in zip(*panels, strict=True)
+        )
         order = np.argsort(starts)
-        self._lows, self._halves = starts[order], halves[order]
-        self._set(rates[order], passages=1)
-
-    def repeat(self, rate: Callable[[np.ndarray], np.ndarray], passages: int) -> None:
-        """Let the path be passed so often in a row, each time with another `rate`, which must be no rougher.
-
-        `rate` gets psi of shape (panels, nodes), and returns dt/dpsi of shape (passages, panels, nodes).
-        """
-        rates = rate(self._lows[:, None] + self._halves[:, None] * (1 + _NODES))
-        self._lows, self._halves = np.tile(self._lows, passages), np.tile(self._halves, passages)
-        self._set(rates.reshape(-1, len(_NODES)), passages)
-
-    def _set(self, rates: np.ndarray, passages: int) -> None:
-        self._rates, self._size = rates, len(rates) // passages
-        self._times = np.concatenate([[0.0], np.cumsum(rates @ _WEIGHTS * self._halves)])
+        self._size, passages = len(order), len(rates)
+        self._rates = rates[:, order].reshape(-1, len(_NODES))
+        self._lows, self._halves = np.tile(starts[order], passages), np.tile(halves[order], passages)
+        self._times = np.concatenate([[0.0], np.cumsum(self._rates @ _WEIGHTS * self._halves)])
         lows, halves = self._lows[:, None], self._halves[:, None]
-        self._known_times = (self._times[:-1, None] + halves * (rates @ _TO_TIMES)).ravel()
+        self._known_times = (self._times[:-1, None] + halves * (self._rates @ _TO_TIMES)).ravel()
         self._known_phases = (lows + halves * (1 + _POINTS)).ravel()
 
     @property

@@ -165,7 +165,7 @@ def test_starts_beside_the_separatrix_are_there() -> None:
             high = run.scene.separatrix()[1]
         except NoEquilibriumError:
             continue
-        missing = form.potential(high) - form.potential(run.phi0) - form.inertia(run.phi0) * run.phi_dot0**2 / 2
+        missing = form.drop(run.phi0, high) - form.inertia(run.phi0) * run.phi_dot0**2 / 2
         distances.append(abs(missing) / form.depth)
     assert len(distances) > 50
     assert max(distances) < 3

@@ -255,7 +255,7 @@ def _furthest_over_start(rate: float) -> Terms:
     """
     beer = sliding()
     start = 0.0 if rate else 3.1
-    top = beer.oscillator.potential(math.pi) - beer.oscillator.potential(0.0)
+    top = beer.oscillator.drop(0.0, math.pi)
     spin = rate * math.sqrt(2 * top / beer.oscillator.inertia(0.0))
     run = simulate(beer, 0.55 if rate else 2.0, start, spin, integrator=DOP853)
     return float(np.abs(run.phi).max()), -3.1

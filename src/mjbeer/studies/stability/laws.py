@@ -94,7 +94,7 @@ def fall_slope(scene: Scene) -> float:
     frozen load on an incline.
     """
     form = scene.oscillator
-    return -math.sqrt(float(form.inertia(form.barrier())) / form.stiffness())
+    return -math.sqrt(float(form.inertia(scene.separatrix()[1])) / form.crest.curvature)
 
 
 def _fold_exponent() -> float:

@@ -44,7 +44,7 @@ def beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
     if pick.chance(0.5):
         return pick.one(low, high) + beside, 0.0
     phi0 = pick.between(low, high)
-    missing = max(0.0, float(form.potential(high) - form.potential(phi0)))
+    missing = max(0.0, float(form.drop(phi0, high)))
     rate = math.sqrt(2 * missing / float(form.inertia(phi0)))
     return phi0, pick.sign() * rate * (1 + beside)
 
