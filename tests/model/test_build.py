@@ -14,10 +14,11 @@ import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import check, numbers, state
-from mjbeer.model.build import Stepped, compile_model, compose
+from mjbeer.model.build import Stepped, compile_spec, compose
 from mjbeer.model.numbers import Numbers
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, USUAL, MujocoIntegrator, Rolling, Setting, Softness, supported
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, Softness, supported
 from mjbeer.model.state import places, read
+from mjbeer.studies.benchmark.curves import USUAL
 from mjbeer.theory.equations import accelerations, kinetic_energy
 from mjbeer.theory.liquid import Damping
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
@@ -117,7 +118,7 @@ def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, ro
         if setting.rolling != rolling or not supported(scene, rolling):
             continue
         ways = []
-        for model in (written(scene, setting), compile_model(scene, setting)):
+        for model in (written(scene, setting), compile_spec(compose(scene, setting), setting.rigid)):
             data = mujoco.MjData(model)
             mjbeer.reset(model, data, scene, 0.7, 3.0)
             for _ in range(20):

@@ -14,6 +14,7 @@ from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.predictions import soft_rolling
 from mjbeer.predictions.linear_stability import spectral_radius
 from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, spring
+from mjbeer.studies.stability.small_swings import settle
 from mjbeer.theory.can import Can
 
 pytestmark = pytest.mark.slow
@@ -27,7 +28,7 @@ ASIDE, CLOSE = 1e-4, 1e-5
 def steady(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     """The state of steady rolling, at the depth at which the can in contact is carried."""
     tilt, speed = scene.terminal_tilt(), scene.terminal_speed()
-    start = state.settle(model, state.start(model, scene, tilt, 0.0))
+    start = settle(model, state.start(model, scene, tilt, 0.0))
     joints, turning = state.places(model), speed / scene.can.radius
     for name, rate in {"slide": speed, "roll": turning, "swing": -turning}.items():
         if name in joints:

@@ -7,7 +7,6 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.engine import quiet
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
@@ -42,23 +41,21 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
     return {model.joint(joint).name: int(model.joint(joint).qposadr[0]) for joint in range(model.njnt)}
 
 
-def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
-    return write(model, _begin(scene, phi0, phi_dot0))[0]
-
-
 def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return the positions and the rates of joints at a start, shape (2, joints)."""
     values = _values(_begin(scene, phi0, phi_dot0))
     return np.array([values[name] for name in joints])[..., 0].T
 
 
+def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
+    return at(places(model), scene, phi0, phi_dot0).ravel()
+
+
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion: the inverse of `read`."""
-    values, states = _values(motion), np.zeros((len(motion.time), model.nq + model.nv))
-    for name, place in places(model).items():
-        states[:, place], states[:, model.nq + place] = values[name]
-    return states
+    values = _values(motion)
+    return np.concatenate(np.stack([values[name] for name in places(model)], axis=-1), axis=1)
 
 
 def _begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
@@ -82,53 +79,15 @@ def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
     """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape (samples,)."""
-    joints = places(model)
+    joints, radius = places(model), scene.can.radius
 
-    def column(name: str) -> tuple[np.ndarray, np.ndarray]:
-        return states[:, joints[name]].copy(), states[:, model.nq + joints[name]].copy()
+    def both(name: str, otherwise: np.ndarray) -> np.ndarray:
+        """Return a joint's positions and rates, shape (2, samples)."""
+        return states.T[[joints[name], model.nq + joints[name]]] if name in joints else otherwise
 
-    zeros = np.zeros(len(states)), np.zeros(len(states))
-    if "phi" in joints:
-        phi, phi_dot = column("phi")
-    else:
-        (roll, roll_dot), (swing, swing_dot) = column("roll"), column("swing") if "swing" in joints else zeros
-        phi, phi_dot = roll + swing, roll_dot + swing_dot
-    radius = scene.can.radius
-    u, u_dot = column("slide") if "slide" in joints else (radius * phi, radius * phi_dot)
-    roll, roll_dot = column("roll") if "roll" in joints else (u / radius, u_dot / radius)
-    lift, lift_dot = column("lift") if "lift" in joints else zeros
-    return Coordinates(
-        time=times,
-        u=u,
-        phi=phi,
-        u_dot=u_dot,
-        phi_dot=phi_dot,
-        roll=roll,
-        roll_dot=roll_dot,
-        lift=lift,
-        lift_dot=lift_dot,
-    )
-
-
-def settle(model: mujoco.MjModel, state: np.ndarray) -> np.ndarray:
-    """Return a `state`, shape (nq + nv,), with the lift at which the can has no acceleration away from the incline.
-
-    A model without a lift gets its state back. The contact force is linear in the depth, so that two trials give the
-    wanted depth. From any other depth the can would fall or rise to it, unlike in the exact motion.
-    """
-    if "lift" not in (joints := places(model)):
-        return state
-    index = joints["lift"]
-    data, balanced = mujoco.MjData(model), state.copy()
-
-    def acceleration(lift: float) -> float:
-        data.qpos[:], data.qvel[:] = state[: model.nq], state[model.nq :]
-        data.qpos[index], data.qacc_warmstart[:] = lift, 0.0
-        with quiet():
-            mujoco.mj_forward(model, data)
-        return float(data.qacc[index])
-
-    trials = -1e-7, -2e-7
-    first, second = (acceleration(lift) for lift in trials)
-    balanced[index] = trials[0] - first * (trials[1] - trials[0]) / (second - first)
-    return balanced
+    zeros = np.zeros((2, len(states)))
+    phi = both("phi", both("roll", zeros) + both("swing", zeros))
+    u = both("slide", radius * phi)
+    columns = {"u": u, "phi": phi, "roll": both("roll", u / radius), "lift": both("lift", zeros)}
+    rates = {f"{name}_dot": rate for name, (_, rate) in columns.items()}
+    return Coordinates(time=times, **{name: position for name, (position, _) in columns.items()}, **rates)

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.model.build import compile_model
-from mjbeer.model.setting import TUNED, USUAL
+from mjbeer.model.build import compile_spec, compose
+from mjbeer.model.setting import TUNED
 from mjbeer.output.terminal import Table
 from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.simulation.simulate import simulate
+from mjbeer.studies.benchmark.curves import USUAL
 from mjbeer.studies.benchmark.measure import effective_softness
 from mjbeer.studies.cases import CASES, Case
 from mjbeer.theory.can import Can
@@ -133,7 +134,7 @@ def _penetration_and_slip(scene: Scene, tuned: bool) -> tuple[float, float]:
 
 def _share(scene: Scene) -> float:
     """Return the share of a hard constraint's force that a usual joint equality has, at phi = 0."""
-    model = compile_model(scene, USUAL["equality, slide first"])
+    model = compile_spec(compose(scene, USUAL["equality, slide first"]))
     soft = effective_softness(model, np.zeros(model.nq + model.nv))
     assert soft is not None
     return soft.effective_impedance
