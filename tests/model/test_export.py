@@ -198,7 +198,7 @@ def test_what_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: 
     rewrite = exporting._portable
     losses = {
         "body_mass": lambda text: re.sub(r'mass="0\.2\d*"', 'mass="0.2"', text),
-        "geom_xpos": lambda text: re.sub(r'(name="load"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text),
+        "geom_xpos": lambda text: re.sub(r'(name="board"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text),
         "cam_xpos": lambda text: re.sub(r'(<camera name="side"[^>]*) pos="[^"]*"', r"\1", text),
         "light_xdir": lambda text: re.sub(r' dir="[^"]*"', "", text),
         "pair_friction": lambda text: text.replace('friction="2 2"', 'friction="3 3"'),

@@ -43,7 +43,7 @@ _ARRAYS = (
     "body_mass", "body_inertia", "body_ipos", "body_iquat", "jnt_axis", "dof_armature", "dof_damping",
     "dof_dampingpoly", "tendon_armature", "tendon_damping", "tendon_dampingpoly", "wrap_prm", "actuator_gainprm",
     "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp", "pair_friction", "pair_solref", "pair_solimp",
-    "key_qpos", "key_qvel",
+    "key_qpos", "key_qvel", "geom_contype", "geom_conaffinity",
 )  # fmt: skip
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
 _POSES = ("geom_xpos", "geom_xmat", "site_xpos", "site_xmat", "cam_xpos", "cam_xmat", "light_xpos", "light_xdir")
@@ -277,6 +277,9 @@ def _moved(element: ET.Element, frame: ET.Element) -> ET.Element:
     mujoco.mju_mulQuat(quaternion, turn, given(element, "quat", "1 0 0 0"))
     turned = ("dir", direction) if element.tag == "light" else ("quat", quaternion)
     moved = copy.copy(element)
+    if "childclass" in frame.attrib:
+        name = "childclass" if element.tag in ("body", "frame") else "class"
+        moved.set(name, element.get(name, frame.attrib["childclass"]))
     for name, numbers in (("pos", place + position), turned):
         moved.set(name, " ".join(repr(float(number)) for number in numbers))
     return moved

@@ -54,8 +54,10 @@ def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> 
 
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion: the inverse of `read`."""
-    values = _values(motion)
-    return np.concatenate(np.stack([values[name] for name in places(model)], axis=-1), axis=1)
+    values, states = _values(motion), np.zeros((len(motion.time), model.nq + model.nv))
+    for name, place in places(model).items():
+        states[:, place], states[:, model.nq + place] = values[name]
+    return states
 
 
 def _begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
@@ -81,13 +83,12 @@ def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndar
     """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape (samples,)."""
     joints, radius = places(model), scene.can.radius
 
-    def both(name: str, otherwise: np.ndarray) -> np.ndarray:
-        """Return a joint's positions and rates, shape (2, samples)."""
-        return states.T[[joints[name], model.nq + joints[name]]] if name in joints else otherwise
+    def both(name: str) -> np.ndarray:
+        """Return a joint's positions and rates, shape (2, samples); zeros if there is none."""
+        return states.T[joints[name] :: model.nq].copy() if name in joints else np.zeros((2, len(states)))
 
-    zeros = np.zeros((2, len(states)))
-    phi = both("phi", both("roll", zeros) + both("swing", zeros))
-    u = both("slide", radius * phi)
-    columns = {"u": u, "phi": phi, "roll": both("roll", u / radius), "lift": both("lift", zeros)}
-    rates = {f"{name}_dot": rate for name, (_, rate) in columns.items()}
-    return Coordinates(time=times, **{name: position for name, (position, _) in columns.items()}, **rates)
+    phi = both("phi") if "phi" in joints else both("roll") + both("swing")
+    u = both("slide") if "slide" in joints else radius * phi
+    roll, lift = both("roll") if "roll" in joints else u / radius, both("lift")
+    rates = {"u_dot": u[1], "phi_dot": phi[1], "roll_dot": roll[1], "lift_dot": lift[1]}
+    return Coordinates(time=times, u=u[0], phi=phi[0], roll=roll[0], lift=lift[0], **rates)
