@@ -15,12 +15,13 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
-from mjbeer.model import check, looks, setting
+from mjbeer.model import check, looks, setting, state
 from mjbeer.model.build import START, add_start, compile_spec, compose
 from mjbeer.model.engine import library
 from mjbeer.model.numbers import mass_unit
 from mjbeer.model.setting import Setting, Softness
 from mjbeer.output import files
+from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.scene import Scene
 
 CAMERA = "side"
@@ -99,6 +100,8 @@ def export(
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
     spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
+    for energy in [each for each in spec.sensors if portable and each.name.endswith("_energy")]:
+        spec.delete(energy)  # MJX 3.3 has none
     spec.compiler.fusestatic = portable  # MuJoCo 3.3.0 refuses a body without mass that has a drawn geom
     built = spec.compile()
     text = _text(spec)
@@ -130,22 +133,12 @@ def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco
 def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> float:
     """Return a distance that the axis does not exceed within a `duration` [s], from its start uphill or downhill [m].
 
-    Energy and the constant force F downhill bound the way s: M s_dot^2/2 <= E + F s, with the smallest mass M that the
-    axis can have, so that s <= sqrt(2 E/M) t + F t^2/(2 M); E is what the start has above the lowest energy. For a
-    frozen load s is the angle that the can has turned. Damping and drag only take energy.
+    The centre of mass is within m b/m_t of the axis, and has m_t v^2/2 <= E + m_t g s sin(alpha), where E is the
+    kinetic energy of the start and what the load gains in half a turn: s <= sqrt(2 E/m_t) t + g sin(alpha) t^2/2.
     """
-    can, load, oscillator = scene.can, scene.load, scene.oscillator
-    if scene.attachment == "frozen":
-        energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + 2 * oscillator.depth
-        least, force, size = oscillator.base, abs(oscillator.slope), can.radius
-    else:
-        mass, moment = scene.effective_mass, load.moment
-        u_dot, own = scene.start(phi0, phi_dot0)[1], load.inertia + moment * load.offset
-        energy = (mass * u_dot**2 + own * phi_dot0**2) / 2 - moment * math.cos(phi0) * u_dot * phi_dot0
-        energy += 2 * moment * scene.gravity
-        least, size = mass * oscillator.base / own, 1.0
-        force = scene.mass * scene.gravity * abs(math.sin(scene.incline))
-    return size * (math.sqrt(2 * energy / least) * duration + force / least * duration**2 / 2)
+    energy = kinetic_energy(scene, state.begin(scene, phi0, phi_dot0))[0] + 2 * scene.load.moment * scene.gravity
+    fallen = scene.gravity * abs(math.sin(scene.incline)) * duration**2 / 2
+    return math.sqrt(2 * energy / scene.mass) * duration + fallen + 2 * scene.load.moment / scene.mass
 
 
 def _add_sensors(spec: mujoco.MjSpec, scene: Scene) -> None:
@@ -216,10 +209,9 @@ def _require_same(built: mujoco.MjModel, reread: mujoco.MjModel) -> None:
 def _portable_softness(scene: Scene, made: Setting) -> Softness:
     """Return how soft the rolling constraint of a portable export is: as hard as can be without `diagexact`.
 
-    Without it the softness of an equality's row is proportional to the sum of the inverse inertias 1/m and 1/I of slide
-    and hinge, in metres and radians alike. In a row about angles, roll - u/a, the first should be 1/(m a^2), and is too
-    small for a can of less than a metre; in a row about distances, u - a roll, the second should be a^2/I, and is too
-    small for a can of more. So the sum is never much too large, and the row never much too soft.
+    Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
+    angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances m^-1 + a^2/I: of the two the one is taken
+    that is not too soft.
 
     Raises:
       UnsupportedError: if not all that load a portable export have the integrator, damping and drag.

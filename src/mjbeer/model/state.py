@@ -26,7 +26,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     """
     for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
         require.instance(name, given, kind)
-    values = _values(_begin(scene, *require.start(phi0, phi_dot0)))
+    values = _values(begin(scene, *require.start(phi0, phi_dot0)))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
         raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
@@ -43,7 +43,7 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
 
 def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return the positions and the rates of joints at a start, shape (2, joints)."""
-    values = _values(_begin(scene, phi0, phi_dot0))
+    values = _values(begin(scene, phi0, phi_dot0))
     return np.array([values[name] for name in joints])[..., 0].T
 
 
@@ -60,7 +60,7 @@ def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     return states
 
 
-def _begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
+def begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
     """Return a start as a motion of one sample."""
     (u, u_dot), radius = scene.start(phi0, phi_dot0), scene.can.radius
     values = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0

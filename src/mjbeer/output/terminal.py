@@ -16,7 +16,7 @@ from mjbeer.exceptions import OutputError
 
 
 class Console(rich.console.Console):
-    """A rich console that raises BrokenPipeError when its output is no longer read, instead of ending the program."""
+    """A rich console that raises an error when its output is no longer read, instead of ending the program."""
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
@@ -32,7 +32,7 @@ STDERR = Console(stderr=True)
 
 @dataclass(frozen=True)
 class Table:
-    """A title, the headings of the columns, and rows of text. A rich console can print it directly."""
+    """A title, the headings of the columns, and rows of text, whose rich markup takes effect on a console."""
 
     title: str
     columns: tuple[str, ...]
@@ -41,7 +41,7 @@ class Table:
     """Indices of the columns that are aligned to the left; the others, of numbers, are aligned to the right."""
 
     def __rich__(self) -> rich.table.Table:
-        """Return the table for rich to print; rich's markup in cells takes effect."""
+        """Return the table for rich to print."""
         table = rich.table.Table(title=self.title)
         for index, name in enumerate(self.columns):
             table.add_column(name, justify="left" if index in self.left else "right", overflow="fold")
@@ -75,10 +75,8 @@ def is_seen() -> bool:
 def show(*tables: Table) -> None:
     """Print tables to standard output; where a program reads it, as lines with tabs between the columns.
 
-    Several tables then have an empty line between them, and each its title above it, after a #.
-
-    Raises:
-      OutputError: if standard output cannot be written to.
+    Several tables then have an empty line between them, and each its title above it, after a #. The errors are those
+    of `printing`.
     """
     if not is_read_by_eye():
         titled = [f"# {table.title}\n" if len(tables) > 1 else "" for table in tables]
@@ -129,10 +127,6 @@ def printing() -> Generator[None]:
 
 
 def write(text: str) -> None:
-    """Write a text to standard output, and flush it.
-
-    Raises:
-      OutputError: if standard output cannot be written to.
-    """
+    """Write a text to standard output, and flush it, with the errors of `printing`."""
     with printing():
         sys.stdout.write(text)
