@@ -33,16 +33,6 @@ def test_constraints_are_mujoco_s_defaults(written: str) -> None:
     assert np.array_equal(model.body_mass, build(frozen(), USUAL[written].rolling).body_mass)
 
 
-def test_either_joint_may_be_named_first() -> None:
-    slide, hinge = (compile_spec(compose(frozen(), USUAL[f"equality, {each} first"])) for each in ("slide", "hinge"))
-    names = [
-        [model.joint(int(each)).name for each in (model.eq_obj1id[0], model.eq_obj2id[0])] for model in (slide, hinge)
-    ]
-    assert names == [["slide", "roll"], ["roll", "slide"]]
-    radius = frozen().can.radius
-    assert (slide.eq_data[0, 1], hinge.eq_data[0, 1]) == (radius, 1 / radius)
-
-
 def started(model: mujoco.MjModel) -> tuple[mujoco.MjData, EffectiveSoftness]:
     """The frozen can on its way, as MuJoCo sees it, and how soft its rolling is there."""
     data, at = mujoco.MjData(model), start(model, frozen(), 0.3, 1.0)
@@ -51,12 +41,6 @@ def started(model: mujoco.MjModel) -> tuple[mujoco.MjData, EffectiveSoftness]:
     soft = effective_softness(model, at)
     assert soft is not None
     return data, soft
-
-
-def test_refsafe_raises_a_time_constant_under_two_timesteps() -> None:
-    for timestep, expected in ((2e-3, 0.02), (16e-3, 0.032)):
-        _, soft = started(compile_spec(compose(frozen(), replace(SLIDE_FIRST, timestep=timestep))))
-        assert soft.effective_timeconst == pytest.approx(expected, rel=1e-12)
 
 
 def test_the_share_is_what_the_solver_lets_through() -> None:

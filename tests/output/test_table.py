@@ -99,29 +99,6 @@ def test_rows_for_programs_have_all_digits_and_all_that_is_judged() -> None:
     assert rows[2]["error of what is printed"] == rows[0]["must be"] == ""
 
 
-def test_sentence_and_failures() -> None:
-    assert tables.sentence(Validation([PASSED, FAILED], [RIGHT, MISPRINT])) == (
-        "1 of 2 checks and 2 of 2 rows of the audit passed"
-    )
-    assert tables.failures(Validation([PASSED, UNKNOWN], [RIGHT, NO_MISPRINT])) == [
-        "lift-off (hoop, contact): error nan, at most 5.0e-01 degrees",
-        "(50) rolling (MuJoCo): error nan, at most 2.0e-08; as printed 1e-09, expected 0.059",
-    ]
-
-
-def test_markdown() -> None:
-    assert tables.validation([PASSED, FAILED], document=True).markdown(title=False) == (
-        "| check | by | error | at most | what dominates the error |\n"
-        "|---|---|---:|---:|---|\n"
-        "| phi over 2 s | frozen, reduced | 1.5e-09 | 1.0e-07 rad | RK4 |\n"
-        "| hops | hoop, contact | 2.0e+00 **FAIL** | 0.0e+00 | it hops or not |\n"
-    )
-    assert tables.audit([RIGHT, NO_MISPRINT], document=True).markdown(title=False).splitlines()[2:] == [
-        "| (16) | motion of phi | confirmed | MuJoCo | 5.0e-15 |  | 1.0e-12 | rounding |",
-        "| (50) | rolling | confirmed after correction | MuJoCo | 1e-09 | nan | 2.0e-08 **FAIL** | drift |",
-    ]
-
-
 def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:
     def judged(checks: list[Result], audit: list[Finding]) -> dict[str, Any]:
         # Python would write NaN, which no other reader of JSON takes.

@@ -76,22 +76,10 @@ def test_limits_on_the_imaginary_axis() -> None:
     assert linear_stability.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
 
 
-@pytest.mark.parametrize(("integrator", "low", "high"), [("RK4", 2.7, 2.8), ("DOP853", 6.3, 6.5)])
-def test_friction_rows_end_where_the_real_axis_does(integrator: str, low: float, high: float) -> None:
-    wanted = limit_by_stages(integrator, -1, low, high) / 2
-    assert rows.stable_slip(integrator) == pytest.approx(wanted, rel=1e-8)
-
-
 @pytest.mark.parametrize("dampratio", [0.1, math.sqrt(1 / 8), 3.0])
 def test_the_limit_of_a_row_under_euler_is_the_closed_form(dampratio: float) -> None:
     wanted = 2 * dampratio * (math.sqrt(dampratio**2 + 1) - dampratio)
     assert rows.stable_ratio("Euler", dampratio) == pytest.approx(wanted, rel=1e-7)
-
-
-def test_refsafe_is_two_timesteps_at_the_least() -> None:
-    """Enough for Euler from a damping ratio of the root of an eighth on, whose limit is one half."""
-    assert soft_constraint.refsafe_timeconst(1e-4, 1e-3) == 2e-3
-    assert soft_constraint.refsafe_timeconst(1e-2, 1e-3) == 1e-2
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
