@@ -100,9 +100,11 @@ def export(
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
     spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
-    for energy in [each for each in spec.sensors if portable and each.name.endswith("_energy")]:
-        spec.delete(energy)  # MJX 3.3 has none
     spec.compiler.fusestatic = portable  # MuJoCo 3.3.0 refuses a body without mass that has a drawn geom
+    if portable:  # MJX 3.3 has no energy
+        spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        for energy in filter(None, map(spec.sensor, ("potential_energy", "kinetic_energy"))):
+            spec.delete(energy)
     built = spec.compile()
     text = _text(spec)
     if portable:
@@ -210,7 +212,7 @@ def _portable_softness(scene: Scene, made: Setting) -> Softness:
     """Return how soft the rolling constraint of a portable export is: as hard as can be without `diagexact`.
 
     Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
-    angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances m^-1 + a^2/I: of the two the one is taken
+    angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances 1/m + a^2/I: of the two the one is taken
     that is not too soft.
 
     Raises:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import rich.console
 import rich.table
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Column
 from rich.text import Text
 
 from mjbeer.exceptions import OutputError
@@ -22,10 +23,6 @@ class Console(rich.console.Console):
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
 
-_BAR = 20
-"""Columns of a progress bar itself."""
-_COUNTED = 34
-"""Columns for the count and the times beside the bar, with the gaps between."""
 STDOUT = Console()
 STDERR = Console(stderr=True)
 
@@ -98,14 +95,14 @@ def progress_bar(console: rich.console.Console | None, total: int) -> Generator[
     The bar shows the name, how many pieces have been started, the time since the block began, and the time left at the
     present pace. No bar is shown if `console` is None or not a terminal.
     """
+    whole, bar = Column(ratio=1, no_wrap=True, overflow="ellipsis"), BarColumn(bar_width=20)
+    name = TextColumn("{task.description}", markup=False, table_column=whole)
     counted = TextColumn("{task.completed}/{task.total}")
-    name, bar = TextColumn("{task.description}", markup=False), BarColumn(bar_width=_BAR)
     times = TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left")
     hidden = console is None or not console.is_terminal
-    longest = 0 if console is None else max(0, console.width - _BAR - _COUNTED)
-    with Progress(name, bar, counted, *times, console=console, transient=True, disable=hidden) as progress:
+    with Progress(name, bar, counted, *times, console=console, transient=True, disable=hidden, expand=True) as progress:
         task = progress.add_task("", total=total)
-        yield lambda name: progress.update(task, description=name[:longest], advance=1)
+        yield lambda name: progress.update(task, description=name, advance=1)
 
 
 @contextmanager
