@@ -130,7 +130,8 @@ class Setting:
         setting = cls(integrator=cls.integrator if integrator is None else integrator, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
             raise ParameterError(
-                f"give a tolerance or an integrator: a tolerance chooses the integrator, got integrator {integrator!r}"
+                "give a tolerance or an integrator: a tolerance chooses the integrator that keeps it, got integrator "
+                f"{integrator!r}"
             )
         return setting
 
