@@ -83,7 +83,7 @@ def test_without_output_no_file_is_written(
         ("simulate frozen --tolerance 0", "tolerance must be greater than 0 [rad], got 0.0"),
         ("simulate hoop --radius 0", "hoop radius must be between 0.0001 and 100 [m], got 0.0"),
         ("simulate pendulum --offset 0.04", "load offset must be 0, or between 3.3e-16 and 0.033 [m], got 0.04"),
-        ("simulate hoop --friction 0 --rolling contact", "friction must be greater than 0, got 0.0"),
+        ("simulate hoop --friction 0 --rolling contact", "friction must be between 1e-05 and inf, got 0.0"),
         ("simulate sliding --rolling equality", "a massless can with a sliding load exists only in rolling="),
         ("simulate frozen --timestep 0.5 --integrator Euler --phi0 5e5 --duration 900", "the run diverged at t ="),
         ("stability --long --quick", "--long and --quick exclude each other"),

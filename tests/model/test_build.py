@@ -14,10 +14,11 @@ import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import check, numbers, state
-from mjbeer.model.build import Stepped, compile_model, compose
+from mjbeer.model.build import Stepped, compile_spec, compose
 from mjbeer.model.numbers import Numbers
-from mjbeer.model.setting import INTEGRATORS, ROLLINGS, USUAL, MujocoIntegrator, Rolling, Setting, Softness, supported
+from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, Softness, supported
 from mjbeer.model.state import places, read
+from mjbeer.studies.benchmark.curves import USUAL
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, kinetic_energy
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
@@ -117,7 +118,7 @@ def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, ro
         if setting.rolling != rolling or not supported(scene, rolling):
             continue
         ways = []
-        for model in (written(scene, setting), compile_model(scene, setting)):
+        for model in (written(scene, setting), compile_spec(compose(scene, setting), setting.rigid)):
             data = mujoco.MjData(model)
             mjbeer.reset(model, data, scene, 0.7, 3.0)
             for _ in range(20):
@@ -170,28 +171,6 @@ def test_contact_has_the_forces_of_damping_and_drag() -> None:
         assert data.qfrc_passive[place] == pytest.approx(expected[name], rel=1e-14), name
 
 
-def test_stepped_models_carry_nothing_they_do_not_need() -> None:
-    model = build(sliding(can=METAL))
-    assert model.nbody == 2
-    assert not any((model.ngeom, model.ncam, model.nlight, model.nmesh, model.nsensor, model.neq))
-    for flag in ("CONTACT", "CONSTRAINT", "SENSOR", "AUTORESET", "DAMPER"):
-        assert model.opt.disableflags & getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}")
-    contact = build(frozen(), "contact")
-    assert (contact.ngeom, contact.npair, contact.neq, contact.ntendon) == (2, 1, 0, 0)
-
-
-@pytest.mark.parametrize("rolling", ["equality", "contact"])
-@pytest.mark.parametrize("integrator", [*INTEGRATORS, "DOP853"])
-def test_constraints_are_as_stiff_as_asked_for(rolling: Rolling, integrator: MujocoIntegrator) -> None:
-    """MuJoCo clamps a time constant under two timesteps unless refsafe is off."""
-    model = compose(frozen(), Setting(rolling, integrator, timestep=2e-3)).compile()
-    solref = model.eq_solref[0] if rolling == "equality" else model.pair_solref[0]
-    stiff = 1e-3 if rolling == "equality" else 2e-3
-    assert solref[0] == (stiff if integrator in ("RK4", "discrete", "DOP853") else 4e-3)
-    assert model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
-    assert model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_DIAGEXACT
-
-
 @pytest.mark.parametrize("rolling", ["equality", "contact"])
 @pytest.mark.parametrize(
     ("scene", "reason"),
@@ -216,15 +195,6 @@ def test_masses_below_mujoco_s_smallest_are_refused_and_the_next_scene_is_not(mo
     monkeypatch.undo()
     stepped.write(Numbers.of(frozen(0.2), Setting()))
     assert_theory(stepped.model, frozen(0.2), 0.3, 1.0, frozen().can.radius)
-
-
-def test_light_scenes_are_scaled_by_a_power_of_two() -> None:
-    scene = Scene(Can.massless(1e-4, 1e-4), Load.segment(1e-4, 1e-4), 0.1, "frozen")
-    model = build(scene)
-    power = math.log2(model.actuator_biasprm[0, 0] / (scene.mass * model.opt.gravity[0] * 1e-4))
-    assert power == pytest.approx(round(power), abs=1e-12)
-    assert power > 0
-    assert model.body_inertia.max() > 1e-12
 
 
 @pytest.mark.parametrize("integrator", get_args(MujocoIntegrator))

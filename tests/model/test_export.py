@@ -25,7 +25,7 @@ from mjbeer.cli.app import main
 from mjbeer.exceptions import NoLibrationError, OutputError, ParameterError, UnsupportedError
 from mjbeer.model import export as exporting
 from mjbeer.model import looks, state
-from mjbeer.model.build import build, compose
+from mjbeer.model.build import build
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.studies.benchmark.measure import effective_softness
@@ -46,15 +46,6 @@ TOLERANCE = {"reduced": 1e-7, "equality": 1e-7, "contact": 5e-6}
 ALLOWED = {True: TOLERANCE, False: {"reduced": 1e-4, "equality": 1e-3, "contact": 1e-2}}
 FAITHFUL = [name for name, other in BY_NAME.items() if other.faithful]
 CASES = [(name, rolling) for name, scene in SCENES.items() for rolling in ROLLINGS if supported(scene, rolling)]
-PHYSICAL = (
-    "body_mass", "body_inertia", "body_ipos", "body_pos", "body_parentid", "jnt_type", "jnt_axis", "jnt_bodyid",
-    "dof_armature", "dof_damping", "dof_dampingpoly", "dof_frictionloss",
-    "actuator_gainprm", "actuator_biasprm", "actuator_biastype",
-    "eq_type", "eq_data", "eq_obj1id", "eq_obj2id", "eq_solref", "eq_solimp", "pair_dim", "pair_geom1", "pair_geom2",
-    "pair_friction", "pair_solref", "pair_solimp", "pair_margin", "geom_contype", "geom_conaffinity",
-)  # fmt: skip
-OPTIONS = ("timestep", "integrator", "gravity", "cone", "solver", "impratio", "disableflags")
-TENDONS = ("tendon_armature", "tendon_stiffness", "tendon_damping", "tendon_dampingpoly", "tendon_frictionloss")
 # Sums of a few products of positions and rates.
 ROUNDING = 1e-12
 
@@ -73,18 +64,6 @@ def move(path: pathlib.Path, scene: Scene, start: tuple[float, float] = START, d
     return max(abs(found.phi[0] - truth.phi[0]), abs(found.u[0] - truth.u[0]) / scene.can.radius)
 
 
-def assert_same_physics(model: mujoco.MjModel, built: mujoco.MjModel) -> None:
-    for name in PHYSICAL:
-        assert np.array_equal(getattr(model, name), getattr(built, name)), name
-    for name in OPTIONS:
-        assert np.array_equal(getattr(model.opt, name), getattr(built.opt, name)), name
-    # The tendons of the built model come first; the others only measure.
-    for name in TENDONS:
-        assert np.array_equal(getattr(model, name)[: built.ntendon], getattr(built, name)), name
-        assert not getattr(model, name)[built.ntendon :].any(), name
-    assert np.array_equal(model.wrap_prm[: built.nwrap], built.wrap_prm)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("portable", [False, True])
 @pytest.mark.parametrize(("name", "rolling"), CASES)
@@ -98,8 +77,6 @@ def test_an_export_is_the_model_and_moves_exactly(
     assert f"Written by mjbeer: rolling={rolling!r}" in text
     assert move(path, scene) < TOLERANCE[rolling]
     if not portable:
-        built = compose(scene, Setting(rolling, timestep=timestep, friction=FRICTION), visuals=True).compile()
-        assert_same_physics(mujoco.MjModel.from_xml_path(str(path)), built)
         return
     root = ET.parse(path).getroot()
     assert not re.search(r"diagexact|colorspace|<frame", text)
@@ -112,15 +89,10 @@ def test_an_export_is_the_model_and_moves_exactly(
 
 
 @pytest.mark.parametrize("rolling", ROLLINGS)
-def test_an_export_has_damping_and_drag(rolling: Rolling, tmp_path: pathlib.Path) -> None:
-    """A portable one has damping as one number, which is all that MuJoCo 3.3 takes."""
-    scene, path = sliding(can=METAL, damping=Damping(1e-3, 1 / 3, 1e-9), drag=1 / 7), tmp_path / "model.xml"
-    export(scene, path, *START, rolling)
-    built = compose(scene, Setting(rolling), visuals=True).compile()
-    assert built.tendon_damping.any() == built.tendon_dampingpoly.any() == (rolling == "reduced")
-    assert built.dof_damping.any() == (rolling != "reduced")
-    assert_same_physics(mujoco.MjModel.from_xml_path(str(path)), built)
-    export(replace(scene, damping=1 / 3, drag=0.0), path, *START, rolling, portable=True)
+def test_a_portable_export_has_damping_as_one_number(rolling: Rolling, tmp_path: pathlib.Path) -> None:
+    """Which is all that MuJoCo 3.3 takes."""
+    path = tmp_path / "model.xml"
+    export(sliding(can=METAL, damping=1 / 3), path, *START, rolling, portable=True)
     kind, name = ("fixed", "damper") if rolling == "reduced" else ("joint", "swing")
     (damper,) = (each for each in ET.parse(path).getroot().iter(kind) if each.get("name") == name)
     assert float(damper.attrib["damping"]) == 1 / 3
@@ -197,8 +169,9 @@ def test_what_cannot_be_written_is_refused(
 def test_what_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rewrite = exporting._portable
     losses = {
+        "geom_contype": lambda text: re.sub(r'(name="can_wall" class=)"visual"', r'\1"main"', text),
         "body_mass": lambda text: re.sub(r'mass="0\.2\d*"', 'mass="0.2"', text),
-        "geom_xpos": lambda text: re.sub(r'(name="load"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text),
+        "geom_xpos": lambda text: re.sub(r'(name="board"[^>]*) pos="[^"]*"', r'\1 pos="0 0 1"', text),
         "cam_xpos": lambda text: re.sub(r'(<camera name="side"[^>]*) pos="[^"]*"', r"\1", text),
         "light_xdir": lambda text: re.sub(r' dir="[^"]*"', "", text),
         "pair_friction": lambda text: text.replace('friction="2 2"', 'friction="3 3"'),

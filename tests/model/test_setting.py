@@ -9,10 +9,11 @@ import pytest
 
 from mjbeer import build, frozen
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.build import compile_model
-from mjbeer.model.setting import USUAL, Setting, Softness
+from mjbeer.model.build import compile_spec, compose
+from mjbeer.model.setting import Setting, Softness
 from mjbeer.model.state import start
 from mjbeer.require import shown
+from mjbeer.studies.benchmark.curves import USUAL
 from mjbeer.studies.benchmark.measure import EffectiveSoftness, effective_softness
 
 SLIDE_FIRST = USUAL["equality, slide first"]
@@ -21,7 +22,7 @@ REFSAFE = int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
 
 @pytest.mark.parametrize("written", USUAL)
 def test_constraints_are_mujoco_s_defaults(written: str) -> None:
-    model, stock = compile_model(frozen(), USUAL[written]), mujoco.MjSpec().option
+    model, stock = compile_spec(compose(frozen(), USUAL[written])), mujoco.MjSpec().option
     kind = "eq" if model.neq else "pair"
     assert getattr(model, f"{kind}_solref")[0].tolist() == [0.02, 1]
     assert getattr(model, f"{kind}_solimp")[0].tolist() == [0.9, 0.95, 0.001, 0.5, 2]
@@ -30,16 +31,6 @@ def test_constraints_are_mujoco_s_defaults(written: str) -> None:
     assert not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
     assert (model.opt.timestep, model.opt.integrator) == (2e-3, mujoco.mjtIntegrator.mjINT_EULER)
     assert np.array_equal(model.body_mass, build(frozen(), USUAL[written].rolling).body_mass)
-
-
-def test_either_joint_may_be_named_first() -> None:
-    slide, hinge = (compile_model(frozen(), USUAL[f"equality, {each} first"]) for each in ("slide", "hinge"))
-    names = [
-        [model.joint(int(each)).name for each in (model.eq_obj1id[0], model.eq_obj2id[0])] for model in (slide, hinge)
-    ]
-    assert names == [["slide", "roll"], ["roll", "slide"]]
-    radius = frozen().can.radius
-    assert (slide.eq_data[0, 1], hinge.eq_data[0, 1]) == (radius, 1 / radius)
 
 
 def started(model: mujoco.MjModel) -> tuple[mujoco.MjData, EffectiveSoftness]:
@@ -52,15 +43,9 @@ def started(model: mujoco.MjModel) -> tuple[mujoco.MjData, EffectiveSoftness]:
     return data, soft
 
 
-def test_refsafe_raises_a_time_constant_under_two_timesteps() -> None:
-    for timestep, expected in ((2e-3, 0.02), (16e-3, 0.032)):
-        _, soft = started(compile_model(frozen(), replace(SLIDE_FIRST, timestep=timestep)))
-        assert soft.effective_timeconst == pytest.approx(expected, rel=1e-12)
-
-
 def test_the_share_is_what_the_solver_lets_through() -> None:
     """Measured on the acceleration itself: the row's, over what it was to be, past what it would be unconstrained."""
-    model = compile_model(frozen(), replace(SLIDE_FIRST, integrator="RK4", timestep=1e-3))
+    model = compile_spec(compose(frozen(), replace(SLIDE_FIRST, integrator="RK4", timestep=1e-3)))
     data, soft = started(model)
     row = np.array(data.efc_J).reshape(-1, model.nv)[0]
     free, held, wanted = row @ data.qacc_smooth, row @ data.qacc, data.efc_aref[0]

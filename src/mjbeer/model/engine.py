@@ -22,34 +22,33 @@ def quiet() -> Generator[None]:
     The setting belongs to the process: runs in several threads share it until the last one ends.
     """
     with _lock:
-        if not _saved:  # reading and writing the settings takes longer than a hundred steps
-            config = mujoco.MjLogConfig.get()
-            _saved.append((config.logto_console, config.logto_file))
-            _set_log(console=False, file=False)
-        else:
-            _saved.append(_saved[0])
+        # Reading and writing the settings takes longer than a hundred steps.
+        _saved.append(_saved[0] if _saved else _set_log(console=False, file=False))
     try:
         yield
     finally:
         with _lock:
-            console, file = _saved.pop()
+            before = _saved.pop()
             if not _saved:
-                _set_log(console, file)
+                _set_log(*before)
 
 
-def _set_log(console: bool, file: bool) -> None:
+def _set_log(console: bool, file: bool) -> tuple[bool, bool]:
+    """Set where the log goes, and return where it went."""
     config = mujoco.MjLogConfig.get()
+    before = config.logto_console, config.logto_file
     config.logto_console, config.logto_file = console, file
     mujoco.MjLogConfig.set(config)
+    return before
 
 
 @contextmanager
 def untimed() -> Generator[None]:
     """Stop MuJoCo from reading the clock for its statistics, `mjData.timer`.
 
-    Reading the clock some twenty times a step takes longer than a step of a model with one or two joints. The Python
-    bindings install the clock whenever an MjData is made, so enter this afterwards. The setting belongs to the
-    process: of runs in two threads one may be timed after all, and is only slower.
+    That takes longer than a step of a model with one or two joints. The Python bindings install the clock whenever an
+    MjData is made, so enter this afterwards. The setting belongs to the process: of runs in two threads one may be
+    timed after all, and is only slower.
     """
     clock = ctypes.c_void_p.in_dll(library(), "mjcb_time")
     before, clock.value = clock.value, None

@@ -9,19 +9,19 @@ import math
 import os
 import pathlib
 import xml.etree.ElementTree as ET
-from typing import Any
 
 import mujoco
 import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
-from mjbeer.model import check, looks, setting
+from mjbeer.model import check, looks, setting, state
 from mjbeer.model.build import START, add_start, compile_spec, compose
 from mjbeer.model.engine import library
 from mjbeer.model.numbers import mass_unit
 from mjbeer.model.setting import Setting, Softness
 from mjbeer.output import files
+from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.scene import Scene
 
 CAMERA = "side"
@@ -39,22 +39,18 @@ has no "discrete"."""
 _PORTABLE_CONTACT = Softness(exact_diagonal=False, impedance=(0.999, 0.999), impratio=10.0)
 """The softness of a portable contact. With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double
 precision, but in single precision, as in mujoco_warp, the solver then ends with NaN."""
-# What a model that was read back must have: the rows of its bodies (a portable one lacks those without mass), and all
-# of the other arrays, options and, where the joints are, places and directions in the world.
-_INERTIALS = ("body_mass", "body_inertia", "body_ipos", "body_iquat")
-_EXACT = (
-    "jnt_axis", "dof_armature", "dof_damping", "dof_dampingpoly", "tendon_armature", "tendon_damping",
-    "tendon_dampingpoly", "wrap_prm", "actuator_gainprm", "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp",
-    "pair_friction", "pair_solref", "pair_solimp", "key_qpos", "key_qvel",
+# What a model that was read back must have: these arrays and options and, where its joints are, places in the world.
+_ARRAYS = (
+    "body_mass", "body_inertia", "body_ipos", "body_iquat", "jnt_axis", "dof_armature", "dof_damping",
+    "dof_dampingpoly", "tendon_armature", "tendon_damping", "tendon_dampingpoly", "wrap_prm", "actuator_gainprm",
+    "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp", "pair_friction", "pair_solref", "pair_solimp",
+    "key_qpos", "key_qvel", "geom_contype", "geom_conaffinity",
 )  # fmt: skip
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
 _POSES = ("geom_xpos", "geom_xmat", "site_xpos", "site_xmat", "cam_xpos", "cam_xmat", "light_xpos", "light_xdir")
-_LEFT_OUT = float(np.finfo(float).eps)
-"""Largest difference that is allowed. MuJoCo does not write a number that is this near to its default, such as a force
-of 1e-16 N. The numbers that it writes are read back to the last bit, except quaternions, which it normalizes again."""
 _ROUNDING = 1e-14
-"""Largest difference of two poses, relative to the largest number among them. A pose is the product of at most five
-others, each rounded a few times by 1e-16."""
+"""Largest difference that is allowed, over the largest number: a pose is the product of at most five others, each
+rounded a few times. MuJoCo also leaves out a number that is within 2e-16 of its default, as a force of 1e-16 N."""
 
 
 def export(
@@ -104,12 +100,16 @@ def export(
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
     spec.texturedir = str(folder / spec.texturedir) if any(texture.file for texture in spec.textures) else ""
+    spec.compiler.fusestatic = portable  # MuJoCo 3.3.0 refuses a body without mass that has a drawn geom
+    if portable:  # MJX 3.3 has no energy
+        spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        for energy in filter(None, map(spec.sensor, ("potential_energy", "kinetic_energy"))):
+            spec.delete(energy)
     built = spec.compile()
     text = _text(spec)
-    _require_same(built, mujoco.MjModel.from_xml_string(text))
     if portable:
         text = _portable(text)
-        _require_same(built, mujoco.MjModel.from_xml_string(text))
+    _require_same(built, mujoco.MjModel.from_xml_string(text))
     files.write(target, text)
 
 
@@ -135,57 +135,41 @@ def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco
 def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> float:
     """Return a distance that the axis does not exceed within a `duration` [s], from its start uphill or downhill [m].
 
-    Energy and the constant force F downhill bound the way s: M s_dot^2/2 <= E + F s, with the smallest mass M that the
-    axis can have, so that s <= sqrt(2 E/M) t + F t^2/(2 M); E is what the start has above the lowest energy. For a
-    frozen load s is the angle that the can has turned. Damping and drag only take energy.
+    The centre of mass is within m b/m_t of the axis, and has m_t v^2/2 <= E + m_t g s sin(alpha), where E is the
+    kinetic energy of the start and what the load gains in half a turn: s <= sqrt(2 E/m_t) t + g sin(alpha) t^2/2.
     """
-    can, load, oscillator = scene.can, scene.load, scene.oscillator
-    if scene.attachment == "frozen":
-        energy = float(oscillator.inertia(phi0)) * phi_dot0**2 / 2 + 2 * oscillator.depth
-        least, force, size = oscillator.base, abs(oscillator.slope), can.radius
-    else:
-        mass, moment = scene.effective_mass, load.moment
-        u_dot, own = scene.start(phi0, phi_dot0)[1], load.inertia + moment * load.offset
-        energy = (mass * u_dot**2 + own * phi_dot0**2) / 2 - moment * math.cos(phi0) * u_dot * phi_dot0
-        energy += 2 * moment * scene.gravity
-        least, size = mass * oscillator.base / own, 1.0
-        force = scene.mass * scene.gravity * abs(math.sin(scene.incline))
-    return size * (math.sqrt(2 * energy / least) * duration + force / least * duration**2 / 2)
+    energy = kinetic_energy(scene, state.begin(scene, phi0, phi_dot0))[0] + 2 * scene.load.moment * scene.gravity
+    fallen = scene.gravity * abs(math.sin(scene.incline)) * duration**2 / 2
+    return math.sqrt(2 * energy / scene.mass) * duration + fallen + 2 * scene.load.moment / scene.mass
 
 
 def _add_sensors(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Add what MuJoCo's viewer plots, by the letters of the paper, to a model that has its joints.
 
     They are u [m] and phi [rad] with their rates; slip, u - a roll [m], where rolling is a constraint; lift [m], where
-    the can may leave the incline; and the potential and the kinetic energy [J].
+    the can may leave the incline; and the potential and the kinetic energy [J]. A tendon without stiffness measures
+    a sum over joints.
     """
-    joints, radius = {joint.name for joint in spec.joints}, scene.can.radius
-    _add_sensor(spec, "u", {"slide": 1.0} if "slide" in joints else {"phi": radius}, rate=True)
-    _add_sensor(spec, "phi", {name: 1.0 for name in ("phi", "roll", "swing") if name in joints}, rate=True)
-    if "roll" in joints:
-        _add_sensor(spec, "slip", {"slide": 1.0, "roll": -radius})
-    if "lift" in joints:
-        _add_sensor(spec, "lift", {"lift": 1.0})
+    joints, radius, kinds = {joint.name for joint in spec.joints}, scene.can.radius, mujoco.mjtSensor
+    sums = {
+        "u": {"slide": 1.0} if "slide" in joints else {"phi": radius},
+        "phi": {name: 1.0 for name in ("phi", "roll", "swing") if name in joints},
+        "slip": {"slide": 1.0, "roll": -radius} if "roll" in joints else {},
+        "lift": {"lift": 1.0} if "lift" in joints else {},
+    }
+    for name, weights in sums.items():
+        if weights:
+            tendon = spec.add_tendon(name=name)
+            for joint, weight in weights.items():
+                tendon.wrap_joint(joint, weight)
+            rate = {f"{name}_dot": kinds.mjSENS_TENDONVEL} if name in ("u", "phi") else {}
+            for sensor, kind in {name: kinds.mjSENS_TENDONPOS, **rate}.items():
+                spec.add_sensor(name=sensor, type=kind, objtype=mujoco.mjtObj.mjOBJ_TENDON, objname=name)
     # MuJoCo counts no constant force that stands for a weight as potential energy, and has what multiplied masses have.
     if not spec.actuators and mass_unit(scene) == 1:
         spec.option.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)  # the viewer then shows the sum as well
-        spec.add_sensor(name="potential_energy", type=mujoco.mjtSensor.mjSENS_E_POTENTIAL)
-        spec.add_sensor(name="kinetic_energy", type=mujoco.mjtSensor.mjSENS_E_KINETIC)
-
-
-def _add_sensor(spec: mujoco.MjSpec, name: str, weights: dict[str, float], rate: bool = False) -> None:
-    """Add a sensor of a sum over joints, and one of its rate. A tendon without stiffness measures a sum."""
-    kinds = mujoco.mjtSensor
-    if list(weights.values()) == [1.0]:
-        (measured,), object_ = weights, mujoco.mjtObj.mjOBJ_JOINT
-        of = {"": kinds.mjSENS_JOINTPOS, "_dot": kinds.mjSENS_JOINTVEL}
-    else:
-        measured, object_, tendon = name, mujoco.mjtObj.mjOBJ_TENDON, spec.add_tendon(name=name)
-        of = {"": kinds.mjSENS_TENDONPOS, "_dot": kinds.mjSENS_TENDONVEL}
-        for joint, weight in weights.items():
-            tendon.wrap_joint(joint, weight)
-    for suffix in ("", "_dot") if rate else ("",):
-        spec.add_sensor(name=name + suffix, type=of[suffix], objtype=object_, objname=measured)
+        spec.add_sensor(name="potential_energy", type=kinds.mjSENS_E_POTENTIAL)
+        spec.add_sensor(name="kinetic_energy", type=kinds.mjSENS_E_KINETIC)
 
 
 def _text(spec: mujoco.MjSpec) -> str:
@@ -208,42 +192,28 @@ def _require_same(built: mujoco.MjModel, reread: mujoco.MjModel) -> None:
     Raises:
       MjbeerError: if not; the message has the first number that differs.
     """
-    kept = [built.body(reread.body(body).name).id for body in range(reread.nbody)]
-    for name in _INERTIALS:
-        _require_near(name, getattr(built, name)[kept], getattr(reread, name))
-    _require_near("mass", built.body_mass.sum(), reread.body_mass.sum())
-    for name in _EXACT:
-        _require_near(name, getattr(built, name), getattr(reread, name))
-    for name in _OPTIONS:
-        _require_near(f"option {name}", getattr(built.opt, name), getattr(reread.opt, name))
+    both = built, reread
+    pairs = [(name, *(getattr(model, name) for model in both)) for name in _ARRAYS]
+    pairs += [(f"option {name}", *(getattr(model.opt, name) for model in both)) for name in _OPTIONS]
     for aside in (0.0, 0.5):
-        before, after = (_posed(model, model.qpos0 + aside) for model in (built, reread))
-        for name in _POSES:
-            _require_near(name, getattr(before, name), getattr(after, name), _ROUNDING)
-
-
-def _posed(model: mujoco.MjModel, qpos: np.ndarray) -> mujoco.MjData:
-    data = mujoco.MjData(model)
-    data.qpos[:] = qpos
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_camlight(model, data)
-    return data
-
-
-def _require_near(name: str, old: Any, new: Any, rounding: float = 0.0) -> None:
-    """Raise an MjbeerError if numbers differ by more than `rounding` times the largest one."""
-    allowed = _LEFT_OUT + rounding * np.abs(old).max(initial=0.0)
-    if np.shape(old) != np.shape(new) or not np.allclose(old, new, rtol=0, atol=allowed):
-        raise MjbeerError(f"the MJCF written is not the model: {name} is {new}, not {old}")
+        posed = [mujoco.MjData(model) for model in both]
+        for model, data in zip(both, posed, strict=True):
+            data.qpos[:] = model.qpos0 + aside
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_camlight(model, data)
+        pairs += [(name, *(getattr(data, name) for data in posed)) for name in _POSES]
+    for name, old, new in pairs:
+        allowed = _ROUNDING * np.abs(old).max(initial=0.0) + np.finfo(float).eps
+        if np.shape(old) != np.shape(new) or not np.allclose(old, new, rtol=0, atol=allowed):
+            raise MjbeerError(f"the MJCF written is not the model: {name} is {new}, not {old}")
 
 
 def _portable_softness(scene: Scene, made: Setting) -> Softness:
     """Return how soft the rolling constraint of a portable export is: as hard as can be without `diagexact`.
 
-    Without it the softness of an equality's row is proportional to the sum of the inverse inertias 1/m and 1/I of slide
-    and hinge, in metres and radians alike. In a row about angles, roll - u/a, the first should be 1/(m a^2), and is too
-    small for a can of less than a metre; in a row about distances, u - a roll, the second should be a^2/I, and is too
-    small for a can of more. So the sum is never much too large, and the row never much too soft.
+    Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
+    angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances 1/m + a^2/I: of the two the one is taken
+    that is not too soft.
 
     Raises:
       UnsupportedError: if not all that load a portable export have the integrator, damping and drag.
@@ -263,7 +233,7 @@ def _portable_softness(scene: Scene, made: Setting) -> Softness:
 
 
 def _portable(text: str) -> str:
-    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3.0 does not know, frames, and bodies without mass."""
+    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3.0 does not know, and frames."""
     root = ET.fromstring(text, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     for texture in root.iter("texture"):
         if texture.get("colorspace") == "auto":  # what a texture without it has
@@ -280,42 +250,30 @@ def _portable(text: str) -> str:
 
 
 def _dissolve(parent: ET.Element) -> None:
-    """Move to an element what is in its frames and in its bodies without a joint, and remove these, down the tree."""
+    """Put what is in frames in their place, down the tree."""
     for child in list(parent):
-        if child.tag not in ("frame", "body"):
-            continue
         _dissolve(child)
-        if child.find("joint") is not None:
-            continue
-        # MuJoCo numbers what is in a body after what is in its parent, but what is in a frame where the frame is.
-        position = list(parent).index(child) if child.tag == "frame" else len(parent) - 1
-        parent.remove(child)
-        for element in reversed([each for each in child if each.tag != "inertial"]):
-            parent.insert(position, _moved(element, child))
+        if child.tag == "frame":
+            place = list(parent).index(child)
+            parent[place : place + 1] = [_moved(element, child) for element in child]
 
 
 def _moved(element: ET.Element, frame: ET.Element) -> ET.Element:
-    """Return a copy of an element in a frame, or in a body without a joint, as it is outside of it."""
-    moved = copy.copy(element)
-    place, turn = _numbers_of(frame, "pos", "0 0 0"), _numbers_of(frame, "quat", "1 0 0 0")
+    """Return a copy of an element in a frame as it is outside of it."""
+
+    def given(each: ET.Element, name: str, default: str) -> np.ndarray:
+        return np.array([float(word) for word in each.get(name, default).split()])
+
+    place, turn = given(frame, "pos", "0 0 0"), given(frame, "quat", "1 0 0 0")
     position, quaternion, direction = np.zeros(3), np.zeros(4), np.zeros(3)
-    mujoco.mju_rotVecQuat(position, _numbers_of(element, "pos", "0 0 0"), turn)
-    moved.set("pos", _written(place + position))
-    if element.tag == "light":
-        mujoco.mju_rotVecQuat(direction, _numbers_of(element, "dir", "0 0 -1"), turn)
-        moved.set("dir", _written(direction))
-    else:
-        mujoco.mju_mulQuat(quaternion, turn, _numbers_of(element, "quat", "1 0 0 0"))
-        moved.set("quat", _written(quaternion))
+    mujoco.mju_rotVecQuat(position, given(element, "pos", "0 0 0"), turn)
+    mujoco.mju_rotVecQuat(direction, given(element, "dir", "0 0 -1"), turn)
+    mujoco.mju_mulQuat(quaternion, turn, given(element, "quat", "1 0 0 0"))
+    turned = ("dir", direction) if element.tag == "light" else ("quat", quaternion)
+    moved = copy.copy(element)
     if "childclass" in frame.attrib:
         name = "childclass" if element.tag in ("body", "frame") else "class"
         moved.set(name, element.get(name, frame.attrib["childclass"]))
+    for name, numbers in (("pos", place + position), turned):
+        moved.set(name, " ".join(repr(float(number)) for number in numbers))
     return moved
-
-
-def _numbers_of(element: ET.Element, name: str, default: str) -> np.ndarray:
-    return np.array([float(word) for word in element.get(name, default).split()])
-
-
-def _written(numbers: np.ndarray) -> str:
-    return " ".join(repr(float(number)) for number in numbers)

@@ -6,7 +6,6 @@ Across the can's axis, the y axis, everything grows with the radius. What is at 
 import functools
 import math
 import pathlib
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -40,17 +39,13 @@ TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
 WALL = 0.06
 """Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
-FOAM = 0.025
-"""Thickness of the foam on the beer, in radii."""
-_FOAM_SHARE = 0.25
-"""Largest thickness of the foam over the depth of the beer, and over the room above it."""
-_LEAST_FOAM = 1e-4
-"""Smallest thickness of foam that is drawn, in radii."""
+FOAM, _FOAM_SHARE, _LEAST_FOAM = 0.025, 0.25, 1e-4
+"""Thickness of the foam in radii, and its largest one over the depth of the beer and over the room above it; a thinner
+one than the last is not drawn."""
 _LEAST_FILL = 1e-6
 """Smallest fill that is drawn: a mesh must not be flat, and so little beer cannot be seen."""
 _LEAST_VOLUME = 1e-12
-"""Smallest volume [m^3] of a solid mesh. A smaller mesh becomes a shell, which looks the same: below 1e-15 m^3 MuJoCo
-refuses a solid one."""
+"""Smallest volume [m^3] of a solid mesh. A smaller one becomes a shell, which looks the same: MuJoCo refuses 1e-15."""
 EDGES = 256
 """Number of edges around the arc of the beer. The error of the polygon falls as its square; with 256 edges mass,
 centroid and inertia are within 6e-4 for every fill up to 0.95."""
@@ -115,28 +110,19 @@ def dressed(scene: Scene) -> mujoco.MjSpec:
 
 def _remove_mechanics(spec: mujoco.MjSpec) -> None:
     """Remove what mjbeer makes anew, and give what it adds to, and all options, MuJoCo's own values."""
-    for kind in _MECHANISM:
-        for element in getattr(spec, kind):
-            spec.delete(element)
+    colliding = filter(None, map(spec.geom, _COLLIDING))
+    for element in (*(each for kind in _MECHANISM for each in getattr(spec, kind)), *colliding):
+        spec.delete(element)
     for geom in spec.geoms:
-        if geom.name in _COLLIDING:
-            spec.delete(geom)
-        else:
-            geom.contype, geom.conaffinity, geom.mass = 0, 0, 0.0
+        geom.contype, geom.conaffinity, geom.mass = 0, 0, 0.0
     fresh = mujoco.MjSpec()
     body = fresh.worldbody.add_body()
-    for element in spec.bodies[1:]:
-        _reset(element, body)
-    for kind in _ADDED:
-        _reset(getattr(spec.default, kind), getattr(fresh.default, kind))
-    _reset(spec.option, fresh.option)
+    pairs = [(element, body) for element in spec.bodies[1:]]
+    pairs += [(getattr(spec.default, kind), getattr(fresh.default, kind)) for kind in _ADDED]
+    for element, own in (*pairs, (spec.option, fresh.option)):
+        for attribute in _attributes(type(own)):
+            setattr(element, attribute, getattr(own, attribute))
     spec.memory, spec.stat.meaninertia = fresh.memory, math.nan  # both act on contacts
-
-
-def _reset(element: Any, fresh: Any) -> None:
-    """Give an element the attributes of a fresh one of its kind, except those that identify it."""
-    for attribute in _attributes(type(fresh)):
-        setattr(element, attribute, getattr(fresh, attribute))
 
 
 @functools.cache
@@ -181,8 +167,7 @@ def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
         geom.fromto = _stretched(np.reshape(geom.fromto, (2, 3)), size, length).ravel()
         geom.size = np.array(geom.size) * size
     elif geom.type in _ALONG_THE_AXES and geom.size[0] > 0:  # an infinite plane has size 0
-        low = _stretched(np.array(geom.pos) - geom.size, size, length)
-        high = _stretched(np.array(geom.pos) + geom.size, size, length)
+        low, high = (_stretched(np.array(geom.pos) + side * geom.size, size, length) for side in (-1, 1))
         geom.pos, geom.size = (low + high) / 2, (high - low) / 2
     else:
         geom.pos, geom.size = _stretched(geom.pos, size, length), np.array(geom.size) * size
@@ -243,14 +228,13 @@ def _hang(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Put the bob with its arm, or the bar on the rim, where the scene has it."""
     offset, ball, arm = scene.load.offset, spec.geom("load"), spec.geom("load_arm")
     if arm is not None:
-        ball.pos = [0, ball.pos[1], -offset]
         arm.pos, arm.size = [0, arm.pos[1], -offset / 2], [arm.size[0], max(offset / 2, arm.size[0] / 100), 0]
-        return
-    depth = -min(offset, scene.can.radius - ball.size[0])  # a load on the rim is drawn just inside it
-    if math.isnan(ball.fromto[0]):
-        ball.pos = [0, ball.pos[1], depth]
     else:
-        ball.fromto = [*ball.fromto[:2], depth, *ball.fromto[3:5], depth]
+        offset = min(offset, scene.can.radius - ball.size[0])  # a load on the rim is drawn just inside it
+    if math.isnan(ball.fromto[0]):
+        ball.pos = [0, ball.pos[1], -offset]
+    else:
+        ball.fromto = [*ball.fromto[:2], -offset, *ball.fromto[3:5], -offset]
 
 
 def _fill(spec: mujoco.MjSpec, scene: Scene, fill: float) -> None:

@@ -1,7 +1,8 @@
 """Settings: how a can is made to roll, how it is stepped, and how soft the constraint is that makes it roll."""
 
-from dataclasses import dataclass, replace
-from typing import Literal, get_args
+import math
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
@@ -23,16 +24,10 @@ OWN = (DOP853, GAUSS_JACKSON)
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 _LEAST_FRICTION = 1e-5
-"""Smallest friction coefficient in MuJoCo (mjMINMU): it would raise a smaller one to this, and say nothing."""
+"""Smallest friction coefficient in MuJoCo (mjMINMU), which raises a smaller one to this, and says nothing."""
 _IMPEDANCES = (1e-4, 0.9999)
-"""Smallest and largest impedance in MuJoCo (mjMINIMP and mjMAXIMP): it would move others there, and say nothing."""
+"""Smallest and largest impedance in MuJoCo (mjMINIMP and mjMAXIMP), which moves others there, and says nothing."""
 FirstJoint = Literal["slide", "hinge"]
-
-
-def _pair(name: str, value: tuple[float, float]) -> tuple[float, float]:
-    if not isinstance(value, (list, tuple)) or len(value) != 2:
-        raise ParameterError(f"{name} must be two numbers, got {require.shown(value)}")
-    return require.number(f"{name}[0]", value[0]), require.number(f"{name}[1]", value[1])
 
 
 @dataclass(frozen=True)
@@ -59,18 +54,20 @@ class Softness:
     """The joint that the equality names first: MuJoCo then constrains a distance ("slide") or an angle ("hinge")."""
 
     def __post_init__(self) -> None:
-        if self.solref is not None:
-            require.store(self, solref=_pair("solref", self.solref))
-            first, second = self.solref
-            if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):  # others MuJoCo replaces by its default
-                raise ParameterError(
-                    "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness "
-                    f"[1/s^2] and a damping [1/s], both negated, got {require.shown(self.solref)}"
-                )
-        if self.impedance is not None:
-            require.store(self, impedance=_pair("impedance", self.impedance))
-            for place, share in enumerate(self.impedance):
-                require.within(f"impedance[{place}]", share, *_IMPEDANCES)
+        for name in ("solref", "impedance"):
+            if (pair := getattr(self, name)) is not None:
+                if not isinstance(pair, (list, tuple)) or len(pair) != 2:
+                    raise ParameterError(f"{name} must be two numbers, got {require.shown(pair)}")
+                numbers = (require.number(f"{name}[{place}]", each) for place, each in enumerate(pair))
+                require.store(self, **{name: tuple(numbers)})
+        for place, share in enumerate(self.impedance or ()):
+            require.within(f"impedance[{place}]", share, *_IMPEDANCES)
+        first, second = self.solref or (1, 1)
+        if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):  # others MuJoCo replaces by its default
+            raise ParameterError(
+                "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness [1/s^2] "
+                f"and a damping [1/s], both negated, got {require.shown(self.solref)}"
+            )
         if self.impratio is not None:
             require.store(self, impratio=require.positive("impratio", self.impratio))
         for name in ("refsafe", "exact_diagonal", "elliptic"):
@@ -108,17 +105,13 @@ class Setting:
         require.store(
             self,
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
-            friction=require.positive("friction", self.friction),
+            friction=require.within("friction", self.friction, _LEAST_FRICTION, math.inf),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
         )
         if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
             raise ParameterError(
                 f"{GAUSS_JACKSON} would be unstable with a constraint: rolling must be 'reduced' with it, got "
                 f"{self.rolling!r}; {DOP853} takes any"
-            )
-        if self.friction < _LEAST_FRICTION:
-            raise ParameterError(
-                f"friction must be at least {_LEAST_FRICTION:g}, MuJoCo's smallest (mjMINMU), got {self.friction!r}"
             )
         require.instance("softness", self.softness, Softness)
 
@@ -128,38 +121,19 @@ class Setting:
         return self.rolling == "equality" and self.softness == TUNED
 
     @classmethod
-    def of(
-        cls,
-        rolling: Rolling,
-        integrator: Integrator | None,
-        timestep: float,
-        tolerance: float | None,
-        friction: float,
-        softness: Softness = TUNED,
-    ) -> "Setting":
-        """Return the setting of a call in which the integrator may be left out; None means RK4, or the tolerance's.
+    def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
+        """Return the setting of a call that may leave out the integrator, which is RK4 then, or the tolerance's.
 
         Raises:
           ParameterError: if a field is not allowed, or both a tolerance and an integrator are given.
         """
-        chosen = cls.integrator if integrator is None else integrator
-        setting = cls(rolling, chosen, timestep, tolerance, friction, softness)
+        setting = cls(integrator=cls.integrator if integrator is None else integrator, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
             raise ParameterError(
                 "give a tolerance or an integrator: a tolerance chooses the integrator that keeps it, got integrator "
                 f"{integrator!r}"
             )
         return setting
-
-
-_DEFAULTS = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)
-USUAL = {
-    "equality, slide first": Setting("equality", "Euler", 2e-3, softness=_DEFAULTS),
-    "equality, hinge first": Setting("equality", "Euler", 2e-3, softness=replace(_DEFAULTS, first="hinge")),
-    "contact, defaults": Setting("contact", "Euler", 2e-3, softness=replace(_DEFAULTS, impratio=1, elliptic=False)),
-}
-"""Settings as people usually write them, with MuJoCo's defaults wherever there are any. The order of the two joints in
-a joint equality matters: MuJoCo's default diagonal softens the two by different factors."""
 
 
 def supported(scene: Scene, rolling: str) -> bool:

@@ -7,7 +7,6 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.engine import quiet
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene
 
@@ -27,7 +26,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     """
     for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
         require.instance(name, given, kind)
-    values = _values(_begin(scene, *require.start(phi0, phi_dot0)))
+    values = _values(begin(scene, *require.start(phi0, phi_dot0)))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
         raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
@@ -42,15 +41,15 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
     return {model.joint(joint).name: int(model.joint(joint).qposadr[0]) for joint in range(model.njnt)}
 
 
-def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
-    return write(model, _begin(scene, phi0, phi_dot0))[0]
-
-
 def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return the positions and the rates of joints at a start, shape (2, joints)."""
-    values = _values(_begin(scene, phi0, phi_dot0))
+    values = _values(begin(scene, phi0, phi_dot0))
     return np.array([values[name] for name in joints])[..., 0].T
+
+
+def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+    """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
+    return at(places(model), scene, phi0, phi_dot0).ravel()
 
 
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
@@ -61,7 +60,7 @@ def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
     return states
 
 
-def _begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
+def begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
     """Return a start as a motion of one sample."""
     (u, u_dot), radius = scene.start(phi0, phi_dot0), scene.can.radius
     values = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0
@@ -82,53 +81,14 @@ def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:
 
 def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
     """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape (samples,)."""
-    joints = places(model)
+    joints, radius = places(model), scene.can.radius
 
-    def column(name: str) -> tuple[np.ndarray, np.ndarray]:
-        return states[:, joints[name]].copy(), states[:, model.nq + joints[name]].copy()
+    def both(name: str) -> np.ndarray:
+        """Return a joint's positions and rates, shape (2, samples); zeros if there is none."""
+        return states.T[joints[name] :: model.nq].copy() if name in joints else np.zeros((2, len(states)))
 
-    zeros = np.zeros(len(states)), np.zeros(len(states))
-    if "phi" in joints:
-        phi, phi_dot = column("phi")
-    else:
-        (roll, roll_dot), (swing, swing_dot) = column("roll"), column("swing") if "swing" in joints else zeros
-        phi, phi_dot = roll + swing, roll_dot + swing_dot
-    radius = scene.can.radius
-    u, u_dot = column("slide") if "slide" in joints else (radius * phi, radius * phi_dot)
-    roll, roll_dot = column("roll") if "roll" in joints else (u / radius, u_dot / radius)
-    lift, lift_dot = column("lift") if "lift" in joints else zeros
-    return Coordinates(
-        time=times,
-        u=u,
-        phi=phi,
-        u_dot=u_dot,
-        phi_dot=phi_dot,
-        roll=roll,
-        roll_dot=roll_dot,
-        lift=lift,
-        lift_dot=lift_dot,
-    )
-
-
-def settle(model: mujoco.MjModel, state: np.ndarray) -> np.ndarray:
-    """Return a `state`, shape (nq + nv,), with the lift at which the can has no acceleration away from the incline.
-
-    A model without a lift gets its state back. The contact force is linear in the depth, so that two trials give the
-    wanted depth. From any other depth the can would fall or rise to it, unlike in the exact motion.
-    """
-    if "lift" not in (joints := places(model)):
-        return state
-    index = joints["lift"]
-    data, balanced = mujoco.MjData(model), state.copy()
-
-    def acceleration(lift: float) -> float:
-        data.qpos[:], data.qvel[:] = state[: model.nq], state[model.nq :]
-        data.qpos[index], data.qacc_warmstart[:] = lift, 0.0
-        with quiet():
-            mujoco.mj_forward(model, data)
-        return float(data.qacc[index])
-
-    trials = -1e-7, -2e-7
-    first, second = (acceleration(lift) for lift in trials)
-    balanced[index] = trials[0] - first * (trials[1] - trials[0]) / (second - first)
-    return balanced
+    phi = both("phi") if "phi" in joints else both("roll") + both("swing")
+    u = both("slide") if "slide" in joints else radius * phi
+    roll, lift = both("roll") if "roll" in joints else u / radius, both("lift")
+    rates = {"u_dot": u[1], "phi_dot": phi[1], "roll_dot": roll[1], "lift_dot": lift[1]}
+    return Coordinates(time=times, u=u[0], phi=phi[0], roll=roll[0], lift=lift[0], **rates)

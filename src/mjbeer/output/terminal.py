@@ -10,29 +10,26 @@ from dataclasses import dataclass
 import rich.console
 import rich.table
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.table import Column
 from rich.text import Text
 
 from mjbeer.exceptions import OutputError
 
 
 class Console(rich.console.Console):
-    """A rich console that raises BrokenPipeError when its output is no longer read, instead of ending the program."""
+    """A rich console that raises an error when its output is no longer read, instead of ending the program."""
 
     def on_broken_pipe(self) -> None:
         raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
 
 
-_BAR = 20
-"""Columns of a progress bar itself."""
-_COUNTED = 34
-"""Columns for the count and the times beside the bar, with the gaps between."""
 STDOUT = Console()
 STDERR = Console(stderr=True)
 
 
 @dataclass(frozen=True)
 class Table:
-    """A title, the headings of the columns, and rows of text. A rich console can print it directly."""
+    """A title, the headings of the columns, and rows of text, whose rich markup takes effect on a console."""
 
     title: str
     columns: tuple[str, ...]
@@ -41,7 +38,7 @@ class Table:
     """Indices of the columns that are aligned to the left; the others, of numbers, are aligned to the right."""
 
     def __rich__(self) -> rich.table.Table:
-        """Return the table for rich to print; rich's markup in cells takes effect."""
+        """Return the table for rich to print."""
         table = rich.table.Table(title=self.title)
         for index, name in enumerate(self.columns):
             table.add_column(name, justify="left" if index in self.left else "right", overflow="fold")
@@ -75,10 +72,8 @@ def is_seen() -> bool:
 def show(*tables: Table) -> None:
     """Print tables to standard output; where a program reads it, as lines with tabs between the columns.
 
-    Several tables then have an empty line between them, and each its title above it, after a #.
-
-    Raises:
-      OutputError: if standard output cannot be written to.
+    Several tables then have an empty line between them, and each its title above it, after a #. The errors are those
+    of `printing`.
     """
     if not is_read_by_eye():
         titled = [f"# {table.title}\n" if len(tables) > 1 else "" for table in tables]
@@ -100,14 +95,14 @@ def progress_bar(console: rich.console.Console | None, total: int) -> Generator[
     The bar shows the name, how many pieces have been started, the time since the block began, and the time left at the
     present pace. No bar is shown if `console` is None or not a terminal.
     """
+    whole, bar = Column(ratio=1, no_wrap=True, overflow="ellipsis"), BarColumn(bar_width=20)
+    name = TextColumn("{task.description}", markup=False, table_column=whole)
     counted = TextColumn("{task.completed}/{task.total}")
-    name, bar = TextColumn("{task.description}", markup=False), BarColumn(bar_width=_BAR)
     times = TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left")
     hidden = console is None or not console.is_terminal
-    longest = 0 if console is None else max(0, console.width - _BAR - _COUNTED)
-    with Progress(name, bar, counted, *times, console=console, transient=True, disable=hidden) as progress:
+    with Progress(name, bar, counted, *times, console=console, transient=True, disable=hidden, expand=True) as progress:
         task = progress.add_task("", total=total)
-        yield lambda name: progress.update(task, description=name[:longest], advance=1)
+        yield lambda name: progress.update(task, description=name, advance=1)
 
 
 @contextmanager
@@ -129,10 +124,6 @@ def printing() -> Generator[None]:
 
 
 def write(text: str) -> None:
-    """Write a text to standard output, and flush it.
-
-    Raises:
-      OutputError: if standard output cannot be written to.
-    """
+    """Write a text to standard output, and flush it, with the errors of `printing`."""
     with printing():
         sys.stdout.write(text)

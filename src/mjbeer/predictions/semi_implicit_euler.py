@@ -1,4 +1,4 @@
-"""The errors of semi-implicit Euler that theory predicts: of frequency, distance, angle and energy.
+"""The errors of semi-implicit Euler that theory predicts: of angle and energy.
 
 Semi-implicit Euler, v += h a(q, v), q += h v, is MuJoCo's "Euler". On models without damping "implicitfast" and
 "discrete" are the same method, and "implicit" differs from it only in forces that grow with the square of the rate.
@@ -11,48 +11,19 @@ from mjbeer.theory.scene import Scene
 
 _DIFFERENCE = 1e-5
 """Step of the central differences [rad, or rad/s in units of sqrt(g/a)]: their relative error is 1e-10."""
+_TOLERANCE, _SHORT = 1e-12, 1e-3
+"""Tolerance of the perturbed motion, and the timestep of a central difference over sqrt(a/g): both leave 1e-6."""
 _SIGN = {"Euler": 1, "implicitfast": 1, "discrete": 1, "implicit": -1}
 """Sign of the energy that forces proportional to the square of the rate add in each step."""
 _NODES = 40
 """Nodes of the quadrature over a swing. The integrand is smooth: the error is 1e-15 at an amplitude of 1 rad."""
 
 
-def frequency_shift(frequency: float, timestep: float) -> float:
-    """Return the relative error of a small swing's `frequency` [rad/s] with a `timestep` [s]: (omega h)^2/24.
-
-    The map has eigenvalues exp(+-i nu h) with sin(nu h/2) = omega h/2.
-    """
-    return (frequency * timestep) ** 2 / 24
-
-
-def distance_excess(timestep: float, duration: float) -> float:
-    """Return the relative error of the distance at constant acceleration a from rest: h/T.
-
-    After n = T/h steps the distance is a h^2 n (n + 1)/2 instead of a T^2/2.
-    """
-    return timestep / duration
-
-
-def euler_error(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> np.ndarray:
-    """Return the error of phi over the timestep [rad/s] at `times` [s], in the limit of small timesteps.
-
-    By backward error analysis a reduced model follows q' = v + h/2 a, v' = a - h/2 (a_q v + a_v a) up to h^2
-    (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX). This is the linearized effect of h.
-    """
-
-    def slopes(_: float, state: np.ndarray) -> np.ndarray:
-        q, v, dq, dv = state
-        a, a_q, a_v = _acceleration(scene, q, v)
-        return np.array([v, a, dv + a / 2, a_q * dq + a_v * dv - (a_q * v + a_v * a) / 2])
-
-    span, start = (0.0, float(times[-1])), [phi0, phi_dot0, 0.0, 0.0]
-    return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-8).y[2]
-
-
 def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: str, phi0: float) -> np.ndarray:
     """Return phi [rad] at `times` [s] of the motion from rest that semi-implicit Euler follows, up to h^2.
 
-    These are the perturbed equations of `euler_error`, not linearized. With "implicit" a_v a has the opposite sign.
+    By backward error analysis a reduced model follows q' = v + h/2 a, v' = a - h/2 (a_q v + a_v a) (E. Hairer,
+    C. Lubich, G. Wanner, Geometric Numerical Integration, chapter IX). With "implicit" a_v a has the opposite sign.
     """
     sign, half = _SIGN[integrator], timestep / 2
 
@@ -62,13 +33,23 @@ def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: s
         return np.array([v + half * a, a - half * (a_q * v + sign * a_v * a)])
 
     span, start = (0.0, float(times[-1])), [phi0, 0.0]
-    return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=1e-8, atol=1e-8).y[0]
+    return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=_TOLERANCE, atol=_TOLERANCE).y[0]
+
+
+def euler_error(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
+    """Return the error of phi over the timestep [rad/s] at `times` [s] of a motion from rest, for small timesteps."""
+    h = _SHORT / _rate(scene)
+    ahead, behind = (euler_motion(scene, times, each, "Euler", phi0) for each in (h, -h))
+    return (ahead - behind) / (2 * h)
+
+
+def _rate(scene: Scene) -> float:
+    return float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
 
 
 def _acceleration(scene: Scene, q: float, v: float) -> tuple[float, float, float]:
     """Return the exact acceleration a [rad/s^2] and its derivatives a_q and a_v by angle and rate."""
-    acceleration, rate = scene.oscillator.acceleration, float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
-    dq, dv = _DIFFERENCE, _DIFFERENCE * rate
+    acceleration, dq, dv = scene.oscillator.acceleration, _DIFFERENCE, _DIFFERENCE * _rate(scene)
     a_q = float(acceleration(q + dq, v) - acceleration(q - dq, v)) / (2 * dq)
     a_v = float(acceleration(q, v + dv) - acceleration(q, v - dv)) / (2 * dv)
     return float(acceleration(q, v)), a_q, a_v
@@ -77,7 +58,7 @@ def _acceleration(scene: Scene, q: float, v: float) -> tuple[float, float, float
 def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator: str) -> float | None:
     """Return the energy that a swing gains in each period over its energy, to first order in the timestep.
 
-    With the perturbation of `euler_error`, dE/dt = -h J d(v a)/dt / 2. Over a period this leaves h/2 times the
+    With the perturbation of `euler_motion`, dE/dt = -h J d(v a)/dt / 2. Over a period this leaves h/2 times the
     integral of J' v^2 dv, that of J' sqrt(w) w' / 2 over the swing with w = v^2: 0 where J is constant. For methods of
     higher order the result is None. The swing is symmetric about the equilibrium, with an `amplitude` [rad].
     """

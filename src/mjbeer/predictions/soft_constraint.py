@@ -1,4 +1,4 @@
-"""The linear theory of MuJoCo's soft constraints: which solref is stable at which timestep.
+"""The linear theory of MuJoCo's soft constraints: what their numbers, solref and solimp, do in a step.
 
 In the solver a constraint is one row or several. A row has a residual r, for instance u - a roll, and a reference
 acceleration -b r' - k r. Because it is soft, only a share s of that is reached:
@@ -18,23 +18,8 @@ s < d, and the row is softer, and stable for longer timesteps, than its solref s
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
-
 MAX_IMPEDANCE = 0.9999
 """Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
-_BOUNDED = 1 + 1e-9
-"""Largest spectral radius that counts as bounded."""
-
-
-def residual_slip(penetration: float, radius: float) -> float:
-    """Return the slip over the distance rolled of a can that sinks by `penetration` [m] into the incline: -delta/2a.
-
-    MuJoCo's contact point lies midway between the two surfaces, at a - delta/2 from the axis, and the can rolls as if
-    that were its radius.
-    """
-    return -penetration / (2 * radius)
 
 
 def reached_share(impedance: float, excess: float) -> float:
@@ -94,45 +79,3 @@ def discrete_refsafe_timeconst(timeconst: float, dampratio: float, impedance: fl
     At that limit k h^2 = 1: one step corrects all of the residual. MuJoCo's manual leaves out the impedance.
     """
     return max(timeconst, timestep / (dampratio * math.sqrt(impedance)))
-
-
-def radius(integrator: str, row: SoftRow, timestep: float, excess: float = 1.0) -> float:
-    """Return the spectral radius of one step of a single row, whose diagonal MuJoCo overestimates by `excess`."""
-    if integrator == "discrete":
-        row = row.at_end_of_step(timestep)
-    share = reached_share(row.impedance, excess)
-    scaled = share * row.stiffness * timestep**2, share * row.damping * timestep
-    return spectral_radius(amplification(integrator, *scaled))
-
-
-def stable_timestep(integrator: str, row: SoftRow, excess: float = 1.0) -> float:
-    """Return the largest timestep [s] with a bounded row; infinite under "discrete", whatever the row.
-
-    Under semi-implicit Euler it is the largest h with 4 > 2 h s b + h^2 s k (Jury's criterion, with h s b < 2).
-    """
-    scale = 1 / max(row.damping, math.sqrt(row.stiffness))
-    limit = first(lambda h: radius(integrator, row, timestep=h, excess=excess) - _BOUNDED, 1e-2 * scale, 1e6 * scale)
-    return math.inf if limit == 1e6 * scale else limit
-
-
-def stable_ratio(integrator: str, dampratio: float = 1.0) -> float:
-    """Return the largest h/timeconst with a bounded row.
-
-    Under semi-implicit Euler it is 2 zeta (sqrt(zeta^2 + 1) - zeta). At zeta = 1 that is 0.828; RK4 has 2.785 there and
-    DOP853 6.39.
-    """
-    return stable_timestep(integrator, spring(1.0, dampratio, 1.0))
-
-
-def stable_slip(integrator: str) -> float:
-    """Return the largest h/timeconst with a bounded friction row, which has a damping and no stiffness.
-
-    It is 1 under semi-implicit Euler, and half of the stability limit on the negative real axis under a Runge-Kutta
-    method, 1.393 for RK4, for an impedance d of 1; for a row that `impratio` makes much harder it is d times as much.
-    """
-    if integrator == "discrete":
-        return math.inf
-    if integrator not in RUNGE_KUTTA:
-        return 1.0
-    coefficients = polynomial(integrator)[::-1]
-    return first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0) / 2

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from mjbeer.model.setting import OWN, ROLLINGS, USUAL
+from mjbeer.model.setting import OWN, ROLLINGS
 from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.curves import CHOSEN
+from mjbeer.studies.benchmark.curves import CHOSEN, USUAL
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import milliseconds, setting
 from mjbeer.studies.cases import CASES, DURATION

@@ -66,7 +66,9 @@ def simulate(
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0)
-    setting = Setting.of(rolling, integrator, timestep, tolerance, friction, softness)
+    setting = Setting.of(
+        integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, softness=softness
+    )
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:

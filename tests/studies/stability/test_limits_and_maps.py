@@ -17,7 +17,7 @@ from mjbeer.predictions.linear_stability import accurate_limit
 from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow
 from mjbeer.studies.stability import limits, maps, plots, short_runs
 from mjbeer.studies.stability.short_runs import Plan, ShortRuns
-from tests.support import figures
+from tests.support import figures, rows
 
 pytestmark = pytest.mark.slow
 
@@ -190,14 +190,14 @@ def test_the_table_of_the_document_is_that_of_theory() -> None:
         return math.inf if method == "discrete" else linear_stability.stable_limit(method)
 
     def directly(method: str) -> float:
-        return soft_constraint.stable_timestep(method, soft_constraint.direct(1.0, 2.0, 0.9))
+        return rows.stable_timestep(method, soft_constraint.direct(1.0, 2.0, 0.9))
 
     wanted = {
         "swing by gravity: ωh below": linear_stability.stable_limit,
         "swing by a joint's spring: ωh below": spring,
-        "equality, ζ = 1: h/τ below": soft_constraint.stable_ratio,
-        "equality, ζ = 0.1: h/τ below": lambda method: soft_constraint.stable_ratio(method, 0.1),
-        "friction of a contact: h/τ below": soft_constraint.stable_slip,
+        "equality, ζ = 1: h/τ below": rows.stable_ratio,
+        "equality, ζ = 0.1: h/τ below": lambda method: rows.stable_ratio(method, 0.1),
+        "friction of a contact: h/τ below": rows.stable_slip,
         "direct `solref`, B = 2√K: h√K below": directly,
         "error of a swing below 1 % for ten periods: ωh below": linear_stability.accurate_limit,
     }

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, USUAL, Setting, supported
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, Setting, Softness, supported
 from mjbeer.studies.cases import INTERVAL
 from mjbeer.theory.scene import Scene
 
@@ -17,6 +17,14 @@ _COARSEST_GAUSS_JACKSON, _RUNGS_GAUSS_JACKSON = 32e-3, 29
 _COARSEST_STIFF = 1e-3
 """Coarsest timestep [s] of DOP853 in a stiff case, in which longer ones explode."""
 _QUICK_RUNGS = 6
+_DEFAULTS = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)
+USUAL = {
+    "equality, slide first": Setting("equality", "Euler", 2e-3, softness=_DEFAULTS),
+    "equality, hinge first": Setting("equality", "Euler", 2e-3, softness=replace(_DEFAULTS, first="hinge")),
+    "contact, defaults": Setting("contact", "Euler", 2e-3, softness=replace(_DEFAULTS, impratio=1, elliptic=False)),
+}
+"""Settings as people usually write them, with MuJoCo's defaults wherever there are any. The order of the two joints in
+a joint equality matters: MuJoCo's default diagonal softens the two by different factors."""
 
 
 @dataclass(frozen=True, order=True)

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import ROLLINGS, USUAL
-from mjbeer.studies.benchmark.curves import CHOSEN, TIMESTEP, TOLERANCE, Curve
+from mjbeer.model.setting import ROLLINGS
+from mjbeer.studies.benchmark.curves import CHOSEN, TIMESTEP, TOLERANCE, USUAL, Curve
 from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE
 from mjbeer.studies.benchmark.points import Point
 

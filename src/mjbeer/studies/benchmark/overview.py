@@ -7,9 +7,9 @@ from typing import Any, Literal
 
 from matplotlib.axes import Axes
 
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, USUAL
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.output.plots import COLOURS, chart
-from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve
+from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, USUAL, Curve
 from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.studies.cases import CASES
 from mjbeer.theory.named import in_degrees, in_words

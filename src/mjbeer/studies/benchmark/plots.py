@@ -7,11 +7,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from mjbeer.model.setting import GAUSS_JACKSON, ROLLINGS, USUAL
+from mjbeer.model.setting import GAUSS_JACKSON, ROLLINGS
 from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.predictions.semi_implicit_euler import euler_error
 from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.curves import CHOSEN, TOLERANCE, Curve
+from mjbeer.studies.benchmark.curves import CHOSEN, TOLERANCE, USUAL, Curve
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.benchmark.tables import setting
 from mjbeer.studies.cases import MEASURED

@@ -2,10 +2,10 @@
 
 import math
 
-from mjbeer.model.setting import DOP853, ROLLINGS, USUAL
+from mjbeer.model.setting import DOP853, ROLLINGS
 from mjbeer.output.terminal import Table
 from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, Curve, aligned
+from mjbeer.studies.benchmark.curves import TIMESTEP, TOLERANCE, USUAL, Curve, aligned
 from mjbeer.studies.benchmark.peers.whole_call import NAME as WHOLE
 from mjbeer.studies.benchmark.points import Benchmark, Point
 from mjbeer.studies.convergence import Convergence, convergence

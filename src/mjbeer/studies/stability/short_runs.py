@@ -13,13 +13,14 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, Integrator, Softness
-from mjbeer.model.state import places, settle
+from mjbeer.model.state import places
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
 from mjbeer.predictions.soft_constraint import SoftRow
 from mjbeer.predictions.soft_rolling import diagonal_excess
 from mjbeer.simulation import dop853
 from mjbeer.simulation.stepping import Stepper
+from mjbeer.studies.stability.small_swings import settle
 from mjbeer.theory.named import frozen
 from mjbeer.theory.scene import Scene
 

@@ -3,13 +3,14 @@
 import math
 from dataclasses import dataclass, replace
 
+import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model import state
 from mjbeer.model.build import build
+from mjbeer.model.engine import quiet
 from mjbeer.model.setting import Integrator, Rolling, Setting
-from mjbeer.model.state import settle
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS
 from mjbeer.simulation.prepare import Prepared
@@ -106,3 +107,27 @@ class Swings:
         reduce = Oscillator.sliding if scene.attachment == "sliding" else Oscillator.frozen
         can = replace(scene.can, radius=scene.can.radius - depth / 2)
         return reduce(can, scene.load, scene.incline, scene.gravity)
+
+
+def settle(model: mujoco.MjModel, at: np.ndarray) -> np.ndarray:
+    """Return a state, shape (nq + nv,), with the lift at which the can has no acceleration away from the incline.
+
+    A model without a lift gets its state back. The contact force is linear in the depth, so that two trials give the
+    wanted depth. From any other depth the can would fall or rise to it, unlike in the exact motion.
+    """
+    if "lift" not in (joints := state.places(model)):
+        return at
+    index = joints["lift"]
+    data, balanced = mujoco.MjData(model), at.copy()
+
+    def acceleration(lift: float) -> float:
+        data.qpos[:], data.qvel[:] = at[: model.nq], at[model.nq :]
+        data.qpos[index], data.qacc_warmstart[:] = lift, 0.0
+        with quiet():
+            mujoco.mj_forward(model, data)
+        return float(data.qacc[index])
+
+    trials = -1e-7, -2e-7
+    first, second = (acceleration(lift) for lift in trials)
+    balanced[index] = trials[0] - first * (trials[1] - trials[0]) / (second - first)
+    return balanced

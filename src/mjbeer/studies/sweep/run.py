@@ -91,7 +91,7 @@ def sweep(
     plan, fixed = arrange({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
     start = {name: require.number(name, fixed.pop(name)) for name in ("phi0", "phi_dot0") if name in fixed}
     require.radians(float(np.abs(plan.axes.get("phi0", start.get("phi0", 0.0))).max()))
-    setting = Setting.of(rolling, integrator, timestep, tolerance, friction)
+    setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
     asked, functions = _asked(quantity)
     end = _end(require.positive("duration", duration, "s"), setting)
     if functions and end / setting.timestep > MOST_SAMPLES:
