@@ -1,7 +1,6 @@
 """The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics."""
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import mujoco
@@ -81,51 +80,34 @@ class Integrator:
         state, samples = start.copy(), np.empty((len(times), self._size))
         slopes = np.zeros((dop853_kernel.ROWS, self._size))
         scale = np.ones(self._size) if scale is None else scale
-        rows = dop853_kernel.KEPT if watch else 0
-        kept = np.empty(rows), np.empty((rows, self._size)), np.empty((rows, self._size))
-        place = (0.0, timestep or 0.0, 0, 0, 1.0)
-        fixed = timestep is not None
-
-        def advance() -> tuple[int, float, int, int]:
-            nonlocal place
-            status, place, evaluations, count = dop853_kernel.advance(
-                *self.dynamics, state, slopes, times, samples, place, fixed, tolerance, scale, kept
-            )
-            return status, place[0], evaluations, count
-
-        self.evaluations = drive(DOP853, dop853_kernel.advance, advance, kept, limit, watch)
+        rows, place = dop853_kernel.KEPT if watch else 0, (0.0, timestep or 0.0, 0, 0, 1.0)
+        kept = np.empty(rows), np.empty((rows, self._size))
+        fixed = *self.dynamics, state, slopes, times, samples, timestep is not None, tolerance, scale, kept
+        self.evaluations = drive(DOP853, dop853_kernel.advance, fixed, place, limit, watch)
         return samples
 
 
-def drive(
-    name: str,
-    kernel: Any,
-    advance: Callable[[], tuple[int, float, int, int]],
-    kept: tuple[np.ndarray, ...],
-    limit: float,
-    watch: Watcher | None,
-) -> int:
-    """Call `advance` until a run of a method is done, and return the number of its evaluations.
+def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, watch: Watcher | None) -> int:
+    """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
 
-    It takes a block of steps with a compiled `kernel`, and returns the status, the time [s], and the numbers of
-    evaluations and of `kept` rows, which are then shown to `watch`.
+    It takes `fixed` arguments, the last of which has room for what is shown to `watch`, and a `place`, which begins
+    with the time [s]. It returns the status, the new place, and the numbers of evaluations and of kept rows.
 
     Raises:
       DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
     """
-    status, time, total = BLOCK_END, 0.0, 0
+    status, total = BLOCK_END, 0
     with stepping(kernel):
         while status == BLOCK_END:
             if total > limit:
-                raise DivergenceError(f"the {name} run was given up at t = {time:.6g} s after {total} evaluations")
-            status, time, evaluations, count = advance()
+                raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
+            status, place, evaluations, count = kernel(*fixed, place)
             total += evaluations
             if watch and count:
-                slopes = kept[2][:count] if len(kept) > 2 else None
-                watch(kept[0][:count], kept[1][:count], slopes)
+                watch(*(rows[:count] for rows in fixed[-1]))
     if status != DONE:
         cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
-        raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: {cause}")
+        raise DivergenceError(f"the {name} run diverged at t = {place[0]:.6g} s: {cause}")
     return total
 
 

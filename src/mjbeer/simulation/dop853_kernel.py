@@ -95,7 +95,7 @@ def _combine(weights, count, slopes, out):
 
 
 @njit(cache=True, error_model="numpy", nogil=True)
-def advance(pointers, views, state, slopes, times, samples, place, fixed, tolerance, scale, kept):
+def advance(pointers, views, state, slopes, times, samples, fixed, tolerance, scale, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
     `pointers` are addresses of the functions that compute an acceleration, of the model and of its data; `views` are
@@ -105,12 +105,12 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
 
     `place` is the time, the step, the index of the next sample, the number of steps and the error of the last step.
     Unless the step is `fixed`, its error is kept below `tolerance` (`scale` + |state|) in each component.
-    `kept` takes times, states and slopes at the start of the run and at the ends of this block's steps: it has room
-    for `KEPT` of them, or for none.
+    `kept` takes times and states at the start of the run and at the ends of this block's steps: it has room for `KEPT`
+    of them, or for none.
     """
     _for_size()
     time, step, sample, steps, before = place
-    kept_times = kept[0]
+    kept_times, kept_states = kept
     stages = _A.shape[0]  # for a constant, numba would compile `_combine` once more
     row = 0
     size = state.size
@@ -124,7 +124,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
             evaluations += 1
         if kept_times.size > 0:
-            _keep(kept, row, time, state, slopes)
+            kept_times[row], kept_states[row] = time, state
             row += 1
     status = BLOCK_END
     for _ in range(_BLOCK):
@@ -182,7 +182,7 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             state[i] = new[i]
             slopes[0, i] = slopes[_STAGES, i]
         if kept_times.size > 0:
-            _keep(kept, row, time, state, slopes)
+            kept_times[row], kept_states[row] = time, state
             row += 1
         if not fixed:
             growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
@@ -191,17 +191,6 @@ def advance(pointers, views, state, slopes, times, samples, place, fixed, tolera
             if time < times[-1]:  # a motion at rest would take steps without bound
                 step = min(step, times[-1] - time)
     return status, (time, step, sample, steps, before), evaluations, row
-
-
-@njit(cache=True, error_model="numpy")
-def _keep(kept, row, time, state, slopes):
-    """Keep the time, the state and the slope at the end of a step."""
-    _for_size()
-    kept_times, kept_states, kept_slopes = kept
-    kept_times[row] = time
-    for i in range(state.size):
-        kept_states[row, i] = state[i]
-        kept_slopes[row, i] = slopes[0, i]
 
 
 @njit(cache=True, error_model="numpy")

@@ -81,20 +81,12 @@ class GaussJackson:
             raise DivergenceError(f"GaussJackson could not start: its sums are not finite at t = {first[-1]:.6g} s")
         if watch:
             reached = 1 + int(np.searchsorted(first, times[-1]))  # what comes after it is not the run's
-            watch(first[:reached], states[:reached], None)
-        rows = gauss_jackson_kernel.BLOCK if watch else 0
+            watch(first[:reached], states[:reached])
+        rows, place = gauss_jackson_kernel.BLOCK if watch else 0, (first[-1], COUNT - 1, timestep, begun)
         kept = np.empty(rows), np.empty((rows, 2 * size))
-        place = (timestep, COUNT - 1, begun)
-
-        def advance() -> tuple[int, float, int, int]:
-            nonlocal place
-            status, place, taken, count = gauss_jackson_kernel.advance(
-                *dynamics, sums, history, times, samples, place, kept
-            )
-            return status, place[0] * place[1], 2 * taken, count
-
-        begin = self._starter.evaluations + COUNT
-        self.evaluations = begin + drive(GAUSS_JACKSON, gauss_jackson_kernel.advance, advance, kept, math.inf, watch)
+        fixed = *dynamics, sums, history, times, samples, kept
+        taken = drive(GAUSS_JACKSON, gauss_jackson_kernel.advance, fixed, place, math.inf, watch)
+        self.evaluations = self._starter.evaluations + COUNT + taken
         return samples
 
 

@@ -137,15 +137,16 @@ def _add(sums, row, i, term):
 
 
 @njit(cache=True, nogil=True)
-def advance(pointers, views, sums, history, times, samples, place, kept):
-    """Take up to a block of steps, and return the status, the new place and the numbers of steps taken and rows kept.
+def advance(pointers, views, sums, history, times, samples, kept, place):
+    """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
     `sums` and `history` are as `begin` or the block before left them. The rows of `samples` whose `times` [s] the steps
-    pass are filled in. `place` is the timestep [s], the number of the last step and the index of the next sample.
+    pass are filled in. `place` is the time [s] and the number of the last step, the timestep [s] and the index of the
+    next sample.
     `kept` takes times and states at the steps that are read off in this block, from that after the first `COUNT` on:
     it has room for `BLOCK` of them, or for none.
     """
-    step, steps, sample = place
+    _, steps, step, sample = place
     kept_times, kept_states = kept
     size = sums.shape[1]
     work, derivative = np.empty(2 * size), np.empty(2 * size)
@@ -190,7 +191,7 @@ def advance(pointers, views, sums, history, times, samples, place, kept):
     for i in range(size):
         for k in range(COUNT):
             history[i, k] = history[i, taken + k]
-    return status, (step, steps, sample), taken, row
+    return status, (steps * step, steps, step, sample), 2 * taken, row
 
 
 @njit(cache=True)

@@ -99,7 +99,8 @@ class Prepared:
         if isinstance(self._method, Solver):
             assert self.setting.tolerance is not None
             return self._method.run(start, times, self.setting.tolerance, math.inf if friction is None else friction)
-        recorder = None if friction is None else Recorder(self.model, self.scene, friction)
+        within = isinstance(self._method, Integrator)
+        recorder = None if friction is None else Recorder(self.model, self.scene, friction, within)
         if isinstance(self._method, Integrator | GaussJackson):
             states = self._method.run(start, times, self._step, watch=recorder)
         else:
