@@ -10,9 +10,8 @@ from mjbeer import exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
-from mjbeer.simulation import gauss_jackson_kernel, tolerance
-from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.gauss_jackson_kernel import COUNT, weights
+from mjbeer.simulation import tolerance
+from mjbeer.simulation.gauss_jackson import BLOCK, COUNT, LAG, GaussJackson, weights
 from mjbeer.simulation.stepping import Recorder
 from mjbeer.studies.convergence import observed_order
 from mjbeer.theory.scene import Scene
@@ -93,7 +92,7 @@ def test_samples_and_watchers_change_no_bit() -> None:
     assert all((end == ends[0]).all() for end in ends)
 
 
-@pytest.mark.parametrize("last", [0, 3, 12, 13, 3 * gauss_jackson_kernel.BLOCK - 1])
+@pytest.mark.parametrize("last", [0, 3, 12, 13, 3 * BLOCK - 1])
 def test_every_step_is_seen_once(last: int) -> None:
     """Also if a run is shorter than the steps that start it, or over blocks."""
     model, seen = build(frozen()), list[list[np.ndarray]]()
@@ -107,7 +106,7 @@ def test_every_step_is_seen_once(last: int) -> None:
     assert np.abs(found[:, 0] - exact(frozen(), times, 1.0).phi).max() < 1e-11
     if last > 20:
         # Six steps of DOP853 with samples in them, the accelerations of the start, and two evaluations a step.
-        assert integrator.evaluations == 1 + 6 * 15 + COUNT + 2 * (len(times) - COUNT + gauss_jackson_kernel.LAG)
+        assert integrator.evaluations == 1 + 6 * 15 + COUNT + 2 * (len(times) - COUNT + LAG)
 
 
 def test_rounding_does_not_add_up() -> None:

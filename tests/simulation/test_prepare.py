@@ -27,7 +27,7 @@ TIMES = np.linspace(0, 0.4, 5)
 
 @pytest.fixture(autouse=True)
 def none_idle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(prepare, "_idle", [])
+    monkeypatch.setattr(prepare, "_idle", {})
 
 
 def bits(prepared: Prepared) -> bytes:

@@ -1,7 +1,6 @@
 """A scene with its model and integrator, set up once and run often."""
 
 import math
-import threading
 from collections.abc import Generator
 from contextlib import contextmanager
 
@@ -20,13 +19,9 @@ from mjbeer.theory.scene import Scene
 
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
-whole number. So no rate of rotation has the same phase at the ends of both parts, step by step."""
-
-_MOST_IDLE = 8
-"""Largest number of idle set-ups that are kept for later calls: each has memory for contacts that it hardly touches."""
-_idle: list[tuple[Kind, "Prepared"]] = []
-"""Set-ups that nobody uses, with the kind of each, the oldest first."""
-_taking = threading.Lock()
+whole number, so that no rate of rotation has the same phase at the ends of both parts."""
+_idle: dict[Kind, "Prepared"] = {}
+"""Set-ups that nobody uses, one of each kind."""
 
 
 class Prepared:
@@ -47,18 +42,18 @@ class Prepared:
 
     def _begin(self, scene: Scene, setting: Setting, uneven: bool) -> None:
         """Set up an integrator for the model, which has the scene's numbers."""
-        self.scene, self.setting = scene, setting
-        self._step = _step(setting, uneven)
-        """Timestep to which constraints are tuned, and that of mjbeer's own integrators."""
+        self.scene, self.setting, model, data = scene, setting, self.model, self._made.data
+        self._step = setting.timestep * (_GREATER if uneven else 1)
+        self._method: Solver | Integrator | GaussJackson | Stepper
         if setting.tolerance is not None:
-            self._method: Solver | Integrator | GaussJackson | Stepper = Solver(self.model, scene, self._made.data)
+            self._method = Solver(model, scene, data)
         elif setting.integrator == DOP853:
-            self._method = Integrator(self.model, self._made.data)
+            self._method = Integrator(model, data)
         elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(self.model, Integrator(self.model, self._made.data))
+            self._method = GaussJackson(model, Integrator(model, data))
         else:
-            self.model.opt.timestep = setting.timestep
-            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), self._made.data)
+            model.opt.timestep = setting.timestep
+            self._method = Stepper(model, (_GREATER, 1 - _GREATER) if uneven else (), data)
 
     @classmethod
     @contextmanager
@@ -68,10 +63,7 @@ class Prepared:
         All that an idle set-up did before is gone: a motion has the same bits in it as in a new one.
         """
         numbers = _numbers(scene, setting, uneven=False)
-        with _taking:
-            places = [place for place, (kind, _) in enumerate(_idle) if kind == numbers.kind]
-            prepared = _idle.pop(places[0])[1] if places else None
-        if prepared is None:
+        if (prepared := _idle.pop(numbers.kind, None)) is None:  # popped at once, so that no two threads get it
             prepared = cls(scene, setting)
         else:
             prepared._made.write(numbers)
@@ -79,9 +71,7 @@ class Prepared:
         try:
             yield prepared
         finally:
-            with _taking:
-                _idle.append((numbers.kind, prepared))
-                del _idle[:-_MOST_IDLE]
+            _idle[numbers.kind] = prepared
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
@@ -96,25 +86,21 @@ class Prepared:
           DivergenceError: if the motion stops being finite.
           ToleranceError: if the tolerance is not reached.
         """
-        if isinstance(self._method, Solver):
-            assert self.setting.tolerance is not None
-            return self._method.run(start, times, self.setting.tolerance, math.inf if friction is None else friction)
-        within = isinstance(self._method, Integrator)
+        method, setting = self._method, self.setting
+        if isinstance(method, Solver):
+            assert setting.tolerance is not None
+            return method.run(start, times, setting.tolerance, math.inf if friction is None else friction)
+        within = isinstance(method, Integrator)
         recorder = None if friction is None else Recorder(self.model, self.scene, friction, within)
-        if isinstance(self._method, Integrator | GaussJackson):
-            states = self._method.run(start, times, self._step, watch=recorder)
+        if isinstance(method, Stepper):
+            states = method.run(start, np.rint(times / setting.timestep).astype(np.int64), recorder)
         else:
-            steps = np.rint(times / self.setting.timestep).astype(np.int64)
-            states = self._method.run(start, steps, recorder)
+            states = method.run(start, times, self._step, watch=recorder)
         return Solution(states, record=recorder.record if recorder else None)
 
     def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
         """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
         return state.read(self.model, self.scene, states=states, times=times)
-
-
-def _step(setting: Setting, uneven: bool) -> float:
-    return setting.timestep * (_GREATER if uneven else 1)
 
 
 def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
@@ -123,7 +109,7 @@ def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
     A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
     sqrt(a/g)/2, a twelfth of the period of a pendulum of length a, which is too slow to limit the steps.
     """
-    timestep = _step(setting, uneven)
+    timestep = setting.timestep * (_GREATER if uneven else 1)
     if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
         timestep = float(np.sqrt(scene.can.radius / scene.gravity)) / 2
     return Numbers.of(scene, setting, timestep=timestep)

@@ -21,18 +21,15 @@ from mjbeer.theory.trajectory import Trajectory, distance
 
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
-that its distance is 0.38 of the error, or 1/2.6. The error of a first-order method is 0.38^2 + 0.62^2 = 0.53 times as
-large. 3.2 allows for an order that has not settled."""
+that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
 _ASIDE = 4e-14
-"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding. Beside a separatrix
-it shows how much rounding matters. In contact it is `START_DEPTH` instead, as no two models would have the same
-depth."""
+"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding; it shows beside
+a separatrix how much that matters. In contact it is `START_DEPTH`, as no two models would have the same depth."""
 _COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
 _TURN = 2.0
-"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle. J goes with
-the sine of twice the angle, so that it looks the same at every step of pi; forces that are taken at the same phase of
-every turn give a rotation that looks even, and is not. The stages of DOP853 are at too many phases for that."""
+"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
+same at every step of pi, and a rotation looks even. The stages of DOP853 are at too many phases for that."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -89,15 +86,14 @@ class Run(Trajectory):
     def error_estimate(self) -> float | None:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It rests on the largest distance from a second run, along the whole motion. With a tolerance that was made
-        already. Otherwise the first access makes the uneven run, which takes twice as long as this one; the error is
-        infinite if it diverges.
+        It rests on the largest distance from a second run. With a tolerance that was made already. Otherwise the first
+        access makes the uneven run, which takes twice as long as this one; the error is infinite if it diverges.
         """
-        return self.solution.error if self.solution.error is not None else self._second.error
+        return self._second[0] if self.solution.error is None else self.solution.error
 
     @cached_property
-    def _second(self) -> "Second":
-        return Second.of(self)
+    def _second(self) -> tuple[float, float]:
+        return second(self)
 
     @cached_property
     def doubts(self) -> tuple[str, ...]:
@@ -117,11 +113,11 @@ class Run(Trajectory):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
-        if self.solution.error is None and self._second.lost > ERROR:
+        if self.solution.error is None and (lost := self._second[1]) > ERROR:
             return (
                 *self.doubts,
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
-                f"by an error of {self._second.lost:.2g} rad",
+                f"by an error of {lost:.2g} rad",
             )
         if (error := self.error_estimate) is None or error <= ERROR:
             return self.doubts
@@ -133,35 +129,26 @@ class Run(Trajectory):
         return (*self.doubts, found)
 
 
-@dataclass(frozen=True)
-class Second:
-    """What a second run says about a run: the same motion with uneven timesteps, from a start that is a little aside.
+def second(run: Run) -> tuple[float, float]:
+    """Return the error of phi and u/a [rad] that a second run shows, and that which rounding in MuJoCo's sums implies.
 
-    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
-    effect of their softness. The other start includes the effect of rounding.
+    Both are relative beyond 1 rad; the first is infinite if the second run diverges. This has uneven timesteps and
+    begins a little aside. Constraints that are tuned to the timestep are harder in it, so that its distance from the
+    first run includes the effect of their softness; that of the starts includes the effect of rounding.
     """
-
-    error: float
-    """Estimated error of phi and u/a [rad], relative beyond 1 rad; infinite if the second run diverges."""
-    lost: float
-    """The error [rad] that the model has because MuJoCo's sums lose something in rounding."""
-
-    @classmethod
-    def of(cls, run: Run) -> "Second":
-        """Make the second run, which takes twice as long as the first one."""
-        scene, setting, motion = run.scene, run.setting, run.spread
-        prepared = Prepared(scene, setting, uneven=True)
-        exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
-        lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
-        beside = START_DEPTH if setting.rolling == "contact" else _ASIDE
-        aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
-        try:
-            states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), motion.time).states
-        except DivergenceError:
-            return cls(math.inf, lost)
-        start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
-        uneven = prepared.coordinates(states, motion.time)
-        return cls(_OVER_DISTANCE * distance(motion, uneven, scene.can.radius, start), lost)
+    scene, setting, motion = run.scene, run.setting, run.spread
+    prepared = Prepared(scene, setting, uneven=True)
+    exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
+    lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
+    beside = START_DEPTH if setting.rolling == "contact" else _ASIDE
+    aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
+    try:
+        states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), motion.time).states
+    except DivergenceError:
+        return math.inf, lost
+    start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
+    uneven = prepared.coordinates(states, motion.time)
+    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, start), lost
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:

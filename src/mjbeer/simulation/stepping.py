@@ -1,6 +1,7 @@
 """What all steppers share, and the one that steps a model with MuJoCo's own integrators, in compiled code."""
 
 import copy
+import ctypes
 import math
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
@@ -9,17 +10,22 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
 from numba.core import event
+from numba.extending import intrinsic
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
 from mjbeer.model.state import read
-from mjbeer.simulation.dop853_kernel import LARGEST, call
 from mjbeer.theory.equations import accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
+DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
+"""The statuses with which a kernel can end."""
+LARGEST = 1e10
+"""Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
 Watcher = Callable[[np.ndarray, np.ndarray], None]
 """What a stepper shows its steps to: the times [s] at their ends, and the states there, shape (steps, nq + nv)."""
 _BLOCK = 4096
@@ -109,6 +115,43 @@ def stepping(kernel: Any) -> Generator[None]:
     heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
     with quiet(), untimed(), heard:
         yield
+
+
+def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, watch: Watcher | None) -> int:
+    """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
+
+    It takes `fixed` arguments, the last of which has room for what is shown to `watch`, and a `place`, which begins
+    with the time [s]. It returns the status, the new place, and the numbers of evaluations and of kept rows.
+
+    Raises:
+      DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
+    """
+    status, total = BLOCK_END, 0
+    with stepping(kernel):
+        while status == BLOCK_END:
+            if total > limit:
+                raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
+            status, place, evaluations, count = kernel(*fixed, place)
+            total += evaluations
+            if watch and count:
+                watch(*(rows[:count] for rows in fixed[-1]))
+    if status != DONE:
+        cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
+        raise DivergenceError(f"the {name} run diverged at t = {place[0]:.6g} s: {cause}")
+    return total
+
+
+@intrinsic
+def call(typing_context, function, model, data):
+    """Call the C function at the address `function` with two pointers; no address is compiled in, so caching works."""
+
+    def generate(context, builder, signature, arguments):
+        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
+        function_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.intp, types.intp, types.intp), generate
 
 
 class Stepper:

@@ -10,9 +10,8 @@ from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.model.state import read
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.dop853_kernel import LARGEST
 from mjbeer.simulation.gauss_jackson import GaussJackson, plan
-from mjbeer.simulation.stepping import Recorder, Solution
+from mjbeer.simulation.stepping import LARGEST, Recorder, Solution
 from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
