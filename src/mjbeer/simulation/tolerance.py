@@ -56,15 +56,11 @@ _EVALUATIONS = 5_000_000
 _STABLE = 6.4 / 12
 """Longest step of DOP853 over the time in which damping brings can and load together, for each of its evaluations."""
 
-_DRIFT = 0.5
-"""Error of phi over that which the drift of the swing's energy implies at most: the rate of a rotation goes with the
-square root of its energy, and the frequency of a swing depends on its energy less than that."""
-_FAR = 4.0
-"""Beside a barrier the frequency depends on the energy more, and _DRIFT grows: from where the energy is as near to that
-of the barrier as a quarter of the largest kinetic energy (measured for swings of 2.85 rad: 2 instead of 0.5)."""
-_NEAREST = 10.0
-"""How many times _DRIFT is at most. Nearer to the barrier the drift would be that of rounding, and the distance of the
-runs shows how much the motion amplifies."""
+_DRIFT = 2.0
+"""Error of phi over that which the drift of the swing's energy implies at most: 0.5 for rotations and small swings, 2
+for swings of 2.85 rad. Nearer to the barrier the distance of the runs shows how much the motion amplifies."""
+_MORE = 4
+"""Evaluations of a run over those of the run before, from where on it is rounding that makes its steps small."""
 
 _LOOSE = 3e-5
 """Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
@@ -136,12 +132,7 @@ class Solver:
         ends, local = list[np.ndarray](), _FIRST * tolerance / _RATIO
         try:
             last = self._dop853.run(
-                start,
-                times[-1:],
-                tolerance=_PILOT,
-                scale=self._scale,
-                limit=_EVALUATIONS,
-                watch=lambda times, _: ends.append(times.copy()),
+                start, times[-1:], None, _PILOT, self._scale, _EVALUATIONS, lambda times, _: ends.append(times.copy())
             )
             timestep, evaluations = plan(np.concatenate(ends), tolerance, _PILOT)
             if not evaluations < _CHEAPER * self._dop853.evaluations * (_PILOT / local) ** (1 / 8):
@@ -165,31 +156,26 @@ class Solver:
 
     def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return the solution by ever finer runs of DOP853."""
+        limit = _EVALUATIONS
 
         def run(start: np.ndarray, local: float, recorder: Recorder | None = None) -> np.ndarray:
+            nonlocal limit
             try:
-                return self._dop853.run(
-                    start, times, tolerance=local, scale=self._scale, limit=_EVALUATIONS, watch=recorder
-                )
+                states = self._dop853.run(start, times, None, local, self._scale, limit, recorder)
             except DivergenceError as error:
                 raise _not_reached(tolerance, str(error)) from error
+            limit = min(_EVALUATIONS, _MORE * self._dop853.evaluations)
+            return states
 
-        local, safety, stalled = (
-            max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest),
-            self._safety(tolerance),
-            0,
-        )
-        coarse, distances, estimate = run(start + self._nudge, local), list[float](), math.inf
-        ratio = _ROUNDED_RATIO if self._rounded else _RATIO
+        local = max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest)
+        coarse, safety, stalled, estimate = run(start + self._nudge, local), self._safety(tolerance), 0, math.inf
+        distances, ratio = [0.0], _ROUNDED_RATIO if self._rounded else _RATIO
         while True:
             local /= _RATIO
             recorder = Recorder(self._model, self._scene, friction, within=True)
             fine = run(start, local, recorder)
             distances.append(self._distance(coarse, fine, start))
-            error, drift = (
-                safety * max(distances[-1], *[each / ratio for each in distances[-2:-1]], 0.0),
-                self._drift(recorder.record),
-            )
+            drift, error = self._drift(recorder.record), safety * max(distances[-1], distances[-2] / ratio)
             if max(error, drift) <= tolerance:
                 break
             stalled = 0 if max(error, drift) <= _STALLED * estimate else stalled + 1
@@ -201,7 +187,7 @@ class Solver:
                     reason = f"two runs {end} differ by {distances[-1]:.2g} rad"
                 raise _not_reached(tolerance, f"{reason}; the motion is not smooth, or rounding has the upper hand")
             coarse, estimate, safety = fine, max(error, drift), _SAFETY_BY_CHANCE
-        rounding = _ROUNDING_OVER_NUDGE * distances[0] if distances[1:] else 0.0  # the first one includes the nudge
+        rounding = _ROUNDING_OVER_NUDGE * distances[1] if distances[2:] else 0.0  # the first one includes the nudge
         if rounding > tolerance:
             # On either side of the start, because from one side of a barrier's top all motions fall the same way.
             beside = [run(start + side * self._nudge, local) for side in (1, -1)]
@@ -219,9 +205,7 @@ class Solver:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum in a record implies."""
         if self._model.npair:  # a contact takes energy, and gives it back
             return 0.0
-        gap = _FAR * record.to_barrier
-        share = min(max(1.0, record.swing / gap), _NEAREST) if gap > 0 else _NEAREST
-        return max(_DRIFT * share * record.swing_error_at_most, record.axis_error)
+        return max(_DRIFT * record.swing_error_at_most, record.axis_error)
 
     def _safety(self, tolerance: float) -> float:
         """Return the error estimate of a tolerance [rad] over the distance of the first two runs."""
