@@ -54,24 +54,6 @@ def test_a_run_without_an_end_is_a_divergence(rate: float, end: float, setting: 
         Integrator(build(frozen())).run(np.array([1.0, rate]), np.array([0.0, end]), **setting)
 
 
-def test_quaternions_are_refused() -> None:
-    free = mujoco.MjModel.from_xml_string(
-        "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
-    )
-    with pytest.raises(ValueError, match="only slide and hinge joints"):
-        Integrator(free)
-
-
-def test_evaluations_are_counted() -> None:
-    """Twelve a step and the first; three more where samples fall into a step."""
-    model = build(frozen())
-    integrator = Integrator(model)
-    begin = start(model, frozen(), 1.0, 0.0)
-    for samples, expected in ((11, 1 + 10 * 12), (21, 1 + 10 * 15)):
-        integrator.run(begin, np.linspace(0, 1, samples), timestep=0.1)
-        assert integrator.evaluations == expected
-
-
 @pytest.mark.parametrize("scene", [*SCENES.values(), sliding(can=Can.sheet_metal(), damping=1e-3)])
 def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     """The functions called for a smooth model give mj_forward's acceleration, constant forces included."""

@@ -115,16 +115,6 @@ def test_rounding_does_not_add_up() -> None:
     assert errors(sliding(), 1.0, np.array([1e-4]), np.linspace(0, 30, 31))[0] < 4 * rounding
 
 
-def test_a_run_of_simulate_judges_itself() -> None:
-    run = simulate(sliding(), 2.0, 1.0, integrator="GaussJackson", timestep=5e-3)
-    error = np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max()
-    assert run.trusted
-    assert run.integrator == "GaussJackson"
-    assert run.error_estimate is not None
-    assert error <= run.error_estimate < 10 * error
-    assert run.record.swing_error < 1e-5
-
-
 @pytest.mark.parametrize("timestep", [9e-3, 13e-3, 30e-3])
 def test_a_timestep_that_is_too_large_is_seen(timestep: float) -> None:
     """Rolling down turns faster and faster, and the method becomes unstable in the middle of the run."""

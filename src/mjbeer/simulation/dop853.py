@@ -27,7 +27,7 @@ _METHOD = scipy.integrate.DOP853
 _A, _B = _METHOD.A[:12, :12].copy(), _METHOD.B.copy()
 _E3, _E5 = _METHOD.E3.copy(), _METHOD.E5.copy()
 _A_EXTRA, _D = np.asarray(_METHOD.A_EXTRA).copy(), np.asarray(_METHOD.D).copy()
-_STAGES = 12
+_STAGES = len(_B)
 _CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
 _MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
 _LEAST = 1e-4  # smallest error of the step before that counts
@@ -37,39 +37,31 @@ _KEPT = _BLOCK + 1
 
 
 class Integrator:
-    """The DOP853 method around the forward dynamics of one model, set up once and run often.
+    """The DOP853 method around the forward dynamics of a model of slides and hinges, set up once and run often.
 
     Without `data` of the model, in its initial state, it makes its own.
-
-    Raises:
-      ValueError: if the model has joints other than slides and hinges.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
-        if model.nq != model.nv:
-            raise ValueError("only slide and hinge joints can be integrated component by component")
         self._size = model.nq + model.nv
-        self._model, self._data = model, mujoco.MjData(model) if data is None else data
+        self._data = data = mujoco.MjData(model) if data is None else data
         actuated = model.nu > 0 and not model.opt.disableflags & _ACTUATION
         constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
         smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or constant)
         needed = np.ones(model.nq, np.bool_)
         if smooth:
             if actuated:  # their forces at the start, which _SMOOTH takes unchanged
-                mujoco.mj_forward(model, self._data)
-                forces = self._data.qfrc_actuator.copy()
-                mujoco.mj_resetData(model, self._data)
-                self._data.qfrc_actuator[:] = forces
+                mujoco.mj_forward(model, data)
+                forces = data.qfrc_actuator.copy()
+                mujoco.mj_resetData(model, data)
+                data.qfrc_actuator[:] = forces
             if "slide" in (joints := places(model)):
                 # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
                 # from positions in the world, whose rounding would hide a short arm far from the origin.
                 needed[joints["slide"]] = False
         functions = np.array([address(name) for name in (_SMOOTH if smooth else ("mj_forward",))])
-        acceleration = self._data.qacc_smooth if smooth else self._data.qacc
-        self.dynamics = (
-            (functions, model._address, self._data._address),
-            (self._data.qpos, self._data.qvel, acceleration, needed),
-        )
+        views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
+        self._model, self.dynamics = model, ((functions, model._address, data._address), views)
         """Addresses and views by which the kernels evaluate the accelerations."""
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""

@@ -35,8 +35,8 @@ BLOCK = 4096
 LAG = 2
 """Steps after which a state is read off; with more of them only the evaluations grow."""
 _STARTING = 2
-"""Timestep of DOP853, which starts a run, over the timestep: the error is at most a quarter more than at single ones; at
-three it is up to ten times as large (measured down to 1e-12 rad)."""
+"""Timestep of DOP853, which starts a run, over the timestep: the error is at most a quarter more than at one, and at
+three up to ten times as large (measured down to 1e-12 rad)."""
 _SHARE = 0.046
 """Timestep for an error of 1e-6 rad over the shortest regular step of DOP853 at a local tolerance of 1. It is smaller
 than needed in three of four random motions."""
@@ -60,7 +60,6 @@ class GaussJackson:
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
-      ValueError: if the model has joints other than slides and hinges.
     """
 
     def __init__(self, model: mujoco.MjModel, starter: Integrator | None = None) -> None:
@@ -232,7 +231,8 @@ def _advance(pointers, views, sums, history, times, samples, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
     `sums` and `history` are as `_begin` or the block before left them. The rows of `samples` whose `times` [s] are
-    passed are filled in. `place` is time [s] and number of the last step, the timestep [s] and the next sample. `kept` takes times and states at the steps that are read off, from that after the first `COUNT` on: it has room for
+    passed are filled in. `place` is time [s] and number of the last step, the timestep [s] and the next sample.
+    `kept` takes times and states at the steps that are read off, from that after the first `COUNT` on: it has room for
     `BLOCK` of them, or for none.
     """
     _, steps, step, sample = place
