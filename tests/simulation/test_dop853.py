@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from mjbeer import Can, Scene, exact, frozen, pendulum, sliding
+from mjbeer import Can, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
@@ -69,21 +69,6 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     # The actuator's force is added to the others in another order: one rounding of their sum.
     exactly = model.nu == 0
     assert rates[model.nv :] == pytest.approx(data.qacc, rel=0 if exactly else 1e-15, abs=0)
-
-
-@pytest.mark.parametrize("scene", [sliding(), sliding(can=Can.sheet_metal()), pendulum()])
-def test_an_evaluation_does_not_know_how_far_the_can_has_come(scene: Scene) -> None:
-    """At 1e10 m, where MuJoCo itself would lose six digits; only a slide that others are tied to counts."""
-    model = build(scene)
-    integrator, found = Integrator(model), []
-    for place in (0.0, 1e10):
-        begin = start(model, scene, 0.7, 2.0)
-        begin[int(model.joint("slide").qposadr[0])] = place
-        found.append(np.empty_like(begin))
-        slope(*integrator.dynamics, begin, found[-1])
-    assert (found[0] == found[1]).all()
-    if scene.can.mass:
-        assert Integrator(build(scene, "equality")).dynamics[1][-1].all()
 
 
 def test_no_clock_is_read_while_stepping_and_it_is_put_back() -> None:

@@ -14,7 +14,7 @@ from mjbeer import Can, Load, Scene, Trajectory, exact, frozen, hoop, liquid, pe
 from mjbeer.cli.arguments import Motion, Sliding
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
-from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.run import Prepared
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
 from tests.support import damped
@@ -196,14 +196,6 @@ def test_rolls_until_is_where_theory_says() -> None:
     # Both interpolate linearly between samples, here 1 ms apart: (1 ms)^2 times N's second derivative.
     assert run.rolls_until() == pytest.approx(truth.rolls_until(), abs=1e-4)
     assert run.rolls_until(friction=0.3) < run.rolls_until()
-
-
-def test_measured_frequency_is_that_of_the_exact_period() -> None:
-    scene = frozen(can=METAL)
-    amplitude = 0.4
-    run = simulate(scene, 4, scene.equilibrium() + amplitude, tolerance=1e-12)
-    # Turning points are interpolated to fourth order in the 1 ms between samples: (omega h)^4 = 2e-8 of h.
-    assert run.frequency() * scene.period(amplitude) == pytest.approx(2 * math.pi, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from mjbeer.model.setting import Integrator, Rolling, Setting
 from mjbeer.model.state import settle
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS
-from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.run import Prepared
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import exact
 from mjbeer.theory.oscillator import Oscillator
