@@ -27,8 +27,8 @@ from mjbeer.theory.trajectory import Trajectory, distance
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number, so that no rate of rotation has the same phase at the ends of both parts."""
-_idle: dict[Kind, "Prepared"] = {}
-"""Set-ups that nobody uses, one of each kind."""
+_idle: dict[Kind, Stepped] = {}
+"""Models that nobody uses, one of each kind."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
@@ -46,50 +46,44 @@ class Prepared:
     """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
 
     If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
-    integrators. The two runs of a motion, even and uneven, then have no timestep in common by which both could be wrong
-    alike.
+    integrators, so that an even and an uneven run have no timestep by which both could be wrong alike. The model may be
+    `made` already, with the scene's numbers.
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
     """
 
-    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
-        self._made = Stepped(_numbers(scene, setting, uneven))
-        self.model = self._made.model
-        self._begin(scene, setting, uneven)
-
-    def _begin(self, scene: Scene, setting: Setting, uneven: bool) -> None:
-        """Set up an integrator for the model, which has the scene's numbers."""
-        self.scene, self.setting, model, data = scene, setting, self.model, self._made.data
+    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False, made: Stepped | None = None) -> None:
+        made = made or Stepped(_numbers(scene, setting, uneven))
+        self.scene, self.setting, self.model, data = scene, setting, made.model, made.data
         self._step = setting.timestep * (_GREATER if uneven else 1)
         self._method: Solver | Integrator | GaussJackson | Stepper
         if setting.tolerance is not None:
-            self._method = Solver(model, scene, data)
+            self._method = Solver(self.model, scene, data)
         elif setting.integrator == DOP853:
-            self._method = Integrator(model, data)
+            self._method = Integrator(self.model, data)
         elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(model, Integrator(model, data))
+            self._method = GaussJackson(self.model, Integrator(self.model, data))
         else:
-            model.opt.timestep = setting.timestep
-            self._method = Stepper(model, (_GREATER, 1 - _GREATER) if uneven else (), data)
+            self.model.opt.timestep = setting.timestep
+            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), data)
 
     @classmethod
     @contextmanager
     def borrowed(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
         """Yield a set-up for the block, after which another call may write its scene into the same model.
 
-        All that an idle set-up did before is gone: a motion has the same bits in it as in a new one.
+        All that was done in it before is gone: a motion has the same bits as in a new one.
         """
         numbers = _numbers(scene, setting, uneven=False)
-        if (prepared := _idle.pop(numbers.kind, None)) is None:  # popped at once, so that no two threads get it
-            prepared = cls(scene, setting)
+        if (made := _idle.pop(numbers.kind, None)) is None:  # popped at once, so that no two threads get it
+            made = Stepped(numbers)
         else:
-            prepared._made.write(numbers)
-            prepared._begin(scene, setting, uneven=False)
+            made.write(numbers)
         try:
-            yield prepared
+            yield cls(scene, setting, made=made)
         finally:
-            _idle[numbers.kind] = prepared
+            _idle[numbers.kind] = made
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
