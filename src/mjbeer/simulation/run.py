@@ -178,7 +178,7 @@ class Run(Trajectory):
         return solution.record.fails_at
 
     @cached_property
-    def error_estimate(self) -> float | None:
+    def error_estimate(self) -> float:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
         It rests on the largest distance from a second run. With a tolerance that was made already. Otherwise the first
@@ -214,7 +214,7 @@ class Run(Trajectory):
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
                 f"by an error of {lost:.2g} rad",
             )
-        if (error := self.error_estimate) is None or error <= ERROR:
+        if (error := self.error_estimate) <= ERROR:
             return self.doubts
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
