@@ -43,8 +43,8 @@ of 2,000 runs was 7.5 times as far from the exact motion as from the other run."
 _RATIO = 8.0
 """Local tolerance of one run over that of the next. At order 8 the next one takes 1.3 times the evaluations."""
 _ROUNDED_RATIO = 2.0
-"""Distance of two runs over that of the next two that is counted on where both may be rounding: of 1,613 light wheels
-none was then off by its tolerance, the worst by 0.94 of it; with `_RATIO` five were, by up to 2.3."""
+"""The same for distances that are counted on where both may be rounding: replays of the runs of light wheels, at 1,613
+tolerances, then kept to all of them, the worst to 0.94 of it; with `_RATIO` five were missed, by up to 2.3."""
 _SMALLEST = 1e-16
 """Local tolerance below which the error of a step is rounding."""
 _STALLED = 0.75
