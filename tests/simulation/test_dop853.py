@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from mjbeer import Can, Scene, exact, frozen, pendulum, sliding
+from mjbeer import Can, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
-from mjbeer.simulation import dop853_kernel
-from mjbeer.simulation.dop853 import Integrator, integrate
+from mjbeer.simulation.dop853 import Integrator, slope
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
@@ -25,7 +24,7 @@ def test_fixed_step_is_scipy_s_step() -> None:
     reference = DOP853(slope, 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
     model = build(scene)
-    ours = integrate(model, start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), timestep=step)
+    ours = Integrator(model).run(start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
     # Twelve slopes of size 50 and 5 times a step of 0.02, each with the rounding of its forward dynamics.
     assert ours[2] == pytest.approx(reference.y[1::2], rel=1e-13)
     assert ours[1] == pytest.approx(reference.dense_output()(step / 3)[1::2], rel=1e-13)
@@ -38,7 +37,7 @@ def test_continuous_output_is_of_seventh_order() -> None:
     begin, steps, errors = start(model, scene, 0.3, 0.0), 0.16 / 2.0 ** np.arange(4), []
     for step in steps:
         times = step * (np.arange(int(2 / step)) + 0.1)
-        found = read(model, scene, integrate(model, begin, times, timestep=float(step)), times).phi
+        found = read(model, scene, Integrator(model).run(begin, times, float(step)), times).phi
         errors.append(np.abs(found - exact(scene, times, 0.3).phi).max())
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(7.5, abs=0.8)
 
@@ -55,24 +54,6 @@ def test_a_run_without_an_end_is_a_divergence(rate: float, end: float, setting: 
         Integrator(build(frozen())).run(np.array([1.0, rate]), np.array([0.0, end]), **setting)
 
 
-def test_quaternions_are_refused() -> None:
-    free = mujoco.MjModel.from_xml_string(
-        "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
-    )
-    with pytest.raises(ValueError, match="only slide and hinge joints"):
-        Integrator(free)
-
-
-def test_evaluations_are_counted() -> None:
-    """Twelve a step and the first; three more where samples fall into a step."""
-    model = build(frozen())
-    integrator = Integrator(model)
-    begin = start(model, frozen(), 1.0, 0.0)
-    for samples, expected in ((11, 1 + 10 * 12), (21, 1 + 10 * 15)):
-        integrator.run(begin, np.linspace(0, 1, samples), timestep=0.1)
-        assert integrator.evaluations == expected
-
-
 @pytest.mark.parametrize("scene", [*SCENES.values(), sliding(can=Can.sheet_metal(), damping=1e-3)])
 def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     """The functions called for a smooth model give mj_forward's acceleration, constant forces included."""
@@ -81,28 +62,13 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     integrator = Integrator(model)
     assert len(integrator.dynamics[0][0]) > 1
     rates = np.empty_like(begin)
-    dop853_kernel.slope(*integrator.dynamics, begin, rates)
+    slope(*integrator.dynamics, begin, rates)
     data = mujoco.MjData(model)
     data.qpos, data.qvel = np.split(begin, 2)
     mujoco.mj_forward(model, data)
     # The actuator's force is added to the others in another order: one rounding of their sum.
     exactly = model.nu == 0
     assert rates[model.nv :] == pytest.approx(data.qacc, rel=0 if exactly else 1e-15, abs=0)
-
-
-@pytest.mark.parametrize("scene", [sliding(), sliding(can=Can.sheet_metal()), pendulum()])
-def test_an_evaluation_does_not_know_how_far_the_can_has_come(scene: Scene) -> None:
-    """At 1e10 m, where MuJoCo itself would lose six digits; only a slide that others are tied to counts."""
-    model = build(scene)
-    integrator, found = Integrator(model), []
-    for place in (0.0, 1e10):
-        begin = start(model, scene, 0.7, 2.0)
-        begin[int(model.joint("slide").qposadr[0])] = place
-        found.append(np.empty_like(begin))
-        dop853_kernel.slope(*integrator.dynamics, begin, found[-1])
-    assert (found[0] == found[1]).all()
-    if scene.can.mass:
-        assert Integrator(build(scene, "equality")).dynamics[1][-1].all()
 
 
 def test_no_clock_is_read_while_stepping_and_it_is_put_back() -> None:

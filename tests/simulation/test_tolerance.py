@@ -29,7 +29,6 @@ NEARBY = 1e-8
 
 
 def assert_kept(run: Run, tolerance: float) -> None:
-    assert run.error_estimate is not None
     assert error(run) <= tolerance
     assert run.error_estimate <= tolerance
 
@@ -55,7 +54,6 @@ def test_true_error_is_below_the_tolerance(
 @pytest.mark.parametrize("scene", [sliding(), frozen()])
 def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> None:
     run = simulate(scene, 2, 1.0, tolerance=tolerance)
-    assert run.error_estimate is not None
     assert phi_error(run, relative=True) <= run.error_estimate <= tolerance
     assert run.integrator == ("GaussJackson" if tolerance < 1e-5 else "DOP853")
     assert run.timestep is None
@@ -64,27 +62,28 @@ def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> N
 @pytest.mark.parametrize(
     ("wheel_mass", "phi0", "tolerance", "duration", "met"),
     [
-        (7.19e-7, 0.598, 3.9e-7, 0.41, True),  # 1.95 times as far off as it should have been
-        (2.18e-6, 1.107, 5.7e-9, 0.60, False),  # 11 times
-        (2.3e-7, 0.443, 3.3e-9, 0.68, False),  # 12 times
-        (1e-5, 0.476, 2.1e-7, 0.41, True),
+        (7.19e-7, 0.598, 3.9e-7, 0.41, "111"),  # 1.95 times as far off as it should have been
+        (2.18e-6, 1.107, 5.7e-9, 0.60, "100"),  # 11 times
+        (2.3e-7, 0.443, 3.3e-9, 0.68, "000"),  # 12 times
+        (1e-5, 0.476, 2.1e-7, 0.41, "111"),
     ],
 )
-def test_what_is_brief_is_seen_whatever_is_asked_for(
-    wheel_mass: float, phi0: float, tolerance: float, duration: float, met: bool
+def test_what_is_brief_is_as_right_as_all_else_if_it_is_asked_for(
+    wheel_mass: float, phi0: float, tolerance: float, duration: float, met: str
 ) -> None:
     """A wheel of a millionth of its load leaves next to no inertia at the lowest point, which the load passes within
-    1e-4 s. Runs compared at 64 samples were wrong at others; with one sample the same start is judged alike."""
-    scene, found = pendulum(0.1, wheel_mass=wheel_mass, load_mass=0.2, offset=0.033), []
+    1e-4 s. Its speed there makes much of a moment's error: the same start may be right at the end, and refused where
+    samples fall on such moments. Runs compared at 64 samples were wrong at those."""
+    scene, found = pendulum(0.1, wheel_mass=wheel_mass, load_mass=0.2, offset=0.033), ""
     for times in ([duration], np.linspace(0, duration, 1001), np.linspace(0, duration, 20_001)):
         try:
             run = simulate(scene, duration, phi0, tolerance=tolerance, times=times)
         except ToleranceError:
-            found.append(False)
+            found += "0"
             continue
-        found.append(True)
+        found += "1"
         assert_kept(run, tolerance)
-    assert found == [met] * 3
+    assert found == met
 
 
 def test_what_cannot_be_met_is_refused_and_says_how_far_it_got(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -173,7 +172,6 @@ def test_damped_motions_keep_to_the_tolerance(
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
     truth = damped.motion(scene, times, phi0, swing * unit)
     assert distance(run, truth, scene.can.radius, (phi0, scene.start(phi0, 0.0)[0])) <= tolerance
-    assert run.error_estimate is not None
     assert run.error_estimate <= tolerance
     assert run.integrator == "DOP853"
 
@@ -218,7 +216,6 @@ def test_a_second_run_estimates_the_error_of_implicit_methods(integrator: str, r
     scene = sliding(can=METAL, damping=1e-3)
     run = simulate(scene, 1, 1.0, rolling=rolling, integrator=integrator, times=np.linspace(0, 1, 11))
     found = distance(run, damped.motion(scene, run.time, 1.0), scene.can.radius)
-    assert run.error_estimate is not None
     assert found < run.error_estimate < 5 * found
 
 

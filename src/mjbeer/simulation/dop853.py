@@ -1,61 +1,67 @@
-"""The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics."""
+"""The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics, in compiled code.
+
+The twelve stages, the error estimate and the seventh-order continuous output are those of E. Hairer, S. P. Norsett and
+G. Wanner, Solving Ordinary Differential Equations I, section II.10 (coefficients from scipy.integrate.DOP853).
+"""
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import mujoco
 import numpy as np
+import scipy.integrate
+from numba import njit
 
-from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address
 from mjbeer.model.setting import DOP853
 from mjbeer.model.state import places
-from mjbeer.simulation import dop853_kernel
-from mjbeer.simulation.dop853_kernel import BLOCK_END, DONE, NOT_FINITE
-from mjbeer.simulation.stepping import Watcher, stepping
+from mjbeer.simulation.stepping import BLOCK_END, DONE, LARGEST, NOT_FINITE, TOO_SMALL, Watcher, call, drive
 
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
 """What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
 the same numbers to the last bit, in three quarters of the time."""
+_ROWS = 16
+"""Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""
+_METHOD = scipy.integrate.DOP853
+_A, _B = _METHOD.A[:12, :12].copy(), _METHOD.B.copy()
+_E3, _E5 = _METHOD.E3.copy(), _METHOD.E5.copy()
+_A_EXTRA, _D = np.asarray(_METHOD.A_EXTRA).copy(), np.asarray(_METHOD.D).copy()
+_STAGES = len(_B)
+_CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
+_MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
+_LEAST = 1e-4  # smallest error of the step before that counts
+_BLOCK = 20_000  # steps between two returns to Python, so that a long run can be interrupted
+_KEPT = _BLOCK + 1
+"""Largest number of steps of a block that are kept, with the start."""
 
 
 class Integrator:
-    """The DOP853 method around the forward dynamics of one model, set up once and run often.
+    """The DOP853 method around the forward dynamics of a model of slides and hinges, set up once and run often.
 
     Without `data` of the model, in its initial state, it makes its own.
-
-    Raises:
-      ValueError: if the model has joints other than slides and hinges.
     """
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
-        if model.nq != model.nv:
-            raise ValueError("only slide and hinge joints can be integrated component by component")
         self._size = model.nq + model.nv
-        self._model, self._data = model, mujoco.MjData(model) if data is None else data
+        self._data = data = mujoco.MjData(model) if data is None else data
         actuated = model.nu > 0 and not model.opt.disableflags & _ACTUATION
         constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
         smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or constant)
         needed = np.ones(model.nq, np.bool_)
         if smooth:
             if actuated:  # their forces at the start, which _SMOOTH takes unchanged
-                mujoco.mj_forward(model, self._data)
-                forces = self._data.qfrc_actuator.copy()
-                mujoco.mj_resetData(model, self._data)
-                self._data.qfrc_actuator[:] = forces
+                mujoco.mj_forward(model, data)
+                forces = data.qfrc_actuator.copy()
+                mujoco.mj_resetData(model, data)
+                data.qfrc_actuator[:] = forces
             if "slide" in (joints := places(model)):
                 # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
                 # from positions in the world, whose rounding would hide a short arm far from the origin.
                 needed[joints["slide"]] = False
         functions = np.array([address(name) for name in (_SMOOTH if smooth else ("mj_forward",))])
-        acceleration = self._data.qacc_smooth if smooth else self._data.qacc
-        self.dynamics = (
-            (functions, model._address, self._data._address),
-            (self._data.qpos, self._data.qvel, acceleration, needed),
-        )
+        views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
+        self._model, self.dynamics = model, ((functions, model._address, data._address), views)
         """Addresses and views by which the kernels evaluate the accelerations."""
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
@@ -79,56 +85,199 @@ class Integrator:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
         """
         state, samples = start.copy(), np.empty((len(times), self._size))
-        slopes = np.zeros((dop853_kernel.ROWS, self._size))
+        slopes = np.zeros((_ROWS, self._size))
         scale = np.ones(self._size) if scale is None else scale
-        rows = dop853_kernel.KEPT if watch else 0
-        kept = np.empty(rows), np.empty((rows, self._size)), np.empty((rows, self._size))
-        place = (0.0, timestep or 0.0, 0, 0, 1.0)
-        fixed = timestep is not None
-
-        def advance() -> tuple[int, float, int, int]:
-            nonlocal place
-            status, place, evaluations, count = dop853_kernel.advance(
-                *self.dynamics, state, slopes, times, samples, place, fixed, tolerance, scale, kept
-            )
-            return status, place[0], evaluations, count
-
-        self.evaluations = drive(DOP853, dop853_kernel.advance, advance, kept, limit, watch)
+        rows, place = _KEPT if watch else 0, (0.0, timestep or 0.0, 0, 0, 1.0)
+        kept = np.empty(rows), np.empty((rows, self._size))
+        fixed = *self.dynamics, state, slopes, times, samples, timestep is not None, tolerance, scale, kept
+        self.evaluations = drive(DOP853, _advance, fixed, place, limit, watch)
         return samples
 
 
-def drive(
-    name: str,
-    kernel: Any,
-    advance: Callable[[], tuple[int, float, int, int]],
-    kept: tuple[np.ndarray, ...],
-    limit: float,
-    watch: Watcher | None,
-) -> int:
-    """Call `advance` until a run of a method is done, and return the number of its evaluations.
+@njit(cache=True, error_model="numpy")
+def slope(pointers, views, state, out):
+    """Write the time derivative of a state to `out`."""
+    functions, model, data = pointers
+    qpos, qvel, qacc, needed = views
+    n = qpos.size
+    for i in range(n):
+        qpos[i] = state[i] if needed[i] else 0.0
+        qvel[i] = state[n + i]
+    for function in functions:
+        call(function, model, data)
+    for i in range(n):
+        out[i] = qvel[i]
+        out[n + i] = qacc[i]
 
-    It takes a block of steps with a compiled `kernel`, and returns the status, the time [s], and the numbers of
-    evaluations and of `kept` rows, which are then shown to `watch`.
 
-    Raises:
-      DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
+@njit(cache=True, error_model="numpy")
+def _combine(weights, count, slopes, out):
+    """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
+    out[:] = 0.0
+    for j in range(count):
+        weight = weights[j]
+        if weight != 0.0:
+            for i in range(out.size):
+                out[i] += weight * slopes[j, i]
+
+
+@njit(cache=True, error_model="numpy", nogil=True)
+def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, scale, kept, place):
+    """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
+
+    `pointers` are addresses of the functions that compute an acceleration, of the model and of its data; `views` are
+    qpos, qvel and acceleration in that data, and the mask of the components of qpos that are needed. `state` is moved
+    on. `slopes`, of shape (_ROWS, states), comes with the slope at `state` in its first row, except in the first block.
+    The rows of `samples` whose `times` [s] the steps pass are filled in.
+
+    `place` is the time, the step, the index of the next sample, the number of steps and the error of the last step.
+    Unless the step is `fixed`, its error is kept below `tolerance` (`scale` + |state|) in each component.
+    `kept` takes times and states at the start of the run and at the ends of this block's steps: it has room for `_KEPT`
+    of them, or for none.
     """
-    status, time, total = BLOCK_END, 0.0, 0
-    with stepping(kernel):
-        while status == BLOCK_END:
-            if total > limit:
-                raise DivergenceError(f"the {name} run was given up at t = {time:.6g} s after {total} evaluations")
-            status, time, evaluations, count = advance()
-            total += evaluations
-            if watch and count:
-                slopes = kept[2][:count] if len(kept) > 2 else None
-                watch(kept[0][:count], kept[1][:count], slopes)
-    if status != DONE:
-        cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
-        raise DivergenceError(f"the {name} run diverged at t = {time:.6g} s: {cause}")
-    return total
+    time, step, sample, steps, before = place
+    kept_times, kept_states = kept
+    stages = _A.shape[0]  # for a constant, numba would compile `_combine` once more
+    size = state.size
+    new, work, total = np.empty(size), np.empty(size), np.empty(size)
+    weights = np.empty((7, size))
+    status, evaluations, row = BLOCK_END, 0, 0
+    if steps == 0:
+        slope(pointers, views, state, slopes[0])
+        evaluations += 1
+        if not fixed:
+            step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
+            evaluations += 1
+        if kept_times.size > 0:
+            kept_times[row], kept_states[row] = time, state
+            row += 1
+    for _ in range(_BLOCK):
+        while sample < times.size and times[sample] <= time:
+            samples[sample] = state
+            sample += 1
+        if sample == times.size:
+            status = DONE
+            break
+        for s in range(1, _STAGES):
+            _combine(_A[s], s, slopes, total)
+            for i in range(size):
+                work[i] = state[i] + step * total[i]
+            slope(pointers, views, work, slopes[s])
+        _combine(_B, stages, slopes, total)
+        finite = True
+        for i in range(size):
+            new[i] = state[i] + step * total[i]
+            finite = finite and abs(new[i]) < LARGEST
+        evaluations += _STAGES - 1
+        if fixed and not finite:
+            status = NOT_FINITE
+            break
+        if not fixed:
+            error = np.inf
+            if finite:
+                error = _error(state, new, slopes, step, tolerance, scale, work, total)
+            if not error < 1.0:
+                step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
+                if not step > 4e-16 * max(time, 1e-300) or step < 1e-200:
+                    status = TOO_SMALL if finite else NOT_FINITE
+                    break
+                continue
+        slope(pointers, views, new, slopes[_STAGES])
+        evaluations += 1
+        steps += 1
+        end = steps * step if fixed else time + step
+        last = end * (1 + 1e-14)
+        prepared = False
+        while sample < times.size and times[sample] <= last:
+            part = (times[sample] - time) / (end - time)
+            if part > 1 - 1e-12:
+                samples[sample] = new
+            else:
+                if not prepared:
+                    _prepare(pointers, views, state, new, slopes, step, work, weights)
+                    evaluations += 3
+                    prepared = True
+                _interpolate(state, weights, part, samples[sample])
+            sample += 1
+        time = end
+        state[:], slopes[0] = new, slopes[_STAGES]
+        if kept_times.size > 0:
+            kept_times[row], kept_states[row] = time, state
+            row += 1
+        if not fixed:
+            growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
+            step *= min(_GROW, max(_SHRINK, growth))
+            before = max(error, _LEAST)
+            if time < times[-1]:  # a motion at rest would take steps without bound
+                step = min(step, times[-1] - time)
+    return status, (time, step, sample, steps, before), evaluations, row
 
 
-def integrate(model: mujoco.MjModel, start: np.ndarray, times: np.ndarray, timestep: float) -> np.ndarray:
-    """Return the states at increasing `times` [s] of one run with a fixed `timestep` [s], as `Integrator.run` does."""
-    return Integrator(model).run(start, times, timestep)
+@njit(cache=True, error_model="numpy")
+def _first_step(pointers, views, state, slopes, tolerance, scale, work):
+    """Return the first step [s], by Hairer's algorithm in section II.4.
+
+    Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
+    """
+    size = state.size
+    d0 = d1 = 0.0
+    for i in range(size):
+        weight = tolerance * (scale[i] + abs(state[i]))
+        d0 += (state[i] / weight) ** 2
+        d1 += (slopes[0, i] / weight) ** 2
+    d0, d1 = math.sqrt(d0 / size), math.sqrt(d1 / size)
+    guess = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1
+    for i in range(size):
+        work[i] = state[i] + guess * slopes[0, i]
+    slope(pointers, views, work, slopes[1])
+    d2 = 0.0
+    for i in range(size):
+        d2 += ((slopes[1, i] - slopes[0, i]) / (tolerance * (scale[i] + abs(state[i])))) ** 2
+    d2 = math.sqrt(d2 / size) / guess
+    if max(d1, d2) <= 1e-15:
+        return max(1e-6, guess * 1e-3)
+    return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
+
+
+@njit(cache=True, error_model="numpy")
+def _error(state, new, slopes, step, tolerance, scale, five, three):
+    """Return the estimated error of a step over the tolerated one."""
+    fifth, third, stages = 0.0, 0.0, _A.shape[0]
+    _combine(_E5, stages, slopes, five)
+    _combine(_E3, stages, slopes, three)
+    for i in range(state.size):
+        weight = tolerance * (scale[i] + max(abs(state[i]), abs(new[i])))
+        fifth += (five[i] / weight) ** 2
+        third += (three[i] / weight) ** 2
+    size = math.sqrt((fifth + 0.01 * third) * state.size)
+    return abs(step) * fifth / size if size > 0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def _prepare(pointers, views, state, new, slopes, step, work, weights):
+    """Write the coefficients of the continuous output over the last step to `weights`."""
+    for row in range(3):
+        _combine(_A_EXTRA[row], _STAGES + 1 + row, slopes, work)
+        for i in range(state.size):
+            work[i] = state[i] + step * work[i]
+        slope(pointers, views, work, slopes[_STAGES + 1 + row])
+    for i in range(state.size):
+        change = new[i] - state[i]
+        weights[0, i] = change
+        weights[1, i] = step * slopes[0, i] - change
+        weights[2, i] = 2 * change - step * (slopes[_STAGES, i] + slopes[0, i])
+    for k in range(4):
+        _combine(_D[k], slopes.shape[0], slopes, weights[3 + k])
+        for i in range(state.size):
+            weights[3 + k, i] *= step
+
+
+@njit(cache=True, error_model="numpy")
+def _interpolate(state, weights, part, out):
+    """Write the state after the fraction `part` of a step from `state` to `out`."""
+    for i in range(state.size):
+        value = 0.0
+        for k in range(6, -1, -1):
+            value += weights[k, i]
+            value *= part if k % 2 == 0 else 1 - part
+        out[i] = state[i] + value

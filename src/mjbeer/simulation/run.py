@@ -1,6 +1,8 @@
-"""A simulated motion with its setting, the record of all its steps, and an estimate of its error by a second run."""
+"""A scene set up to be stepped, a simulated motion with the record of all its steps, and its error by a second run."""
 
 import math
+from collections.abc import Generator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,31 +10,121 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model import check
+from mjbeer.model import check, state
+from mjbeer.model.build import Stepped
 from mjbeer.model.engine import quiet
-from mjbeer.model.setting import DOP853, TUNED, Setting
-from mjbeer.model.state import START_DEPTH
-from mjbeer.simulation.prepare import Prepared
-from mjbeer.simulation.stepping import Solution
+from mjbeer.model.numbers import Kind, Numbers
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, TUNED, Setting
+from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.gauss_jackson import GaussJackson
+from mjbeer.simulation.stepping import Recorder, Solution, Stepper
+from mjbeer.simulation.tolerance import Solver
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, doubts
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
+_GREATER = (math.sqrt(5) - 1) / 2
+"""The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
+whole number, so that no rate of rotation has the same phase at the ends of both parts."""
+_idle: dict[Kind, Stepped] = {}
+"""Models that nobody uses, one of each kind."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
-that its distance is 0.38 of the error, or 1/2.6. The error of a first-order method is 0.38^2 + 0.62^2 = 0.53 times as
-large. 3.2 allows for an order that has not settled."""
+that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
 _ASIDE = 4e-14
-"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding. Beside a separatrix
-it shows how much rounding matters. In contact it is `START_DEPTH` instead, as no two models would have the same
-depth."""
+"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding; it shows beside
+a separatrix how much that matters. In contact it is `state.START_DEPTH`, as no two models would have the same depth."""
 _COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
 _TURN = 2.0
-"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle. J goes with
-the sine of twice the angle, so that it looks the same at every step of pi; forces that are taken at the same phase of
-every turn give a rotation that looks even, and is not. The stages of DOP853 are at too many phases for that."""
+"""Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
+same at every step of pi, and a rotation looks even. The stages of DOP853 are at too many phases for that."""
+
+
+class Prepared:
+    """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
+
+    If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
+    integrators, so that an even and an uneven run have no timestep by which both could be wrong alike. The model may be
+    `made` already, with the scene's numbers.
+
+    Raises:
+      UnsupportedError: if MuJoCo cannot have such a model.
+    """
+
+    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False, made: Stepped | None = None) -> None:
+        made = made or Stepped(_numbers(scene, setting, uneven))
+        self.scene, self.setting, self.model, data = scene, setting, made.model, made.data
+        self._step = setting.timestep * (_GREATER if uneven else 1)
+        self._method: Solver | Integrator | GaussJackson | Stepper
+        if setting.tolerance is not None:
+            self._method = Solver(self.model, scene, data)
+        elif setting.integrator == DOP853:
+            self._method = Integrator(self.model, data)
+        elif setting.integrator == GAUSS_JACKSON:
+            self._method = GaussJackson(self.model, Integrator(self.model, data))
+        else:
+            self.model.opt.timestep = setting.timestep
+            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), data)
+
+    @classmethod
+    @contextmanager
+    def borrowed(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
+        """Yield a set-up for the block, after which another call may write its scene into the same model.
+
+        All that was done in it before is gone: a motion has the same bits as in a new one.
+        """
+        numbers = _numbers(scene, setting, uneven=False)
+        if (made := _idle.pop(numbers.kind, None)) is None:  # popped at once, so that no two threads get it
+            made = Stepped(numbers)
+        else:
+            made.write(numbers)
+        try:
+            yield cls(scene, setting, made=made)
+        finally:
+            _idle[numbers.kind] = made
+
+    def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
+        """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
+        return state.start(self.model, self.scene, phi0=phi0, phi_dot0=phi_dot0)
+
+    def solve(self, start: np.ndarray, times: np.ndarray, friction: float | None = None) -> Solution:
+        """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.
+
+        If a coefficient of `friction` is given, the solution has the record of all steps, too.
+
+        Raises:
+          DivergenceError: if the motion stops being finite.
+          ToleranceError: if the tolerance is not reached.
+        """
+        method, setting = self._method, self.setting
+        if isinstance(method, Solver):
+            assert setting.tolerance is not None
+            return method.run(start, times, setting.tolerance, math.inf if friction is None else friction)
+        within = isinstance(method, Integrator)
+        recorder = None if friction is None else Recorder(self.model, self.scene, friction, within)
+        if isinstance(method, Stepper):
+            states = method.run(start, np.rint(times / setting.timestep).astype(np.int64), recorder)
+        else:
+            states = method.run(start, times, self._step, watch=recorder)
+        return Solution(states, record=recorder.record if recorder else None)
+
+    def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
+        """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
+        return state.read(self.model, self.scene, states=states, times=times)
+
+
+def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
+    """Return what is to be written into the model of a scene.
+
+    A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
+    sqrt(a/g)/2, a twelfth of the period of a pendulum of length a, which is too slow to limit the steps.
+    """
+    timestep = setting.timestep * (_GREATER if uneven else 1)
+    if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
+        timestep = float(np.sqrt(scene.can.radius / scene.gravity)) / 2
+    return Numbers.of(scene, setting, timestep=timestep)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -86,18 +178,17 @@ class Run(Trajectory):
         return solution.record.fails_at
 
     @cached_property
-    def error_estimate(self) -> float | None:
+    def error_estimate(self) -> float:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It rests on the largest distance from a second run, along the whole motion. With a tolerance that was made
-        already. Otherwise the first access makes the uneven run, which takes twice as long as this one; the error is
-        infinite if it diverges.
+        It rests on the largest distance from a second run. With a tolerance that was made already. Otherwise the first
+        access makes the uneven run, which takes twice as long as this one; the error is infinite if it diverges.
         """
-        return self.solution.error if self.solution.error is not None else self._second.error
+        return self._second[0] if self.solution.error is None else self.solution.error
 
     @cached_property
-    def _second(self) -> "Second":
-        return Second.of(self)
+    def _second(self) -> tuple[float, float]:
+        return second(self)
 
     @cached_property
     def doubts(self) -> tuple[str, ...]:
@@ -117,13 +208,13 @@ class Run(Trajectory):
     @cached_property
     def warnings(self) -> tuple[str, ...]:
         """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
-        if self.solution.error is None and self._second.lost > ERROR:
+        if self.solution.error is None and (lost := self._second[1]) > ERROR:
             return (
                 *self.doubts,
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
-                f"by an error of {self._second.lost:.2g} rad",
+                f"by an error of {lost:.2g} rad",
             )
-        if (error := self.error_estimate) is None or error <= ERROR:
+        if (error := self.error_estimate) <= ERROR:
             return self.doubts
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
@@ -133,35 +224,26 @@ class Run(Trajectory):
         return (*self.doubts, found)
 
 
-@dataclass(frozen=True)
-class Second:
-    """What a second run says about a run: the same motion with uneven timesteps, from a start that is a little aside.
+def second(run: Run) -> tuple[float, float]:
+    """Return the error of phi and u/a [rad] that a second run shows, and that which rounding in MuJoCo's sums implies.
 
-    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
-    effect of their softness. The other start includes the effect of rounding.
+    Both are relative beyond 1 rad; the first is infinite if the second run diverges. This has uneven timesteps and
+    begins a little aside. Constraints that are tuned to the timestep are harder in it, so that its distance from the
+    first run includes the effect of their softness; that of the starts includes the effect of rounding.
     """
-
-    error: float
-    """Estimated error of phi and u/a [rad], relative beyond 1 rad; infinite if the second run diverges."""
-    lost: float
-    """The error [rad] that the model has because MuJoCo's sums lose something in rounding."""
-
-    @classmethod
-    def of(cls, run: Run) -> "Second":
-        """Make the second run, which takes twice as long as the first one."""
-        scene, setting, motion = run.scene, run.setting, run.spread
-        prepared = Prepared(scene, setting, uneven=True)
-        exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
-        lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
-        beside = START_DEPTH if setting.rolling == "contact" else _ASIDE
-        aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
-        try:
-            states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), motion.time).states
-        except DivergenceError:
-            return cls(math.inf, lost)
-        start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
-        uneven = prepared.coordinates(states, motion.time)
-        return cls(_OVER_DISTANCE * distance(motion, uneven, scene.can.radius, start), lost)
+    scene, setting, motion = run.scene, run.setting, run.spread
+    prepared = Prepared(scene, setting, uneven=True)
+    exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
+    lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
+    beside = state.START_DEPTH if setting.rolling == "contact" else _ASIDE
+    aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
+    try:
+        states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), motion.time).states
+    except DivergenceError:
+        return math.inf, lost
+    start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
+    uneven = prepared.coordinates(states, motion.time)
+    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, start), lost
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:

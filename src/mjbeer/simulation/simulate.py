@@ -14,9 +14,8 @@ from mjbeer.theory.liquid import about_run
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
-"""Largest distance of a requested time from a multiple of the timestep h, over the time itself: it allows for rounding.
-Rounding is relative: k h and what np.linspace gives are off by 1e-15 or less, and a running sum of a million timesteps,
-which is how MuJoCo's own clock counts, by 2e-11 (measured). So no time but 0 counts as step 0, however short it is."""
+"""Largest distance of a requested time from a multiple of the timestep, over the time: that of a running sum of a
+million timesteps, which is how MuJoCo's own clock counts, is 2e-11 (measured)."""
 _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
 _MOST_STEPS = 1e12

@@ -1,6 +1,7 @@
 """What all steppers share, and the one that steps a model with MuJoCo's own integrators, in compiled code."""
 
 import copy
+import ctypes
 import math
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
@@ -9,19 +10,24 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
 from numba.core import event
+from numba.extending import intrinsic
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
 from mjbeer.model.state import read
-from mjbeer.simulation.dop853_kernel import LARGEST, call
+from mjbeer.theory.equations import accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
-Watcher = Callable[[np.ndarray, np.ndarray, np.ndarray | None], None]
-"""What a stepper shows its steps to: the times [s] at their ends, the states there, shape (steps, nq + nv), and, if the
-steps are so long that much happens within them, the time derivatives of the states."""
+DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
+"""The statuses with which a kernel can end."""
+LARGEST = 1e10
+"""Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
+Watcher = Callable[[np.ndarray, np.ndarray], None]
+"""What a stepper shows its steps to: the times [s] at their ends, and the states there, shape (steps, nq + nv)."""
 _BLOCK = 4096
 """Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
 cache."""
@@ -43,38 +49,27 @@ class Solution:
 
 
 class Recorder:
-    """The record of a run of one model of a scene, a `Watcher`."""
+    """The record of a run of one model of a scene, a `Watcher`.
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf) -> None:
-        self._model, self._scene, self.record = model, scene, Record(scene, friction)
-        self._last: np.ndarray | None = None
-        size = model.nq + model.nv
-        unit = read(model, scene, np.eye(size), np.zeros(size))
-        self._rates = np.stack([unit.phi_dot, unit.u_dot] if scene.dissipates else [unit.phi_dot], axis=1)
-        """The weights of a state's components in phi_dot and, where it matters to the forces, in u_dot."""
+    The steps of DOP853 are so long that forces are looked for `within` them, too.
+    """
 
-    def __call__(self, times: np.ndarray, states: np.ndarray, slopes: np.ndarray | None = None) -> None:
-        """Add the next steps; forces are looked for within those that come with slopes, too."""
+    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, within: bool = False) -> None:
+        self._model, self._scene, self._within, self.record = model, scene, within, Record(scene, friction)
+        self._last = np.empty((7, 0))
+
+    def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
+        """Add the next steps."""
         motion = read(self._model, self._scene, states, times)
-        if slopes is None:
+        if not self._within:
             self.record.add(motion)
             return
         self.record.add_conserved(motion)
-        moved = [(motion.phi, motion.phi_dot), (motion.u, motion.u_dot)][: self._rates.shape[1]]
-        ends = np.stack([
-            times,
-            *(row for pair, gain in zip(moved, (slopes @ self._rates).T, strict=True) for row in (*pair, gain)),
-        ])  # fmt: skip
-        if self._last is not None:
-            ends = np.concatenate([self._last, ends], axis=1)
+        rates = motion.phi_dot, motion.u_dot
+        gains = accelerations(self._scene, motion.phi, *rates)[::-1]
+        ends = np.concatenate([self._last, np.stack([times, motion.phi, motion.u, *rates, *gains])], axis=1)
         self._last = ends[:, -1:]
-        time, phi, phi_dot, phi_ddot, *axis = ends
-        u_dot = axis[1] if axis else 0.0
-        if len(time) > 1:
-            if axis:
-                u_dot = _within(time, *axis)[2]
-            time, phi, phi_dot = _within(time, phi, phi_dot, phi_ddot)
-        self.record.add_forces(time, phi, phi_dot, u_dot)
+        self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
 
 
 # A polynomial of fifth degree over a step, from its change, rates and second derivatives at both ends, at parts of it.
@@ -84,16 +79,19 @@ _POWER, _TERMS = np.arange(1, 6), np.linalg.inv(_ENDS)
 _CHANGES, _RATES = _PART**_POWER @ _TERMS, _POWER * _PART ** (_POWER - 1) @ _TERMS
 
 
-def _within(
-    time: np.ndarray, place: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return times [s], a coordinate and its rate within steps, from its value and derivatives at the ends."""
+def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return times [s], phi, phi_dot and u_dot within steps, from both coordinates and their derivatives at the ends.
+
+    These have shape (2, ends); a single end is returned as it is.
+    """
+    if len(time) == 1:
+        return time, place[0], *rate
     step = np.diff(time)
-    rate, bend = step * np.stack([speed[:-1], speed[1:]]), step**2 * np.stack([acceleration[:-1], acceleration[1:]])
-    ends = np.stack([np.diff(place), rate[0], bend[0], rate[1], bend[1]], axis=1)
-    step = step[:, None]
-    times, within = time[:-1, None] + step * _PART.T, place[:-1, None] + ends @ _CHANGES.T
-    return times.ravel(), within.ravel(), (ends @ _RATES.T / step).ravel()
+    first, bend = step * rate[:, :-1], step**2 * gain[:, :-1]
+    last, bent = step * rate[:, 1:], step**2 * gain[:, 1:]
+    ends, step = np.stack([np.diff(place), first, bend, last, bent], axis=-1), step[:, None]
+    phi, (phi_dot, u_dot) = place[0, :-1, None] + ends[0] @ _CHANGES.T, ends @ _RATES.T / step
+    return tuple(each.ravel() for each in (time[:-1, None] + step * _PART.T, phi, phi_dot, u_dot))
 
 
 class _Compiling(event.Listener):
@@ -117,6 +115,43 @@ def stepping(kernel: Any) -> Generator[None]:
     heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
     with quiet(), untimed(), heard:
         yield
+
+
+def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, watch: Watcher | None) -> int:
+    """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
+
+    It takes `fixed` arguments, the last of which has room for what is shown to `watch`, and a `place`, which begins
+    with the time [s]. It returns the status, the new place, and the numbers of evaluations and of kept rows.
+
+    Raises:
+      DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
+    """
+    status, total = BLOCK_END, 0
+    with stepping(kernel):
+        while status == BLOCK_END:
+            if total > limit:
+                raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
+            status, place, evaluations, count = kernel(*fixed, place)
+            total += evaluations
+            if watch and count:
+                watch(*(rows[:count] for rows in fixed[-1]))
+    if status != DONE:
+        cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
+        raise DivergenceError(f"the {name} run diverged at t = {place[0]:.6g} s: {cause}")
+    return total
+
+
+@intrinsic
+def call(typing_context, function, model, data):
+    """Call the C function at the address `function` with two pointers; no address is compiled in, so caching works."""
+
+    def generate(context, builder, signature, arguments):
+        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
+        function_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.intp, types.intp, types.intp), generate
 
 
 class Stepper:
@@ -144,7 +179,7 @@ class Stepper:
         states = np.empty((len(samples), len(start)))
         states[samples == 0] = start
         if watch:
-            watch(np.zeros(1), start[None], None)
+            watch(np.zeros(1), start[None])
         last = int(samples[-1])
         with stepping(_advance):
             for first in range(0, last, _BLOCK):
@@ -159,7 +194,7 @@ class Stepper:
                 begin, after = np.searchsorted(samples, [first + 1, first + len(block) + 1])
                 states[begin:after] = block[samples[begin:after] - first - 1]
                 if watch:
-                    watch(step * np.arange(first + 1, first + len(block) + 1), block, None)
+                    watch(step * np.arange(first + 1, first + len(block) + 1), block)
         return states
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import quiet
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.stepping import Solution
 from mjbeer.simulation.tolerance import scales
 from mjbeer.studies.benchmark.peers.peer import Motion, Peer

@@ -12,7 +12,7 @@ import scipy.integrate
 
 from mjbeer.model.setting import DOP853, Integrator, Setting
 from mjbeer.predictions.semi_implicit_euler import energy_per_swing
-from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.run import Prepared
 from mjbeer.studies.study import Task
 from mjbeer.theory.can import Can
 from mjbeer.theory.named import sliding

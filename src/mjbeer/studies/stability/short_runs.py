@@ -82,7 +82,7 @@ class ShortRuns:
         samples = np.arange(self._steps(timestep) + 1)
         try:
             if self._plan.integrator == DOP853:
-                states = dop853.integrate(self._model, rest + start, samples * timestep, timestep)
+                states = dop853.Integrator(self._model).run(rest + start, samples * timestep, timestep)
             else:
                 states = Stepper(self._model).run(rest + start, samples)
         except DivergenceError:

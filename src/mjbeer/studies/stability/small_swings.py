@@ -13,7 +13,7 @@ from mjbeer.model.engine import quiet
 from mjbeer.model.setting import Integrator, Rolling, Setting
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS
-from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation.run import Prepared
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import exact
 from mjbeer.theory.oscillator import Oscillator

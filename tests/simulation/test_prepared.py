@@ -6,8 +6,8 @@ import pytest
 from mjbeer import frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.setting import Setting
-from mjbeer.simulation import prepare
-from mjbeer.simulation.prepare import Prepared
+from mjbeer.simulation import run
+from mjbeer.simulation.run import Prepared
 from tests.support.scenes import METAL
 
 SETTINGS = [
@@ -27,7 +27,7 @@ TIMES = np.linspace(0, 0.4, 5)
 
 @pytest.fixture(autouse=True)
 def none_idle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(prepare, "_idle", [])
+    monkeypatch.setattr(run, "_idle", {})
 
 
 def bits(prepared: Prepared) -> bytes:
@@ -39,7 +39,7 @@ def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
     for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
         with Prepared.borrowed(scene, setting) as prepared:
             assert bits(prepared) == bits(Prepared(scene, setting))
-    assert len(prepare._idle) < len(SCENES)
+    assert len(run._idle) < len(SCENES)
 
 
 def test_a_set_up_in_use_is_not_lent() -> None:
@@ -57,9 +57,9 @@ def test_a_set_up_comes_back_from_a_run_that_failed() -> None:
     ):
         failed.solve(np.array([0.0, 0.7, 0.0, 1e9]), np.array([0.0, 100.0]))
     with Prepared.borrowed(SCENES[0], Setting(tolerance=1e-13)) as prepared:
-        assert prepared is failed
+        assert prepared.model is failed.model
         with pytest.raises(ToleranceError):
             prepared.solve(prepared.start(0.7, 2.0), np.array([0.0, 1e5]))
     with Prepared.borrowed(SCENES[1], SETTINGS[0]) as prepared:
-        assert prepared is failed
+        assert prepared.model is failed.model
         assert bits(prepared) == bits(Prepared(SCENES[1], SETTINGS[0]))
