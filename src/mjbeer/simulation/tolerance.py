@@ -56,7 +56,7 @@ _EVALUATIONS = 5_000_000
 _STABLE = 6.4 / 12
 """Longest step of DOP853 over the time in which damping brings can and load together, for each of its evaluations."""
 
-_DRIFT = 1.0
+_DRIFT = 1.5
 """Error of phi over that which the drift of the swing's energy implies at most: 0.5 for rotations and small swings, up
 to 2 for swings of 2.85 rad. There the distance of the runs shows how much the motion amplifies."""
 _MORE = 4
@@ -205,8 +205,7 @@ class Solver:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum in a record implies."""
         if self._model.npair:  # a contact takes energy, and gives it back
             return 0.0
-        share = _SAFETY_BY_CHANCE if self._rounded else _DRIFT  # a passage without inertia may be missed by both runs
-        return max(share * record.swing_error_at_most, record.axis_error)
+        return max(_DRIFT * record.swing_error_at_most, record.axis_error)
 
     def _safety(self, tolerance: float) -> float:
         """Return the error estimate of a tolerance [rad] over the distance of the first two runs."""
