@@ -56,7 +56,7 @@ _EVALUATIONS = 5_000_000
 _STABLE = 6.4 / 12
 """Longest step of DOP853 over the time in which damping brings can and load together, for each of its evaluations."""
 
-_DRIFT = 1.0
+_DRIFT = 1.5
 """Error of phi over that which the drift of the swing's energy implies at most: 0.5 for rotations and small swings, up
 to 2 for swings of 2.85 rad. There the distance of the runs shows how much the motion amplifies."""
 _MORE = 4
