@@ -102,12 +102,6 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     )
 
 
-def energy_to_barrier(oscillator: Oscillator, phi: float, phi_dot: float) -> float:
-    """Return how far the energy of a motion is from that of the next barrier downhill [J]; infinite without one."""
-    start = Start.at(oscillator, phi, phi_dot)
-    return abs(start.level_ahead) if start.crest.well > 0 else math.inf
-
-
 def _effect(start: "Start", doubt: float, distance: Callable[["Start"], float]) -> float:
     """Return the `distance` of motions from starts that rounding may change into this one, 0 if in no `doubt`."""
     if doubt <= _SUSPECT:

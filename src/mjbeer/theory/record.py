@@ -7,7 +7,6 @@ import numpy as np
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, accelerations, part, slip_rate
 from mjbeer.theory.liquid import centrifugal
-from mjbeer.theory.motion import energy_to_barrier
 from mjbeer.theory.scene import Scene
 
 ERROR = 1e-2
@@ -171,13 +170,6 @@ class Record:
     def axis_error(self) -> float:
         """Return the error of u/a [rad], relative beyond 1 rad, that the drift of the momentum implies."""
         return self.axis_drift / max(self.scene.can.radius, self.rolled)
-
-    @property
-    def to_barrier(self) -> float:
-        """Return how far the energy is from that of the next barrier [J]; infinite with damping or drag, or without."""
-        if self.scene.dissipates or self._first is None:
-            return math.inf
-        return energy_to_barrier(self.scene.oscillator, float(self._first.phi[0]), float(self._first.phi_dot[0]))
 
 
 def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
