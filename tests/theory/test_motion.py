@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
@@ -59,6 +59,7 @@ def period(scene: Scene, amplitude: float | Any) -> Any:
 @pytest.mark.slow
 @settings(max_examples=20, deadline=None, derandomize=True)
 @given(scenes(), st.floats(1e-3, 0.99), st.booleans())
+@example(frozen(1e-289), 0.5, False)  # a root that is 144 decades smaller than where it is looked for
 def test_period_of_any_swing(scene: Scene, share: float, uphill: bool) -> None:
     try:
         rest, ends = scene.equilibrium(), scene.separatrix()

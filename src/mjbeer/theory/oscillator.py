@@ -243,4 +243,4 @@ def root(function: Callable[[float], float], lower: float, upper: float) -> floa
 
     if function(upper) <= 0:
         return upper
-    return float(brentq(function, lower, upper, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=500))
+    return float(brentq(function, lower, upper, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=20_000))
