@@ -7,8 +7,8 @@ import pytest
 
 from mjbeer import Can, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.studies.benchmark.peers import with_heyoka
-from mjbeer.studies.stability.reference import lagrangian
-from mjbeer.studies.stability.reference.lagrangian import LongMotionError, reference
+from mjbeer.studies.stability import reference as lagrangian
+from mjbeer.studies.stability.reference import LongMotionError, reference
 from mjbeer.theory.equations import energy
 from mjbeer.theory.load import Load
 from tests.support import lagrange
