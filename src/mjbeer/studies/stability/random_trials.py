@@ -4,7 +4,7 @@ Each of the regions takes one thing or all to its extremes: it chooses scene, st
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeVar
 
@@ -22,8 +22,6 @@ from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendu
 T = TypeVar("T")
 Start = tuple[float, float]
 """phi [rad] and phi_dot [rad/s]."""
-Pace = tuple[float, int]
-"""Timestep [s] and number of steps."""
 _SWINGS, _TURNED = 400.0, 3e3
 """Longest motion, in swings, and in angle [rad], which theory can follow."""
 _DAMPED = 0.05
@@ -62,9 +60,6 @@ class Pick:
 def slow(scene: Scene) -> float:
     """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
     return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
-
-
-# Scenes. What cannot be, or is outside the domain, raises a ParameterError, and another is drawn.
 
 
 def _ordinary(pick: Pick) -> Scene:
@@ -137,14 +132,6 @@ def _anything(pick: Pick) -> Scene:
     return Scene(can, load, math.radians(incline), pick.one(*ATTACHMENTS), weight)
 
 
-def _mostly_ordinary(pick: Pick) -> Scene:
-    return pick.one(_ordinary, _ordinary, _anything)(pick)
-
-
-def _mostly_steady(pick: Pick) -> Scene:
-    return pick.one(_steady, _steady, _ordinary)(pick)
-
-
 def _any_scene(pick: Pick) -> Scene:
     return pick.one(_ordinary, _steady, _anything, _ratios, _fills, _steep, _gravity)(pick)
 
@@ -169,7 +156,12 @@ def _damped(pick: Pick, scene: Scene) -> Scene:
     return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
 
 
-# Starts.
+def _mostly_ordinary(pick: Pick) -> Scene:
+    return pick.one(_ordinary, _ordinary, _anything)(pick)
+
+
+def _mostly_steady(pick: Pick) -> Scene:
+    return pick.one(_steady, _steady, _ordinary)(pick)
 
 
 def _by_hand(pick: Pick, scene: Scene) -> Start:
@@ -213,76 +205,51 @@ def _any_start(pick: Pick, scene: Scene) -> Start:
     return pick.one(_by_hand, _by_hand, _spun, _far, _beside_the_separatrix)(pick, scene)
 
 
-# Paces.
+_PACES: dict[str, Callable[[Pick, Scene, float], tuple[float, float]]] = {
+    # a thousandth to a third of the time of a fall through the radius
+    "usual": lambda pick, scene, _: (slow(scene) * pick.decades(1e-3, 0.3), pick.decades(20, 3000)),
+    # ten to a thousand timesteps a small swing or a turn, which may be very different from that
+    "swinging": lambda pick, scene, fast: (
+        2 * math.pi / max(fast, 1e-3 / slow(scene)) / pick.decades(10, 1000), pick.decades(20, 3000)
+    ),
+    # far too small timesteps, and far too large ones
+    "extreme": lambda pick, scene, spin: (
+        slow(scene) / max(1.0, spin * slow(scene)) * pick.decades(1e-4, 3), pick.decades(10, 1e4)
+    ),
+    # turns by a hundredth of a radian to a hundred radians in a step
+    "turning": lambda pick, scene, spin: (
+        pick.decades(1e-2, 1e2) / max(spin, 1 / slow(scene)), pick.decades(20, 3000)
+    ),
+    # a whole number of turns, or nearly, in a step or a part of one: RK4 evaluates forces at half steps, and the run at
+    # half the timestep at quarters of them, all of which then see the same angle
+    "resonant": lambda pick, scene, spin: (
+        2 * math.pi * (pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3))
+        * (1 + pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))) / max(spin, 1 / slow(scene)),
+        pick.one(pick.decades(2, 30), pick.decades(2, 500)),
+    ),
+    # one step to five, long or short
+    "few": lambda pick, scene, _: (slow(scene) * pick.decades(1e-6, 3), pick.between(1, 6)),
+    # 20 to 200 s in thousands of steps
+    "long": lambda pick, *_: (
+        pick.decades(20, 200) / (steps := pick.decades(2e3, 1.5e4)), steps
+    ),
+}  # fmt: skip
+"""How a timestep [s] and a number of steps are chosen for a scene and the rate of its start [rad/s], by name; for
+"swinging" that of its swing, if that is faster."""
+_EITHER, _ANY = ("usual", "swinging"), tuple(_PACES)
 
 
-def _usual_pace(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return timesteps from a thousandth to a third of the time of a fall through the radius."""
-    timestep = slow(scene) * pick.decades(1e-3, 0.3)
-    return _within(scene, start, timestep, pick.decades(20, 3000))
-
-
-def _swinging(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return ten to a thousand timesteps a small swing, for a part of a swing or for many."""
-    timestep = 2 * math.pi / max(_frequency(scene, start), abs(start[1]), 1e-3 / slow(scene)) / pick.decades(10, 1000)
-    return _within(scene, start, timestep, pick.decades(20, 3000))
-
-
-def _either_pace(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return a pace that suits the size of the can, or one that suits the swing, which may be very different."""
-    return pick.one(_usual_pace, _swinging)(pick, scene, start)
-
-
-def _turning(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return timesteps in which the load turns by a hundredth of a radian to a hundred radians."""
-    timestep = pick.decades(1e-2, 1e2) / max(abs(start[1]), 1 / slow(scene))
-    return _within(scene, start, timestep, pick.decades(20, 3000))
-
-
-def _resonant(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return timesteps in which the load turns by a whole number of turns, or nearly, in a step or a part of one.
-
-    RK4 evaluates forces at half steps, and the run at half the timestep at quarters of them: at a whole number of turns
-    in each all of these see the same angle.
-    """
-    turns = pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3)
-    aside = pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))
-    timestep = 2 * math.pi * turns * (1 + aside) / max(abs(start[1]), 1 / slow(scene))
-    return _within(scene, start, timestep, pick.one(pick.decades(2, 30), pick.decades(2, 500)))
-
-
-def _few(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return a run of one step to five, long or short."""
-    timestep = slow(scene) * pick.decades(1e-6, 3)
-    return _within(scene, start, timestep, pick.between(1, 6))
-
-
-def _long(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return a run of 20 to 200 s, or as much of it as theory can follow, in thousands of steps."""
-    duration, steps = pick.decades(20, 200), pick.decades(2e3, 1.5e4)
-    return _within(scene, start, duration / steps, steps)
-
-
-def _extreme(pick: Pick, scene: Scene, start: Start) -> Pace:
-    """Return a pace from anywhere: far too small steps, and far too large ones."""
-    timestep = slow(scene) / max(1.0, abs(start[1]) * slow(scene)) * pick.decades(1e-4, 3)
-    return _within(scene, start, timestep, pick.decades(10, 1e4))
-
-
-def _any_pace(pick: Pick, scene: Scene, start: Start) -> Pace:
-    return pick.one(_usual_pace, _swinging, _extreme, _turning, _resonant, _few, _long)(pick, scene, start)
-
-
-def _within(scene: Scene, start: Start, timestep: float, steps: float) -> Pace:
-    """Return at most the given timestep and number of steps, so that they take no longer than theory can follow."""
-    form = scene.oscillator
+def _pace(pick: Pick, scene: Scene, start: Start, names: Sequence[str]) -> tuple[float, int]:
+    """Return timestep [s] and number of steps at one of some paces, or less: as much as theory can follow."""
+    name, spin = pick.one(*names) if len(names) > 1 else names[0], abs(start[1])
+    frequency, form = _frequency(scene, start), scene.oscillator
+    timestep, steps = _PACES[name](pick, scene, max(frequency, spin) if name == "swinging" else spin)
     share = _DAMPED if scene.dissipates else 1.0
-    spin = max(abs(start[1]), 1e-300)
     push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
     if scene.dissipates:  # the load may turn with the can
         push = max(push, scene.gravity * abs(math.sin(scene.incline)) / scene.can.radius)
-    longest = min(share * _TURNED / spin, math.sqrt(2 * share * _TURNED / push))
-    if (frequency := _frequency(scene, start)) > 0:
+    longest = min(share * _TURNED / max(spin, 1e-300), math.sqrt(2 * share * _TURNED / push))
+    if frequency > 0:
         longest = min(longest, share * _SWINGS * 2 * math.pi / frequency)
     timestep = min(timestep, longest)
     return timestep, max(1, int(min(steps, longest / timestep)))
@@ -301,9 +268,6 @@ def _frequency(scene: Scene, start: Start) -> float:
     height = 2 * form.depth * math.sin((start[0] - form.bottom) / 2) ** 2
     square = min(1.0, 2 * (kinetic + height) / form.depth)  # of the swing's amplitude
     return math.sqrt(form.depth / (form.base + (form.chord / 4 + form.swing) * square / 2))
-
-
-# Settings, as fields of a trial.
 
 
 def _usual_setting(pick: Pick, scene: Scene) -> dict[str, Any]:
@@ -330,28 +294,20 @@ def _any_setting(pick: Pick, scene: Scene) -> dict[str, Any]:
     return setting | {"rolling": rolling, "tolerance": setting["tolerance"] if rolling != "contact" else None}
 
 
-# Samples, as fields of a trial; they may lie `anywhere` under integrators of mjbeer's own.
+def _samples(pick: Pick, steps: int, anywhere: bool, kinds: Sequence[str]) -> dict[str, Any]:
+    """Return samples of one of some kinds, as fields of a trial: `anywhere`, or at whole numbers of timesteps.
 
-
-def _regular(pick: Pick, steps: int, anywhere: bool) -> dict[str, Any]:
-    """Return samples at every timestep, or at every so many."""
-    return {"every": max(1, -(-steps // pick.one(_MANY, 10 * _MANY)))}
-
-
-def _sparse(pick: Pick, steps: int, anywhere: bool) -> dict[str, Any]:
-    """Return two to six samples."""
+    "regular" ones are at every timestep, or every so many, "sparse" are two to six, and "late" is the last alone, or
+    with the one before.
+    """
+    kind = pick.one(*kinds) if len(kinds) > 1 else kinds[0]
+    if kind == "regular":
+        return {"every": max(1, -(-steps // pick.one(_MANY, 10 * _MANY)))}
+    if kind == "late":
+        return {"moments": tuple(sorted({float(max(0, steps - pick.one(0, 0, 1))), float(steps)}))}
     count = pick.one(2, 3, 4, 5, 6)
     moments = {pick.between(0, steps) for _ in range(count)}
     return {"moments": tuple(sorted(moments if anywhere else {float(round(moment)) for moment in moments}))}
-
-
-def _late(pick: Pick, steps: int, anywhere: bool) -> dict[str, Any]:
-    """Return the last sample alone, or with the one before."""
-    return {"moments": tuple(sorted({float(max(0, steps - pick.one(0, 0, 1))), float(steps)}))}
-
-
-def _any_samples(pick: Pick, steps: int, anywhere: bool) -> dict[str, Any]:
-    return pick.one(_regular, _sparse, _late)(pick, steps, anywhere)
 
 
 class Region(NamedTuple):
@@ -360,9 +316,9 @@ class Region(NamedTuple):
     name: str
     scene: Callable[[Pick], Scene] = _ordinary
     start: Callable[[Pick, Scene], Start] = _by_hand
-    pace: Callable[[Pick, Scene, Start], Pace] = _usual_pace
+    paces: Sequence[str] = ("usual",)
     setting: Callable[[Pick, Scene], dict[str, Any]] = _usual_setting
-    samples: Callable[[Pick, int, bool], dict[str, Any]] = _regular
+    samples: Sequence[str] = ("regular",)
 
     def draw(self, pick: Pick) -> Trial:
         """Return a random trial of this region.
@@ -372,38 +328,37 @@ class Region(NamedTuple):
         """
         scene = self.scene(pick)
         start = self.start(pick, scene)
-        timestep, steps = self.pace(pick, scene, start)
+        timestep, steps = _pace(pick, scene, start, self.paces)
         setting = self.setting(pick, scene)
         anywhere = setting["tolerance"] is not None or setting["integrator"] == DOP853
         if setting["tolerance"] is not None:
             setting["integrator"] = None
-        setting |= self.samples(pick, steps, anywhere)
+        setting |= _samples(pick, steps, anywhere, self.samples)
         require.start(*start)
         require.within("timestep", timestep, *require.TIMESTEP)
         return Trial(scene, *start, timestep=timestep, steps=steps, **setting)
 
 
+_SAMPLES = ("regular", "sparse", "late")
 REGIONS = (
     Region("ordinary"),
-    Region("anything", _anything, _any_start, _extreme, _any_setting),
-    Region("sparse samples", _mostly_ordinary, pace=_either_pace, samples=_sparse),
-    Region("single late sample", _mostly_ordinary, pace=_either_pace, samples=_late),
-    Region("few steps", pace=_few),
-    Region("fast rotation", _mostly_steady, _spun, _turning),
-    Region("resonance", _mostly_steady, _spun, _resonant, samples=_any_samples),
+    Region("anything", _anything, _any_start, ("extreme",), _any_setting),
+    Region("sparse samples", _mostly_ordinary, paces=_EITHER, samples=("sparse",)),
+    Region("single late sample", _mostly_ordinary, paces=_EITHER, samples=("late",)),
+    Region("few steps", paces=("few",)),
+    Region("fast rotation", _mostly_steady, _spun, ("turning",)),
+    Region("resonance", _mostly_steady, _spun, ("resonant",), samples=_SAMPLES),
     Region("contact friction", setting=_contact),
-    Region("mass ratios", _ratios, pace=_either_pace),
-    Region("thin or full", _fills, pace=_either_pace, samples=_any_samples),
-    Region("long", pace=_long, samples=_any_samples),
-    Region("far angles", start=_far, samples=_any_samples),
+    Region("mass ratios", _ratios, paces=_EITHER),
+    Region("thin or full", _fills, paces=_EITHER, samples=_SAMPLES),
+    Region("long", paces=("long",), samples=_SAMPLES),
+    Region("far angles", start=_far, samples=_SAMPLES),
     Region("steep", _steep),
     Region("weak or strong gravity", _gravity),
-    Region("beside the separatrix", start=_beside_the_separatrix, samples=_any_samples),
-    Region("mixed", _any_scene, _any_start, _any_pace, _any_setting, _any_samples),
-    Region("damped", lambda pick: _damped(pick, _ordinary(pick)), pace=_either_pace),
-    Region(
-        "damped, mixed", lambda pick: _damped(pick, _any_scene(pick)), _any_start, _any_pace, _any_setting, _any_samples
-    ),
+    Region("beside the separatrix", start=_beside_the_separatrix, samples=_SAMPLES),
+    Region("mixed", _any_scene, _any_start, _ANY, _any_setting, _SAMPLES),
+    Region("damped", lambda pick: _damped(pick, _ordinary(pick)), paces=_EITHER),
+    Region("damped, mixed", lambda pick: _damped(pick, _any_scene(pick)), _any_start, _ANY, _any_setting, _SAMPLES),
 )
 """All regions; as many trials are drawn from each."""
 
