@@ -127,8 +127,9 @@ def extremes() -> Iterator[Row]:
         )  # fmt: skip
     for make, name in ((sliding, "sliding"), (frozen, "frozen")):
         yield Row(
-            "extremes", "similarity: phi over t sqrt(g/a), cans of 0.2 mm to 25 m, 1e-3 to 1e3 m/s^2", partial(_unlike, make),
-            f"{name}, metal can, reduced, DOP853", 1e-10, "rad", "rounding of the scaled scene's sizes and masses",
+            "extremes", "similarity: phi over t sqrt(g/a), cans of 0.2 mm to 25 m, 1e-3 to 1e3 m/s^2",
+            partial(_unlike, make), f"{name}, metal can, reduced, DOP853", 1e-10, "rad",
+            "rounding of the scaled scene's sizes and masses",
         )  # fmt: skip
         full = sliding(fill=1.0) if make is sliding else frozen(0.0, fill=1.0)
         yield Row(
