@@ -24,7 +24,7 @@ from mjbeer.studies.benchmark import run as benchmark_run
 from mjbeer.studies.benchmark.curves import Curve
 from mjbeer.studies.benchmark.peers import with_scipy
 from mjbeer.studies.rows import Row
-from mjbeer.studies.stability import stiff_maps, study
+from mjbeer.studies.stability import search, stiff_maps, study
 from mjbeer.studies.sweep import speed
 from mjbeer.studies.validation import run as validation
 
@@ -58,12 +58,13 @@ def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[flo
 
 
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the stability study one of the first row of each group, with small maps, measured in this process."""
+    """Make the stability study one of the first row of each group, with small maps and few runs, in this process."""
     first: dict[str, Row] = {}
     for row in study.plan("quick"):
         first.setdefault(row.group, row)
     small = {"maps": partial(stiff_maps.measure, stiff_maps.PLANS[0], (4, 4))}
     small["damped"] = partial(stiff_maps.measure_damped, "reduced", "Euler", (2, 2))
+    small["search"] = partial(search.batch, 0, 4)
     first |= {group: replace(first[group], measure=measure) for group, measure in small.items()}
     monkeypatch.setattr(study, "plan", lambda extent: list(first.values()))
     monkeypatch.setattr(study.os, "cpu_count", lambda: 1)
