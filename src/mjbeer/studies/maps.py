@@ -68,7 +68,7 @@ def draw(
         handles: list[Artist] = [Patch(facecolor=shade, label=name) for name, shade in shades.items()]
         handles += [Line2D([], [], label="limit of stability, theory", **THEORY)]
         handles += [Line2D([], [], label="the same, measured", **_MEASURED)]
-        name_below(panels, 4 if columns > 2 else 3, handles)
+        name_below(panels, 5 if columns > 2 else 3, handles)
 
 
 def colour_cells(axes: Axes, shown: Map, shades: Sequence[str], scales: tuple[str, str] = ("log", "log")) -> None:
