@@ -26,8 +26,12 @@ SILENT = "wrong and silent"
 MISSED = "tolerance missed"
 THEORIES = "theories differ"
 UNKNOWN = "beyond theory"
-VERDICTS = (ACCURATE, INACCURATE, UNSTABLE, REFUSED, SILENT, MISSED, THEORIES, UNKNOWN)
-"""Every way in which a run can end. Only damped motions are beyond theory, the reference of which knows no damping."""
+VERDICTS = {
+    ACCURATE: "accurate", INACCURATE: "inaccurate", UNSTABLE: "unstable", REFUSED: "refused", SILENT: "silent",
+    MISSED: "missed", THEORIES: "theories", UNKNOWN: "beyond",
+}  # fmt: skip
+"""Every way in which a run can end, and in a word. Only damped motions are beyond theory, the reference of which knows
+no damping."""
 NEVER = (SILENT, MISSED, THEORIES)
 """The verdicts that must not occur: a run that is trusted although it is wrong, a run whose error is above its
 tolerance, and a motion of which two theories say different things that no rounding explains."""
@@ -35,11 +39,11 @@ FALSE = "false alarm"
 PARTS = "real slip or lift"
 WAY = "wrong on the way"
 SENSITIVE = "sensitive start"
-ALARMS = (FALSE, PARTS, WAY, SENSITIVE)
-"""What the warnings of an accurate run can be. All but the first are facts: the can slips or lifts by more than is
-trusted; the run is right at its samples and wrong between them; a start that is closer than models are made moves the
-exact motion by more than is trusted, or the run itself: one that rests where its timestep is far too long, say, is
-right only as long as nothing disturbs it."""
+ALARMS = {FALSE: "false alarms", PARTS: "slip or lift", WAY: "way", SENSITIVE: "sensitive"}
+"""What the warnings of an accurate run can be, and in short. All but the first are facts: the can slips or lifts by
+more than is trusted; the run is right at its samples and wrong between them; a start that is closer than models are
+made moves the exact motion by more than is trusted, or the run itself: one that rests where its timestep is far too
+long, say, is right only as long as nothing disturbs it."""
 REFUSALS = (ParameterError, ToleranceError, UnsupportedError)
 """The errors with which a run is refused. Others, such as a template that is missing, are no way to end."""
 _GAIN = 10.0

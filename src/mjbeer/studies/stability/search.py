@@ -12,24 +12,7 @@ from typing import Any
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.output.terminal import Table
 from mjbeer.studies.rows import Result, Row
-from mjbeer.studies.stability.judge import (
-    ACCURATE,
-    FALSE,
-    INACCURATE,
-    MISSED,
-    NEVER,
-    PARTS,
-    REFUSED,
-    SENSITIVE,
-    SILENT,
-    THEORIES,
-    UNKNOWN,
-    UNSTABLE,
-    VERDICTS,
-    WAY,
-    alarm,
-    judge,
-)
+from mjbeer.studies.stability.judge import ACCURATE, ALARMS, FALSE, NEVER, REFUSED, VERDICTS, alarm, judge
 from mjbeer.studies.stability.known_cases import Case, cases
 from mjbeer.studies.stability.random_trials import REGIONS, random_trial
 
@@ -47,11 +30,7 @@ _ALONE = "judged by one theory alone"
 other ways too."""
 _ROUNDING = 1e-9
 """Errors below this [rad] do not count as overconfident: a second run at half the timestep cannot see rounding."""
-_COLUMNS = {
-    REFUSED: "refused", UNSTABLE: "unstable", ACCURATE: "accurate", INACCURATE: "inaccurate", SILENT: "silent",
-    MISSED: "missed", THEORIES: "theories", UNKNOWN: "beyond", FALSE: "false alarms", _SMALL_FALSE: f"below {SMALL:g}",
-    PARTS: "slip or lift", WAY: "way", SENSITIVE: "sensitive", _ALONE: "one theory",
-}  # fmt: skip
+_COLUMNS = {**VERDICTS, **ALARMS, _SMALL_FALSE: f"below {SMALL:g}", _ALONE: "one theory"}
 """What is counted, and the heading of its column. From the false alarms on, the runs are among the accurate ones."""
 _CSV = ("kind", "case", "setting", "verdict", "error", "admitted", "says", "expected", "as_expected")
 
