@@ -32,7 +32,6 @@ from mjbeer.studies.stability.judge import (
     truth,
 )
 from mjbeer.studies.stability.trial import Trial
-from mjbeer.theory.equations import Coordinates
 
 pytestmark = pytest.mark.slow
 
@@ -69,12 +68,6 @@ def lying(error: float, tolerance: float | None = None) -> Run:
 def test_verdicts(run: Callable[[], Run], verdict: str, says: str) -> None:
     outcome = judge(run)
     assert (outcome.verdict, says in outcome.says, outcome.says == "") == (verdict, True, says == ""), outcome
-
-
-def test_a_late_sample_is_judged_by_the_start_of_the_motion() -> None:
-    run = lying(0.012)
-    late = {name: getattr(run, name)[-1:] for name in Coordinates.__dataclass_fields__}
-    assert judge(lambda: replace(run, **late)).verdict == SILENT
 
 
 def test_warnings_that_differ_in_numbers_alone_are_equal_and_a_pull_is_none() -> None:

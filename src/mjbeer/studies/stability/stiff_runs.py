@@ -33,10 +33,10 @@ from mjbeer.theory.scene import Scene, frozen, sliding
 
 FREE = ("gravity", "spring")
 """Families without a constraint."""
-UNSTABLE, INACCURATE, ACCURATE = 0, 1, 2
+UNSTABLE, INACCURATE, ACCURATE = range(3)
 """Outcomes of a swing, as numbers for the cells of a map."""
 EXPLODED, WRONG, WARNED, TRUSTED, SILENT = range(5)
-"""Outcomes of a damped run. It exploded, or was refused; its error is above `record.ERROR`, and it says so; it is
+"""Those of a damped run. It exploded, or was refused; its error is above `record.ERROR`, and it says so; it is
 accurate, and warns nevertheless; it is accurate and trusted. The last must not occur: its error is above
 `record.ERROR`, and it is trusted."""
 BOUNDED = -1
@@ -98,7 +98,10 @@ class ShortRuns:
         excess = diagonal_excess(self._scene)
         # With the hinge first the row is divided by the radius, but MuJoCo's estimate of its diagonal is not.
         self._excess = {"exact": 1.0, "slide": excess, "hinge": excess * self._scene.can.radius**2}[plan.written]
-        self._points = _contact_points(self._model)
+        data = mujoco.MjData(self._model)
+        data.qpos[:] = settle(self._model, np.zeros(self._model.nq + self._model.nv))[: self._model.nq]
+        mujoco.mj_forward(self._model, data)
+        self._points = int(data.ncon)  # at which a can at rest touches the ground
         self._frequency = self._scene.frequency()
 
     def measure(self, timestep: float) -> int:
@@ -139,15 +142,22 @@ class ShortRuns:
             system = soft_rolling.by_contact(scene, depth, self._points, impratio)
         else:
             system = soft_rolling.by_equality(scene, self._excess)
-        return system.step(plan.integrator, _row(plan, self._value, timestep), timestep)
+        return system.step(plan.integrator, self._row(timestep), timestep)
+
+    def _row(self, timestep: float) -> SoftRow:
+        """Return the constraint's row as MuJoCo uses it, which refsafe may have softened."""
+        plan, timeconst = self._plan, self._value
+        if plan.family == "direct":
+            return soft_constraint.direct(timeconst, 2 * plan.dampratio * math.sqrt(timeconst), _IMPEDANCE)
+        if plan.refsafe and plan.integrator != "discrete":
+            timeconst = soft_constraint.refsafe_timeconst(timeconst, timestep)
+        elif plan.refsafe and plan.family == "contact":
+            timeconst = soft_constraint.discrete_refsafe_timeconst(timeconst, plan.dampratio, _IMPEDANCE, timestep)
+        return soft_constraint.spring(timeconst, plan.dampratio, _IMPEDANCE)
 
     def _steps(self, timestep: float) -> int:
         """Return the number of steps of a run: half a period, or `_STEPS` if that is more."""
-        return max(_STEPS, math.ceil(self._half(timestep)))
-
-    def _half(self, timestep: float) -> float:
-        """Return how many timesteps half a period has."""
-        return math.pi / (self._frequency * timestep)
+        return max(_STEPS, math.ceil(math.pi / (self._frequency * timestep)))
 
     def _rest_and_start(self, timestep: float) -> tuple[np.ndarray, np.ndarray]:
         """Set the timestep; return the state at rest, carried by a contact if any, and how far from it a run starts."""
@@ -170,7 +180,7 @@ class ShortRuns:
             if not (np.abs(states[:, :count]) < bounds).all():
                 return UNSTABLE
         at = joints.get("phi", joints.get("roll"))
-        early = states[: max(1, math.floor(self._half(timestep))) + 1]
+        early = states[: max(1, math.floor(math.pi / (self._frequency * timestep))) + 1]
         angles = self._frequency * timestep * np.arange(len(early))
         phi, rate = early[:, at] / _SWING, early[:, count + at] / (_SWING * self._frequency)
         errors = np.hypot(phi - np.cos(angles), rate + np.sin(angles))
@@ -200,26 +210,6 @@ def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
     )
     rolling = "contact" if plan.family == "contact" else "equality"
     return build(scene, rolling, integrator=plan.integrator, softness=softness)
-
-
-def _contact_points(model: mujoco.MjModel) -> int:
-    """Return the number of points at which a can at rest touches the ground."""
-    data = mujoco.MjData(model)
-    data.qpos[:] = settle(model, np.zeros(model.nq + model.nv))[: model.nq]
-    mujoco.mj_forward(model, data)
-    return int(data.ncon)
-
-
-def _row(plan: Plan, value: float, timestep: float) -> SoftRow:
-    """Return the constraint's row as MuJoCo uses it, which refsafe may have softened."""
-    if plan.family == "direct":
-        return soft_constraint.direct(value, 2 * plan.dampratio * math.sqrt(value), _IMPEDANCE)
-    timeconst = value
-    if plan.refsafe and plan.integrator != "discrete":
-        timeconst = soft_constraint.refsafe_timeconst(value, timestep)
-    elif plan.refsafe and plan.family == "contact":
-        timeconst = soft_constraint.discrete_refsafe_timeconst(value, plan.dampratio, _IMPEDANCE, timestep)
-    return soft_constraint.spring(timeconst, plan.dampratio, _IMPEDANCE)
 
 
 @dataclass
