@@ -1,4 +1,4 @@
-"""Maps: how runs ended, as colours over two parameters, with the borders between them, measured and by theory."""
+"""Maps: how runs ended, as colours over two parameters, with the border from which on they explode."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -15,14 +15,12 @@ from matplotlib.patches import Patch
 
 from mjbeer.output.plots import chart, name_below
 
-THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
+_THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
 """The look of a border that theory predicts."""
 _MEASURED: dict[str, Any] = {
     "linestyle": "none", "marker": "o", "markersize": 3.5, "markerfacecolor": "white", "markeredgecolor": "black",
     "markeredgewidth": 0.7,
 }  # fmt: skip
-Border = Sequence[tuple[float, float]]
-"""The points of a border, in the units of the axes."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +32,9 @@ class Map:
     y: Sequence[float]
     outcomes: Sequence[Sequence[int]]
     """A row for each value of `y`, with the number of an outcome for each value of `x`."""
-    predicted: Border = ()
-    measured: Border = ()
+    predicted: Sequence[tuple[float, float]] = ()
+    """Points of the border from which on runs explode, by theory."""
+    measured: Sequence[tuple[float, float]] = ()
 
 
 def draw(
@@ -59,31 +58,26 @@ def draw(
                 axes.set_visible(False)
                 continue
             each = maps[place]
-            colour_cells(axes, each, list(shades.values()))
-            axes.plot(*zip(*each.predicted, strict=True) if each.predicted else ([], []), **THEORY)
+            _colour(axes, each, list(shades.values()))
+            axes.plot(*zip(*each.predicted, strict=True) if each.predicted else ([], []), **_THEORY)
             axes.plot(*zip(*each.measured, strict=True) if each.measured else ([], []), **_MEASURED)
             axes.set_title(each.title, fontsize=10)
             axes.set_xlabel(labels[0] if place + columns >= len(maps) else "")
             axes.set_ylabel(labels[1] if place % columns == 0 else "")
         handles: list[Artist] = [Patch(facecolor=shade, label=name) for name, shade in shades.items()]
-        handles += [Line2D([], [], label="limit of stability, theory", **THEORY)]
+        handles += [Line2D([], [], label="limit of stability, theory", **_THEORY)]
         handles += [Line2D([], [], label="the same, measured", **_MEASURED)]
         name_below(panels, 5 if columns > 2 else 3, handles)
 
 
-def colour_cells(axes: Axes, shown: Map, shades: Sequence[str], scales: tuple[str, str] = ("log", "log")) -> None:
-    """Draw the cells of a map; values are in even steps, or on a logarithmic axis in steps of a factor."""
-    edges = [_edges(np.asarray(values), scale) for values, scale in zip((shown.x, shown.y), scales, strict=True)]
+def _colour(axes: Axes, shown: Map, shades: Sequence[str]) -> None:
+    """Draw the cells of a map, whose edges are half-way between its values on the logarithmic axes."""
+    edges = []
+    for values in (np.log(shown.x), np.log(shown.y)):
+        half = (values[1] - values[0]) / 2
+        edges.append(np.exp(np.append(values - half, values[-1] + half)))
     style: dict[str, Any] = {"cmap": ListedColormap(shades), "vmin": 0, "vmax": len(shades) - 1, "rasterized": True}
     axes.pcolormesh(*edges, np.array(shown.outcomes), **style)
-    axes.set(xscale=scales[0], yscale=scales[1])
+    axes.set(xscale="log", yscale="log")
     axes.minorticks_off()
     axes.grid(visible=False)
-
-
-def _edges(centres: np.ndarray, scale: str) -> np.ndarray:
-    """Return the edges of cells, half-way between their centres."""
-    if scale == "log":
-        return np.exp(_edges(np.log(centres), "linear"))
-    half = (centres[1] - centres[0]) / 2
-    return np.append(centres - half, centres[-1] + half)
