@@ -4,7 +4,6 @@ import datetime
 import json
 import os
 import pathlib
-from dataclasses import asdict
 
 from rich.console import Console
 
@@ -73,7 +72,9 @@ def tables(study: Study) -> list[Table]:
 
 def to_json(study: Study) -> str:
     """Return the study as one JSON document."""
-    return json.dumps(asdict(study) | {"failed": [result.name for result in study.failed]}, default=str) + "\n"
+    about = {"command": study.command, "settings": study.settings, "machine": study.machine}
+    results = [json.loads(result.line()) for result in study.results]
+    return json.dumps(about | {"failed": [result.name for result in study.failed], "results": results}) + "\n"
 
 
 def write(study: Study, folder: pathlib.Path) -> None:
