@@ -239,6 +239,6 @@ def test_a_scene_that_cannot_be_is_drawn_again(monkeypatch: pytest.MonkeyPatch) 
             raise ParameterError("no such scene")
         return sliding()
 
-    regions = (REGIONS[0]._replace(scene=draw),)
+    regions = (REGIONS[0]._replace(scenes=(draw,)),)
     monkeypatch.setattr("mjbeer.studies.stability.random_trials.REGIONS", regions)
     assert random_trial(0).scene == sliding()

@@ -48,6 +48,10 @@ class Pick:
         """Return one of the options; all are equally likely."""
         return options[int(self._generator.integers(len(options)))]
 
+    def of(self, options: Sequence[T]) -> T:
+        """Return one of the options; a single one takes no choice."""
+        return self.one(*options) if len(options) > 1 else options[0]
+
     def sign(self) -> int:
         """Return 1 or -1."""
         return self.one(1, -1)
@@ -132,10 +136,6 @@ def _anything(pick: Pick) -> Scene:
     return Scene(can, load, math.radians(incline), pick.one(*ATTACHMENTS), weight)
 
 
-def _any_scene(pick: Pick) -> Scene:
-    return pick.one(_ordinary, _steady, _anything, _ratios, _fills, _steep, _gravity)(pick)
-
-
 def _damped(pick: Pick, scene: Scene) -> Scene:
     """Return a scene with a sliding load and with damping over twelve decades, drag over eight, or both.
 
@@ -154,14 +154,6 @@ def _damped(pick: Pick, scene: Scene) -> Scene:
     )
     drag = mass / radius * pick.decades(1e-6, 1e2)
     return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
-
-
-def _mostly_ordinary(pick: Pick) -> Scene:
-    return pick.one(_ordinary, _ordinary, _anything)(pick)
-
-
-def _mostly_steady(pick: Pick) -> Scene:
-    return pick.one(_steady, _steady, _ordinary)(pick)
 
 
 def _by_hand(pick: Pick, scene: Scene) -> Start:
@@ -201,10 +193,6 @@ def _beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
     return phi0, pick.sign() * rate * (1 + beside)
 
 
-def _any_start(pick: Pick, scene: Scene) -> Start:
-    return pick.one(_by_hand, _by_hand, _spun, _far, _beside_the_separatrix)(pick, scene)
-
-
 _PACES: dict[str, Callable[[Pick, Scene, float], tuple[float, float]]] = {
     # a thousandth to a third of the time of a fall through the radius
     "usual": lambda pick, scene, _: (slow(scene) * pick.decades(1e-3, 0.3), pick.decades(20, 3000)),
@@ -236,13 +224,11 @@ _PACES: dict[str, Callable[[Pick, Scene, float], tuple[float, float]]] = {
 }  # fmt: skip
 """How a timestep [s] and a number of steps are chosen for a scene and the rate of its start [rad/s], by name; for
 "swinging" that of its swing, if that is faster."""
-_EITHER, _ANY = ("usual", "swinging"), tuple(_PACES)
 
 
-def _pace(pick: Pick, scene: Scene, start: Start, names: Sequence[str]) -> tuple[float, int]:
-    """Return timestep [s] and number of steps at one of some paces, or less: as much as theory can follow."""
-    name, spin = pick.one(*names) if len(names) > 1 else names[0], abs(start[1])
-    frequency, form = _frequency(scene, start), scene.oscillator
+def _pace(pick: Pick, scene: Scene, start: Start, name: str) -> tuple[float, int]:
+    """Return timestep [s] and number of steps at one of the paces, or less: as much as theory can follow."""
+    spin, frequency, form = abs(start[1]), _frequency(scene, start), scene.oscillator
     timestep, steps = _PACES[name](pick, scene, max(frequency, spin) if name == "swinging" else spin)
     share = _DAMPED if scene.dissipates else 1.0
     push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
@@ -294,13 +280,12 @@ def _any_setting(pick: Pick, scene: Scene) -> dict[str, Any]:
     return setting | {"rolling": rolling, "tolerance": setting["tolerance"] if rolling != "contact" else None}
 
 
-def _samples(pick: Pick, steps: int, anywhere: bool, kinds: Sequence[str]) -> dict[str, Any]:
-    """Return samples of one of some kinds, as fields of a trial: `anywhere`, or at whole numbers of timesteps.
+def _samples(pick: Pick, steps: int, anywhere: bool, kind: str) -> dict[str, Any]:
+    """Return samples of a kind, as fields of a trial: `anywhere`, or at whole numbers of timesteps.
 
     "regular" ones are at every timestep, or every so many, "sparse" are two to six, and "late" is the last alone, or
     with the one before.
     """
-    kind = pick.one(*kinds) if len(kinds) > 1 else kinds[0]
     if kind == "regular":
         return {"every": max(1, -(-steps // pick.one(_MANY, 10 * _MANY)))}
     if kind == "late":
@@ -311,14 +296,15 @@ def _samples(pick: Pick, steps: int, anywhere: bool, kinds: Sequence[str]) -> di
 
 
 class Region(NamedTuple):
-    """A part of the search: how its trials choose scene, start, pace, setting and samples."""
+    """A part of the search: what its trials choose from for scene, start, pace, setting and samples."""
 
     name: str
-    scene: Callable[[Pick], Scene] = _ordinary
-    start: Callable[[Pick, Scene], Start] = _by_hand
+    scenes: Sequence[Callable[[Pick], Scene]] = (_ordinary,)
+    starts: Sequence[Callable[[Pick, Scene], Start]] = (_by_hand,)
     paces: Sequence[str] = ("usual",)
     setting: Callable[[Pick, Scene], dict[str, Any]] = _usual_setting
     samples: Sequence[str] = ("regular",)
+    damped: bool = False
 
     def draw(self, pick: Pick) -> Trial:
         """Return a random trial of this region.
@@ -326,39 +312,45 @@ class Region(NamedTuple):
         Raises:
           ParameterError: if the choices make a scene that cannot be, or a start or timestep outside the domain.
         """
-        scene = self.scene(pick)
-        start = self.start(pick, scene)
-        timestep, steps = _pace(pick, scene, start, self.paces)
+        scene = pick.of(self.scenes)(pick)
+        if self.damped:
+            scene = _damped(pick, scene)
+        start = pick.of(self.starts)(pick, scene)
+        timestep, steps = _pace(pick, scene, start, pick.of(self.paces))
         setting = self.setting(pick, scene)
         anywhere = setting["tolerance"] is not None or setting["integrator"] == DOP853
         if setting["tolerance"] is not None:
             setting["integrator"] = None
-        setting |= _samples(pick, steps, anywhere, self.samples)
+        setting |= _samples(pick, steps, anywhere, pick.of(self.samples))
         require.start(*start)
         require.within("timestep", timestep, *require.TIMESTEP)
         return Trial(scene, *start, timestep=timestep, steps=steps, **setting)
 
 
-_SAMPLES = ("regular", "sparse", "late")
+_ANY_SCENE = (_ordinary, _steady, _anything, _ratios, _fills, _steep, _gravity)
+_ANY_START = (_by_hand, _by_hand, _spun, _far, _beside_the_separatrix)
+_MOSTLY_ORDINARY, _MOSTLY_STEADY = (_ordinary, _ordinary, _anything), (_steady, _steady, _ordinary)
+_EITHER_PACE, _ANY_PACE = ("usual", "swinging"), tuple(_PACES)
+_ANY_SAMPLES = ("regular", "sparse", "late")
 REGIONS = (
     Region("ordinary"),
-    Region("anything", _anything, _any_start, ("extreme",), _any_setting),
-    Region("sparse samples", _mostly_ordinary, paces=_EITHER, samples=("sparse",)),
-    Region("single late sample", _mostly_ordinary, paces=_EITHER, samples=("late",)),
+    Region("anything", (_anything,), _ANY_START, ("extreme",), _any_setting),
+    Region("sparse samples", _MOSTLY_ORDINARY, paces=_EITHER_PACE, samples=("sparse",)),
+    Region("single late sample", _MOSTLY_ORDINARY, paces=_EITHER_PACE, samples=("late",)),
     Region("few steps", paces=("few",)),
-    Region("fast rotation", _mostly_steady, _spun, ("turning",)),
-    Region("resonance", _mostly_steady, _spun, ("resonant",), samples=_SAMPLES),
+    Region("fast rotation", _MOSTLY_STEADY, (_spun,), ("turning",)),
+    Region("resonance", _MOSTLY_STEADY, (_spun,), ("resonant",), samples=_ANY_SAMPLES),
     Region("contact friction", setting=_contact),
-    Region("mass ratios", _ratios, paces=_EITHER),
-    Region("thin or full", _fills, paces=_EITHER, samples=_SAMPLES),
-    Region("long", paces=("long",), samples=_SAMPLES),
-    Region("far angles", start=_far, samples=_SAMPLES),
-    Region("steep", _steep),
-    Region("weak or strong gravity", _gravity),
-    Region("beside the separatrix", start=_beside_the_separatrix, samples=_SAMPLES),
-    Region("mixed", _any_scene, _any_start, _ANY, _any_setting, _SAMPLES),
-    Region("damped", lambda pick: _damped(pick, _ordinary(pick)), paces=_EITHER),
-    Region("damped, mixed", lambda pick: _damped(pick, _any_scene(pick)), _any_start, _ANY, _any_setting, _SAMPLES),
+    Region("mass ratios", (_ratios,), paces=_EITHER_PACE),
+    Region("thin or full", (_fills,), paces=_EITHER_PACE, samples=_ANY_SAMPLES),
+    Region("long", paces=("long",), samples=_ANY_SAMPLES),
+    Region("far angles", starts=(_far,), samples=_ANY_SAMPLES),
+    Region("steep", (_steep,)),
+    Region("weak or strong gravity", (_gravity,)),
+    Region("beside the separatrix", starts=(_beside_the_separatrix,), samples=_ANY_SAMPLES),
+    Region("mixed", _ANY_SCENE, _ANY_START, _ANY_PACE, _any_setting, _ANY_SAMPLES),
+    Region("damped", paces=_EITHER_PACE, damped=True),
+    Region("damped, mixed", _ANY_SCENE, _ANY_START, _ANY_PACE, _any_setting, _ANY_SAMPLES, damped=True),
 )
 """All regions; as many trials are drawn from each."""
 
