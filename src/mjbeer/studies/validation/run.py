@@ -82,7 +82,7 @@ class Validation:
         versions = {name: version(name) for name in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
         names = {"name": "quantity", "by": "by", "error": "error", "bound": "bound", "unit": "unit", "reason": "reason"}
         checks = [
-            {told: getattr(result, name) for name, told in names.items()} | {"passed": result.passed}
+            {called: getattr(result, name) for name, called in names.items()} | {"passed": result.passed}
             for result in self.results
         ]
         findings = [dataclasses.asdict(finding) | {"passed": finding.passed} for finding in self.findings]
