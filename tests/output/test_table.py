@@ -15,15 +15,14 @@ from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
-from mjbeer.studies.check import Result
-from mjbeer.studies.validation import motions, tables
-from mjbeer.studies.validation.run import Validation
+from mjbeer.studies.rows import Result
+from mjbeer.studies.validation.run import Validation, rows
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import SCENES
 
-PASSED = Result("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
-FAILED = Result("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
-UNKNOWN = Result("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
+PASSED = Result("", "phi over 2 s", "frozen, reduced", 1e-7, "rad", "RK4", 1.5e-9)
+FAILED = Result("", "hops", "hoop, contact", 0.0, "", "it hops or not", 2.0)
+UNKNOWN = Result("", "lift-off", "hoop, contact", 0.5, "degrees", "penetration", math.nan)
 
 RIGHT = Finding("(16)", "motion of phi", CONFIRMED, "MuJoCo", 5e-15, None, 1e-12, None, "rounding")
 MISPRINT = Finding("(49)", "motion of phi", CORRECTED, "MuJoCo", 0.0589, 4e-10, 2e-8, 0.059, "drift")
@@ -78,16 +77,16 @@ def test_a_narrow_terminal_leaves_no_letter_out() -> None:
 
 def test_every_cell_of_the_rows_is_whole() -> None:
     """The library that prints takes some brackets for markup; none of the texts of the validation may be lost so."""
-    texts = {text for check in motions.checks() for text in (check.quantity, check.by, check.reason)}
+    texts = {text for row in rows() for text in (row.name, row.by, row.reason)}
     texts |= {text for claim in chapters.claims() for text in (claim.equation, claim.quantity, claim.reason)}
-    rows = [(text,) for text in sorted(texts)]
-    assert Table("t", ("text",), rows).tabbed().splitlines()[1:] == sorted(texts)
+    lines = [(text,) for text in sorted(texts)]
+    assert Table("t", ("text",), lines).tabbed().splitlines()[1:] == sorted(texts)
 
 
 def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:
-    def judged(checks: list[Result], audit: list[Finding]) -> dict[str, Any]:
+    def judged(checks: list[Result], findings: list[Finding]) -> dict[str, Any]:
         # Python would write NaN, which no other reader of JSON takes.
-        return json.loads(tables.to_json(Validation(checks, audit)), parse_constant=pytest.fail)
+        return json.loads(Validation(checks, findings).json(), parse_constant=pytest.fail)
 
     assert judged([PASSED], [RIGHT, MISPRINT])["passed"] is True
     assert judged([PASSED], [NO_MISPRINT])["passed"] is False

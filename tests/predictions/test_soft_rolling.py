@@ -14,7 +14,7 @@ from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.predictions import soft_rolling
 from mjbeer.predictions.linear_stability import spectral_radius
 from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, spring
-from mjbeer.studies.stability.small_swings import settle
+from mjbeer.studies.stability.stiff_runs import settle
 from mjbeer.theory.can import Can
 
 pytestmark = pytest.mark.slow
