@@ -1,4 +1,4 @@
-"""The standard cases of the studies: five scenes, the start of each motion, and the times of its samples."""
+"""The standard cases of the studies: scenes, the start of each motion, and the times of its samples."""
 
 from dataclasses import dataclass
 
@@ -20,12 +20,12 @@ DURATION = (SAMPLES - 1) * INTERVAL
 
 @dataclass(frozen=True)
 class Case:
-    """A scene and the start of its motion."""
+    """A scene and the start of its motion, at rest."""
 
     name: str
     scene: Scene
     phi0: float
-    """Initial phi [rad]; phi_dot is 0 at the start."""
+    """Initial phi [rad]."""
     command: str
     """The scene and its start as arguments of `mjbeer simulate`."""
     story: str
@@ -41,65 +41,25 @@ class Case:
         return exact(self.scene, self.times, self.phi0)
 
 
+_METAL = Can.sheet_metal()
 CASES = {
-    case.name: case
-    for case in (
-        Case(
-            name="sliding",
-            scene=sliding(),
-            phi0=1.0,
-            command="sliding --phi0 57.3",
-            story="beer that slides in a massless can, from 1 rad",
-        ),
-        Case(
-            name="sliding-metal",
-            scene=sliding(can=Can.sheet_metal()),
-            phi0=1.0,
-            command="sliding --can metal --phi0 57.3",
-            story="beer that slides in a metal can, from 1 rad",
-        ),
-        Case(
-            name="frozen",
-            scene=frozen(),
-            phi0=0.0,
-            command="frozen --phi0 0",
-            story="frozen beer, rocking from its surface along the incline",
-        ),
-        Case(
-            name="pendulum",
-            scene=pendulum(),
-            phi0=1.0,
-            command="pendulum --phi0 57.3",
-            story="a pendulum on the axle of a wheel, from 1 rad",
-        ),
-        Case(
-            name="hoop",
-            scene=hoop(),
-            phi0=0.5,
-            command="hoop --phi0 28.65",
-            story="a light hoop with a heavy bar on its rim, from 0.5 rad",
-        ),
+    name: Case(name, scene, phi0, command, story)
+    for name, scene, phi0, command, story in (
+        ("sliding", sliding(), 1.0, "sliding --phi0 57.3", "beer that slides in a massless can, from 1 rad"),
+        ("sliding-metal", sliding(can=_METAL), 1.0, "sliding --can metal --phi0 57.3",
+         "beer that slides in a metal can, from 1 rad"),
+        ("frozen", frozen(), 0.0, "frozen --phi0 0", "frozen beer, rocking from its surface along the incline"),
+        ("pendulum", pendulum(), 1.0, "pendulum --phi0 57.3", "a pendulum on the axle of a wheel, from 1 rad"),
+        ("hoop", hoop(), 0.5, "hoop --phi0 28.65", "a light hoop with a heavy bar on its rim, from 0.5 rad"),
     )
-}
+}  # fmt: skip
 DEFAULT = ("sliding", "sliding-metal", "frozen", "pendulum")
 """The cases that the benchmark measures if none is named."""
 STIFF = {
-    case.name: case
-    for case in (
-        Case(
-            name="stiff",
-            scene=sliding(damping=1.0),
-            phi0=1.0,
-            command="sliding --damping 1 --phi0 57.3",
-            story="beer that hardly slides in a massless can, from 1 rad",
-        ),
-        Case(
-            name="stiffer",
-            scene=sliding(damping=100.0),
-            phi0=1.0,
-            command="sliding --damping 100 --phi0 57.3",
-            story="beer that is nearly frozen to a massless can, from 1 rad",
-        ),
+    name: Case(name, sliding(damping=damping), 1.0, f"sliding --damping {damping:g} --phi0 57.3", story)
+    for name, damping, story in (
+        ("stiff", 1.0, "beer that hardly slides in a massless can, from 1 rad"),
+        ("stiffer", 100.0, "beer that is nearly frozen to a massless can, from 1 rad"),
     )
 }
 """Cases of the benchmark alone: damping brings can and load together ten thousand times a second, or a million times,
