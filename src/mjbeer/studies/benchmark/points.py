@@ -63,13 +63,10 @@ class Point:
     value: float
     """Timestep [s] or tolerance."""
     phi_max: float = math.inf
-    """Largest error of phi over the run [rad]."""
     phi_end: float = math.inf
-    """Error of phi at the end of the run [rad]."""
     u_max: float = math.inf
-    """Largest error of u/a over the run, with a the can's radius [rad]."""
     u_end: float = math.inf
-    """Error of u/a at the end of the run [rad]."""
+    """Errors of phi and of u/a, with a the can's radius, at most over the run and at its end [rad]."""
     slip_max: float | None = None
     """Largest slip [radii]."""
     energy_drift: float | None = None
