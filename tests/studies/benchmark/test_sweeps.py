@@ -31,9 +31,15 @@ def test_each_scene_has_about_the_largest_timestep_that_keeps_the_tolerance(monk
 
 
 def test_a_motion_that_is_off_has_an_error() -> None:
-    sample = Sample(3)
+    """Of phi in the scene that turns farthest, more than 1 rad, and of u in another."""
+    sample = Sample(8)
     phi, u = sample.by_sweep()
     assert sample.errors((phi, u)).max() <= TOLERANCE
-    off = phi + np.array([0, 1e-4, 0]), u + np.array([0, 0, 1e-3])
-    expected = 1e-4 / max(1, abs(phi[1] - 1)), 1e-3 / max(0.033, abs(u[2]))
-    assert sample.errors(off)[1:] == pytest.approx(expected, rel=2e-2)
+    farthest = int(np.abs(phi - 1).argmax())
+    other, turned = (farthest + 1) % 8, abs(phi[farthest] - 1)
+    assert turned > 1
+    phi[farthest] += 1e-3
+    u[other] += 1e-3
+    found = sample.errors((phi, u))
+    assert found[farthest] == pytest.approx(1e-3 / turned, rel=2e-3)  # what the sweep errs by itself
+    assert found[other] == pytest.approx(1e-3 / max(0.033, abs(u[other])), rel=2e-3)
