@@ -5,6 +5,7 @@ import itertools
 import math
 import pathlib
 
+import numpy as np
 import pytest
 from rich.console import Console
 
@@ -133,6 +134,15 @@ def test_a_setting_that_fails_is_a_point_with_a_reason(tmp_path: pathlib.Path, m
     assert failed
     assert all(math.isinf(each.error) and not each.times for each in failed)
     assert min(each.error for each in done.of("hoop")) < 1e-10
+
+
+def test_a_peer_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, lost = CASES["frozen"], np.where(CASES["frozen"].times > 1, np.nan, 0)
+    for result in ((lost, 0 * case.times), (0 * case.times, lost)):
+        careless = peers.Peer("heyoka", (1e-3,), lambda *_, result=result: lambda: result)
+        monkeypatch.setitem(peers.PEERS, "heyoka", careless)
+        (point,) = measure._climb(case, Curve("heyoka", "", "tolerance"), [1e-3])["points"]
+        assert point["failure"] == "heyoka: the motion did not stay finite"
 
 
 def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(

@@ -13,7 +13,7 @@ import numpy as np
 from rich.console import Console
 
 from mjbeer import require
-from mjbeer.exceptions import MjbeerError
+from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.model.engine import quiet
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, USUAL, supported
 from mjbeer.simulation.prepare import Prepared
@@ -100,10 +100,14 @@ class Rung:
             self._start = self._prepared.start(case.phi0, 0.0)
             self.run = partial(self._prepared.solve, self._start, case.times)
         else:
-            self.run = peer.prepare(case.scene, case.phi0, 0.0, case.times, value)
+            self.run = peer.set_up(case.scene, case.phi0, 0.0, case.times, value)
 
     def measure(self, point: Point, truth: Trajectory) -> None:
-        """Run once, and store errors against the exact motion in the point, and what else there is but run times."""
+        """Run once, and store errors against the exact motion in the point, and what else there is but run times.
+
+        Raises:
+          DivergenceError: if the run fails, or its end is not finite.
+        """
         result, radius = self.run(), truth.scene.can.radius
         if isinstance(result, Solution):
             motion = self._prepared.coordinates(result.states, truth.time)
@@ -112,6 +116,8 @@ class Rung:
             soft = effective_softness(self._prepared.model, self._start)
             point.share = None if soft is None else soft.effective_impedance
             result = motion.phi, motion.u
+        if not np.isfinite([values[-1] for values in result]).all():  # a value that is not finite stays so
+            raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
         phi_error, u_error = np.abs(result[0] - truth.phi), np.abs(result[1] - truth.u) / radius
         point.phi_max, point.phi_end = float(phi_error.max()), float(phi_error[-1])
         point.u_max, point.u_end = float(u_error.max()), float(u_error[-1])

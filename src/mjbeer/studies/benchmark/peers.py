@@ -18,9 +18,8 @@ import math
 import warnings
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -112,32 +111,14 @@ def coordinates(scene: Scene, states: np.ndarray) -> Motion:
     return states[:, 1], states[:, 0]
 
 
-@dataclass(frozen=True)
-class Peer:
+class Peer(NamedTuple):
     """A tool that computes the motion of a scene, with the ladder of its tolerances, finest last."""
 
     name: str
     tolerances: tuple[float, ...]
-    set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate] = field(repr=False)
-
-    def prepare(self, scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-        """Set up a motion from `phi0` [rad] and `phi_dot0` [rad/s], with samples at `times` [s], the first at 0.
-
-        Equations, models and compilation are done here, so that only calls of what is returned need be timed.
-
-        Raises:
-          UnsupportedError: if the tool has no model of the scene.
-        """
-        solve = self.set_up(scene, phi0, phi_dot0, times, tolerance)
-
-        def integrate() -> Motion:
-            phi, u = solve()
-            # The last is enough: a value that is not finite stays so. To test all would take a fifth of heyoka's time.
-            if phi.shape != times.shape or not (math.isfinite(phi[-1]) and math.isfinite(u[-1])):
-                raise DivergenceError(f"{self.name}: the motion did not stay finite until {times[-1]:g} s")
-            return phi, u
-
-        return integrate
+    set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate]
+    """Takes scene, phi0 [rad], phi_dot0 [rad/s], times of samples [s] and tolerance. Equations, models and compilation
+    are done there, so that only calls of what it returns need be timed."""
 
 
 def _solve_ivp(
