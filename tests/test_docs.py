@@ -11,7 +11,7 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CORRECTED, LIMIT
-from mjbeer.studies.validation import motions
+from mjbeer.studies.validation.run import rows as validated
 from tests.support import stubs
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
@@ -109,10 +109,10 @@ def rows(document: str, head: str) -> list[list[str]]:
 
 def test_the_table_of_the_validation_is_that_of_the_program() -> None:
     """An error of today's differs in its digits, not in its being within the bound."""
-    checks, told = motions.checks(), rows("validation.md", "| check | by | error | at most |")
+    checks, told = validated(), rows("validation.md", "| check | by | error | at most |")
     bounds = [f"{check.bound:.1e} {check.unit}".strip() for check in checks]
     assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in told] == [
-        (check.quantity, check.by, bound, check.reason) for check, bound in zip(checks, bounds, strict=True)
+        (check.name, check.by, bound, check.reason) for check, bound in zip(checks, bounds, strict=True)
     ]
     assert all(float(row[2]) <= check.bound for row, check in zip(told, checks, strict=True))
 

@@ -78,8 +78,8 @@ def test_a_report_that_validates_has_written_nothing(
     handler: signal.Handlers, numbers: list[int], status: int, tmp_path: pathlib.Path
 ) -> None:
     code = (
-        "import sys, time; from mjbeer.studies.validation import motions; from mjbeer.studies.check import Check; "
-        "motions.checks = lambda: [Check('q', 'b', 1, 'rad', 'r', "
+        "import sys, time; from mjbeer.studies.validation import run; from mjbeer.studies.rows import Row; "
+        "run.rows = lambda: [Row('g', 'q', "
         "lambda: (print('measuring', flush=True), time.sleep(3600)))]; from mjbeer.cli.app import main; "
         "sys.exit(main())"
     )

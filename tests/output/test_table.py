@@ -15,15 +15,15 @@ from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
 from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
-from mjbeer.studies.check import Result
-from mjbeer.studies.validation import motions, tables
-from mjbeer.studies.validation.run import Validation
+from mjbeer.studies import rows as studied
+from mjbeer.studies.rows import Result
+from mjbeer.studies.validation.run import Validation, audit, rows
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import SCENES
 
-PASSED = Result("phi over 2 s", "frozen, reduced", 1.5e-9, 1e-7, "rad", "RK4")
-FAILED = Result("hops", "hoop, contact", 2.0, 0.0, "", "it hops or not")
-UNKNOWN = Result("lift-off", "hoop, contact", math.nan, 0.5, "degrees", "penetration")
+PASSED = Result("", "phi over 2 s", "frozen, reduced", 1e-7, "rad", "RK4", 1.5e-9)
+FAILED = Result("", "hops", "hoop, contact", 0.0, "", "it hops or not", 2.0)
+UNKNOWN = Result("", "lift-off", "hoop, contact", 0.5, "degrees", "penetration", math.nan)
 
 RIGHT = Finding("(16)", "motion of phi", CONFIRMED, "MuJoCo", 5e-15, None, 1e-12, None, "rounding")
 MISPRINT = Finding("(49)", "motion of phi", CORRECTED, "MuJoCo", 0.0589, 4e-10, 2e-8, 0.059, "drift")
@@ -78,14 +78,14 @@ def test_a_narrow_terminal_leaves_no_letter_out() -> None:
 
 def test_every_cell_of_the_rows_is_whole() -> None:
     """The library that prints takes some brackets for markup; none of the texts of the validation may be lost so."""
-    texts = {text for check in motions.checks() for text in (check.quantity, check.by, check.reason)}
+    texts = {text for row in rows() for text in (row.name, row.by, row.reason)}
     texts |= {text for claim in chapters.claims() for text in (claim.equation, claim.quantity, claim.reason)}
-    rows = [(text,) for text in sorted(texts)]
-    assert Table("t", ("text",), rows).tabbed().splitlines()[1:] == sorted(texts)
+    lines = [(text,) for text in sorted(texts)]
+    assert Table("t", ("text",), lines).tabbed().splitlines()[1:] == sorted(texts)
 
 
 def test_rows_for_programs_have_all_digits_and_all_that_is_judged() -> None:
-    heading, *lines = tables.rows(Validation([PASSED, FAILED], [RIGHT, NO_MISPRINT])).tabbed().splitlines()
+    heading, *lines = Validation([PASSED, FAILED], [RIGHT, NO_MISPRINT]).table().tabbed().splitlines()
     rows = [dict(zip(heading.split("\t"), line.split("\t"), strict=True)) for line in lines]
     assert [(row["part"], row["row"], row["quantity"], row["by"], row["unit"], row["equation"]) for row in rows] == [
         ("check", "pass", "phi over 2 s", "frozen, reduced", "rad", ""),
@@ -100,32 +100,32 @@ def test_rows_for_programs_have_all_digits_and_all_that_is_judged() -> None:
 
 
 def test_sentence_and_failures() -> None:
-    assert tables.sentence(Validation([PASSED, FAILED], [RIGHT, MISPRINT])) == (
+    assert Validation([PASSED, FAILED], [RIGHT, MISPRINT]).sentence == (
         "1 of 2 checks and 2 of 2 rows of the audit passed"
     )
-    assert tables.failures(Validation([PASSED, UNKNOWN], [RIGHT, NO_MISPRINT])) == [
+    assert Validation([PASSED, UNKNOWN], [RIGHT, NO_MISPRINT]).failures == [
         "lift-off (hoop, contact): error nan, at most 5.0e-01 degrees",
         "(50) rolling (MuJoCo): error nan, at most 2.0e-08; as printed 1e-09, expected 0.059",
     ]
 
 
 def test_markdown() -> None:
-    assert tables.validation([PASSED, FAILED], document=True).markdown(title=False) == (
+    assert studied.table("t", [PASSED, FAILED], document=True).markdown(title=False) == (
         "| check | by | error | at most | what dominates the error |\n"
         "|---|---|---:|---:|---|\n"
         "| phi over 2 s | frozen, reduced | 1.5e-09 | 1.0e-07 rad | RK4 |\n"
         "| hops | hoop, contact | 2.0e+00 **FAIL** | 0.0e+00 | it hops or not |\n"
     )
-    assert tables.audit([RIGHT, NO_MISPRINT], document=True).markdown(title=False).splitlines()[2:] == [
+    assert audit([RIGHT, NO_MISPRINT], document=True).markdown(title=False).splitlines()[2:] == [
         "| (16) | motion of phi | confirmed | MuJoCo | 5.0e-15 |  | 1.0e-12 | rounding |",
         "| (50) | rolling | confirmed after correction | MuJoCo | 1e-09 | nan | 2.0e-08 **FAIL** | drift |",
     ]
 
 
 def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:
-    def judged(checks: list[Result], audit: list[Finding]) -> dict[str, Any]:
+    def judged(checks: list[Result], findings: list[Finding]) -> dict[str, Any]:
         # Python would write NaN, which no other reader of JSON takes.
-        return json.loads(tables.to_json(Validation(checks, audit)), parse_constant=pytest.fail)
+        return json.loads(Validation(checks, findings).json(), parse_constant=pytest.fail)
 
     assert judged([PASSED], [RIGHT, MISPRINT])["passed"] is True
     assert judged([PASSED], [NO_MISPRINT])["passed"] is False

@@ -20,7 +20,7 @@ from mjbeer.report import films, formulas, page
 from mjbeer.report.embed import data_uri
 from mjbeer.studies.benchmark import points as measured
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.stability import stored
+from mjbeer.studies.stability import stiff_maps
 from tests.support import pages, stubs
 from tests.support.pages import Page
 
@@ -193,7 +193,7 @@ def test_without_films_the_page_says_why(folder: pathlib.Path, tmp_path: pathlib
 def test_the_plots_have_every_point_and_every_map(text: str) -> None:
     (data,) = (element.text for element in Page.of(text).all("script") if element.attributes.get("id") == "plots")
     plots = json.loads(data)
-    benchmark, maps = Benchmark.load(SHIPPED), stored.load()
+    benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
     points = [point for case in benchmark.cases for point in measured.drawn(benchmark.of(case))]
     told = plots["precision"]["data"]["values"]
     assert [record["time"] for record in told] == pytest.approx([1e3 * point.time for point in points], rel=1e-3)

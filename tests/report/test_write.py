@@ -235,7 +235,7 @@ def test_a_check_that_cannot_be_measured_ends_the_report(
         raise MjbeerError("no frequency")
 
     stubs.validate(monkeypatch, first=1e-5)
-    monkeypatch.setattr("mjbeer.studies.check.Check.measure", lambda _: fail())
+    monkeypatch.setattr("mjbeer.studies.rows.Row.result", lambda _: fail())
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: no frequency\n")
     assert not os.listdir(tmp_path)

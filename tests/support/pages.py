@@ -16,7 +16,7 @@ from mjbeer.paper.misprints import FORMULAS
 from mjbeer.paper.stories import report as stories_report
 from mjbeer.paper.stories.story import Story
 from mjbeer.report import films
-from mjbeer.studies.check import Result
+from mjbeer.studies.rows import Result
 from mjbeer.studies.validation.run import Validation
 
 PLOT = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30"><rect width="5" height="5"/></svg>'
@@ -26,7 +26,8 @@ SIZE = (64, 36, 10)
 
 def validation(misprints: slice = slice(None)) -> Validation:
     """A validation with two checks, the second of which failed, and a finding for each misprint, or for some."""
-    checks = [Result(name, "a <stub>", error, 1e-3, "rad", "phi_0^2") for name, error in (("fine", 1e-6), ("bad", 0.5))]
+    errors = {"fine": 1e-6, "bad": 0.5}
+    checks = [Result("stubs", name, "a <stub>", 1e-3, "rad", "phi_0^2", error) for name, error in errors.items()]
     findings = [
         Finding(
             equation, quantity, CORRECTED, "a witness", printed=0.0127 * (place + 1), right=1.7e-9 * (place + 1),

@@ -1,7 +1,7 @@
 """The command line as users run it: in a process of its own, with limits, signals and broken streams.
 
 Nothing here waits for a time: a process says on standard output that it has come to a place, and stays there. At the
-end is what processes of a crew are given to do: each of them loads this module anew, and fast.
+end is what processes of a study are given to do: each of them loads this module anew, and fast.
 """
 
 import contextlib

@@ -3,6 +3,7 @@
 import inspect
 import pathlib
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -20,11 +21,9 @@ from mjbeer.paper.stories import report
 from mjbeer.paper.stories.story import Story
 from mjbeer.studies.benchmark import measure, peers, sweeps
 from mjbeer.studies.benchmark.points import Curve
-from mjbeer.studies.check import Check
-from mjbeer.studies.stability import run as stability_run
-from mjbeer.studies.stability.run import tasks
-from mjbeer.studies.study import Task
-from mjbeer.studies.validation import motions
+from mjbeer.studies.rows import Row
+from mjbeer.studies.stability import search, stiff_maps, study
+from mjbeer.studies.validation import run as validation
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
@@ -55,18 +54,22 @@ def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[flo
 
 
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the stability study one of the first task of each group, but for the maps, which take longer."""
-    first: dict[str, Task] = {}
-    for each in tasks("quick"):
-        first.setdefault(each.group, each)
-    del first["maps"]
-    monkeypatch.setattr(stability_run, "tasks", lambda extent: list(first.values()))
+    """Make the stability study one of the first row of each group, with small maps and few runs, in this process."""
+    first: dict[str, Row] = {}
+    for row in study.plan("quick"):
+        first.setdefault(row.group, row)
+    small = {"maps": partial(stiff_maps.measure, stiff_maps.PLANS[0], (4, 4))}
+    small["damped"] = partial(stiff_maps.measure_damped, "reduced", "Euler", (2, 2))
+    small["search"] = partial(search.batch, 0, 4)
+    first |= {group: replace(first[group], measure=measure) for group, measure in small.items()}
+    monkeypatch.setattr(study, "plan", lambda extent: list(first.values()))
+    monkeypatch.setattr(study.os, "cpu_count", lambda: 1)
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
-    checks = [Check(name, "a stub", 1e-3, "rad", "none", lambda error=error: error) for name, error in errors.items()]
-    monkeypatch.setattr(motions, "checks", lambda: checks)
+    made = [Row("stubs", name, lambda e=error: e, "a stub", 1e-3, "rad", "none") for name, error in errors.items()]
+    monkeypatch.setattr(validation, "rows", lambda: made)
     monkeypatch.setattr(chapters, "claims", list)
 
 

@@ -12,6 +12,7 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.cases import DEFAULT
+from mjbeer.studies.rows import told
 
 if TYPE_CHECKING:
     from mjbeer.studies.validation.run import Validation
@@ -30,17 +31,16 @@ class Validate:
 
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
-        from mjbeer.studies.validation import tables
         from mjbeer.studies.validation.run import validate
 
         began = time.perf_counter()
         validation = validate(STDERR)
         if self.json:
-            terminal.write(tables.to_json(validation))
+            terminal.write(validation.json())
         elif self.table and terminal.is_read_by_eye():
-            show(tables.validation(validation.results), tables.audit(validation.findings))
+            show(*validation.tables())
         elif self.table:
-            show(tables.rows(validation))
+            show(validation.table())
         return _conclude(validation, began)
 
 
@@ -61,12 +61,11 @@ class Report:
     def run(self) -> int:
         """Run the command and return its exit status: 0, or 1 if a check failed."""
         from mjbeer.report.write import write
-        from mjbeer.studies.validation import tables
 
         began = time.perf_counter()
         validation, not_drawn = write(self.output, self.quick, STDERR)
         if self.table:
-            show(tables.validation(validation.results), tables.audit(validation.findings))
+            show(*validation.tables())
         if not_drawn:
             say(not_drawn, "yellow")
         say(f"the report is in {self.output / 'index.html'}")
@@ -103,7 +102,7 @@ class Stability:
     output: pathlib.Path = pathlib.Path("stability")
     """Folder to write to; an interrupted study in it is continued."""
     long: bool = False
-    """Run the whole study: all integrators, finer maps, 20000 random runs, a million swings; takes forty minutes."""
+    """Run the whole study: all integrators, finer maps, 20000 random runs; takes forty minutes."""
     quick: bool = False
     """Make 250 random runs instead of 3000; takes two minutes."""
     maps: bool = False
@@ -117,8 +116,7 @@ class Stability:
         Raises:
           ParameterError: if more than one of long, quick and maps is asked for.
         """
-        from mjbeer.studies.stability import report, tables
-        from mjbeer.studies.stability import run as stability
+        from mjbeer.studies.stability import study as stability
 
         asked = [extent for extent in ("long", "quick", "maps") if getattr(self, extent)]
         if len(asked) > 1:
@@ -127,15 +125,15 @@ class Stability:
         extent = asked[0] if asked else "usual"
         with files.locked(self.output):
             study = stability.conduct(self.output, extent, STDERR)
-            report.write(study, self.output)
+            stability.write(study, self.output)
         if self.json:
-            terminal.write(study.json())
+            terminal.write(stability.to_json(study))
         else:
-            show(*tables.tables(study))
-        for name in study.unexpected:
-            say(f"not as theory expects: {name}", "red")
+            show(*stability.tables(study))
+        for result in study.failed:
+            say(f"not as theory expects: {result.group}: {told(result)}", "red")
         say(f"the study is in {self.output / 'summary.md'}")
-        return _FAILED if study.unexpected else 0
+        return _FAILED if study.failed else 0
 
 
 @dataclass(frozen=True)
@@ -161,10 +159,8 @@ class Paper:
 
 def _conclude(validation: "Validation", began: float) -> int:
     """Print what failed and, on the last line, what passed since the moment `began`; return the exit status."""
-    from mjbeer.studies.validation import tables
-
-    for failure in tables.failures(validation):
+    for failure in validation.failures:
         say(f"FAILED: {failure}", "red")
     style = "green" if validation.passed else "red"
-    say(f"{tables.sentence(validation)}, in {time.perf_counter() - began:.0f} s", style)
+    say(f"{validation.sentence}, in {time.perf_counter() - began:.0f} s", style)
     return 0 if validation.passed else _FAILED

@@ -18,9 +18,8 @@ from mjbeer.report.embed import data_uri, plotting
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.stability import stored
-from mjbeer.studies.study import machine
-from mjbeer.studies.validation import tables
+from mjbeer.studies.rows import machine
+from mjbeer.studies.stability import stiff_maps
 from mjbeer.studies.validation.run import Validation
 
 LIMIT = 25e6
@@ -64,7 +63,7 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         lstrip_blocks=True,
     )
     environment.filters |= {"mathml": mathml, "power": power, "share": share, "marked": _marked}
-    benchmark, maps = Benchmark.load(SHIPPED), stored.load()
+    benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
     films = {name: _film(folder, name) for name in FILMS}
     groups = stability.groups(maps["maps"])
     plots = {"precision": precision.plot(benchmark)}
@@ -82,13 +81,10 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         misprints=[(finding, FORMULAS[finding.equation, finding.quantity]) for finding in _misprints(validation)],
         findings=len(validation.findings),
         stories=_stories(folder, quick, LIMIT - sum(_size(film) for film in films.values())),
-        sentence=tables.sentence(validation),
-        failures=tables.failures(validation),
+        sentence=validation.sentence,
+        failures=validation.failures,
         passed=validation.passed,
-        tables=[
-            tables.validation(validation.results, document=True),
-            tables.audit(validation.findings, document=True),
-        ],
+        tables=validation.tables(document=True),
         machine=machine(),
         quick=quick,
         plots=Markup(_json(plots)),

@@ -4,7 +4,7 @@ import math
 from itertools import groupby
 from typing import Any
 
-from mjbeer.studies.stability.plots import FIGURES, MEANINGS, VALUES
+from mjbeer.studies.stability.stiff_maps import FIGURES, SHADES, VALUES
 
 _STRIPES = ("var(--unstable)", "var(--inaccurate)", "var(--accurate)")
 
@@ -38,7 +38,7 @@ def plot(result: dict[str, Any]) -> dict[str, Any]:
     tooltip = [{"field": field, "title": name, "type": "nominal"} for field, name in fields.items()]
     colour = {
         "field": "outcome",
-        "scale": {"domain": list(MEANINGS), "range": list(_STRIPES)},
+        "scale": {"domain": list(SHADES), "range": list(_STRIPES)},
         "legend": None,
     }
     measured, predicted = (_boundary(result, place) for place in (0, 1))
@@ -101,7 +101,7 @@ def _boxes(result: dict[str, Any]) -> list[dict[str, Any]]:
                     "to": times[place],
                     "below": heights[row],
                     "above": heights[row + 1],
-                    "outcome": MEANINGS[int(outcome)],
+                    "outcome": list(SHADES)[int(outcome)],
                     "told_value": f"{value:.2g} {unit}",
                     "told_times": f"{result['timesteps'][first]:.2g} to {result['timesteps'][place - 1]:.2g} s",
                     "limit": _limit(measured, result["timesteps"]),

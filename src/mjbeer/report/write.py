@@ -8,7 +8,6 @@ from mjbeer.drawing import studio
 from mjbeer.output import files
 from mjbeer.paper.stories import report as stories_report
 from mjbeer.report import films, page
-from mjbeer.studies.validation import tables
 from mjbeer.studies.validation.run import Validation, validate
 
 
@@ -29,7 +28,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
     with files.whole(folder / "index.html") as index:  # a folder that cannot be written to fails here
         (folder / "index.html").unlink(missing_ok=True)
         validation = validate(console)
-        files.write(folder / "validation.json", tables.to_json(validation))
+        files.write(folder / "validation.json", validation.json())
         not_drawn = films.not_drawn([str(order.path.relative_to(folder)) for order in orders])
         stories_report.write(folder / "paper", False, console)
         console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)

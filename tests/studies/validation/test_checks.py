@@ -6,29 +6,28 @@ import math
 import numpy as np
 import pytest
 
-from mjbeer import exact, frozen, hoop, simulate, sliding
+from mjbeer import Can, Scene, exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.model import looks
 from mjbeer.paper.equations.frozen import equilibrium_53, frequency_55, printed_frequency_55
 from mjbeer.paper.equations.sliding import frequency_10
-from mjbeer.studies import convergence
-from mjbeer.studies.check import Check, Result
+from mjbeer.studies.rows import Row
 from mjbeer.studies.validation import models, motions
+from mjbeer.studies.validation.run import rows
 from mjbeer.theory import exact as theory
 from mjbeer.theory import trajectory
 
-CHECKS = motions.checks()
+ROWS = {f"{row.name} - {row.by}": row for row in rows()}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("check", CHECKS, ids=[f"{check.quantity} - {check.by}" for check in CHECKS])
-def test_check(check: Check) -> None:
-    result = check.measure()
+@pytest.mark.parametrize("row", ROWS.values(), ids=ROWS)
+def test_row(row: Row) -> None:
+    result = row.result()
     assert result.passed, f"{result.error} > {result.bound} {result.unit}"
 
 
-def test_what_is_not_a_number_does_not_pass() -> None:
-    assert not Result("", "", math.nan, 1.0, "", "").passed
-    assert Result("", "", 1.0, 1.0, "", "").passed
+def test_rows_are_told_apart() -> None:
+    assert len(ROWS) == len(rows())
 
 
 def test_the_paper_s_frequencies_and_equilibrium_are_theory() -> None:
@@ -52,16 +51,45 @@ def test_a_wrong_motion_is_found_out() -> None:
     assert abs(trajectory.mean_acceleration(steady) / sliding().acceleration() - 1) > 1e-10
 
 
-def test_an_order_is_the_slope() -> None:
-    steps = np.array([0.4, 0.2, 0.1])
-    assert convergence.observed_order(steps, 3 * steps**4) == pytest.approx(4, rel=1e-12)
-
-
 def test_takeoff_is_the_first_sample_in_the_air() -> None:
     fall = exact(hoop(), np.linspace(0, 0.3, 4), 3.0)
     lifted = dataclasses.replace(fall, lift=np.array([-1e-9, 0.0, 1e-6, 2e-6]))
     assert fall.takeoff() is None
     assert lifted.takeoff() == pytest.approx(math.pi - fall.phi[2])
+
+
+@pytest.mark.parametrize(
+    ("quantity", "name", "factor"),
+    [("energy that a swing", "energy_per_swing", 1.01), ("rolling down for", "euler_motion", 1.01)],
+)
+def test_a_wrong_prediction_is_found_out(
+    quantity: str, name: str, factor: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = getattr(motions, name)
+    monkeypatch.setattr(motions, name, lambda *words: factor * right(*words))
+    assert not next(row for told, row in ROWS.items() if told.startswith(quantity)).result().passed
+
+
+def test_energy_that_obeys_the_other_law_is_found_out() -> None:
+    """It drifts in proportion to the number of swings in place of staying within bounds, and the reverse."""
+    free = sliding(0.0, can=Can.hoop(mass=1e5))
+    assert (motions._drift(free, "RK4", 10)[1] - 1).max() > 0.05
+    assert abs(motions._drift_exponent(free, "Euler", 32)) > 0.02
+
+
+def test_the_fold_has_no_other_exponent() -> None:
+    """omega^2, not omega, goes with the root of the distance: the bound is far below the difference."""
+    row = ROWS["frequency over distance from the fold: exponent less 1/4 - frozen, reduced, DOP853"]
+    assert abs(motions._fold_exponent() - 0.5) > 100 * row.bound
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen(), frozen(0.0), pendulum()])
+def test_a_fall_takes_longer_by_its_slope(scene: Scene) -> None:
+    """Exact periods have two falls and two rises, from one end of the swing or from both."""
+    top, rest = scene.separatrix()[1], scene.equilibrium()
+    near, far = (scene.period(top - beside - rest) for beside in (1e-7, 1e-5))
+    ends = 2 if scene.oscillator.slope == 0 else 1
+    assert (near - far) / math.log(1e-2) == pytest.approx(2 * ends * motions.fall_slope(scene), rel=1e-5)
 
 
 @pytest.mark.parametrize("fill", models.FILLS)

@@ -6,17 +6,35 @@ does.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
 from typing import Any
 
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
+import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from mjbeer.exceptions import DivergenceError
+from mjbeer.model import state
+from mjbeer.model.build import build
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, supported
+from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.predictions import linear_stability
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA
+from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS, RUNGE_KUTTA
+from mjbeer.simulation.prepare import Prepared
 from mjbeer.studies.cases import CASES
-from mjbeer.studies.stability.small_swings import Swings
-from mjbeer.studies.study import Task
+from mjbeer.studies.rows import PASSED, Result, Row
+from mjbeer.theory.equations import Coordinates
+from mjbeer.theory.exact import exact
+from mjbeer.theory.oscillator import Oscillator
+from mjbeer.theory.scene import Scene
 
+GROUP = "limits"
+"""The group of the study that the limits are in."""
 AGREEMENT = 0.05
 """Largest relative difference at which a measured limit agrees with the predicted one."""
 _SAMPLE = (("sliding", "reduced"), ("frozen", "reduced"), ("pendulum", "equality"), ("frozen", "contact"))
@@ -29,78 +47,136 @@ _FROM, _TO = 0.2, 12.0
 """Smallest and largest omega h in the search for a limit of stability."""
 _ACCURATE_FROM = {True: 0.1, False: 0.01}
 """Smallest omega h in the search for a limit of accuracy, by whether the method is a Runge-Kutta method."""
+_STABLE_AMPLITUDE = 1e-4
+"""Amplitude of the swing that has to stay bounded [rad]: even a hundredfold, it changes the frequency by 1e-5 only."""
+_ACCURATE_AMPLITUDE = 1e-3
+"""Amplitude of the swing that has to stay accurate [rad]: the exact motion has the same nonlinearity."""
+_FREE_FALL = 1e-2
+"""Relative tolerance for saying that the last RK4 stage was in free fall. Without contact it adds -g h cos(alpha)/6 to
+lift_dot; with contact, a thousandth of that."""
+
+
+def rows(quick: bool = False) -> list[Row]:
+    """Return a row a scene, way of rolling and integrator; a `quick` study has a sample of them."""
+    found = []
+    for case in CASES:
+        for rolling in (way for way in ROLLINGS if supported(CASES[case].scene, way)):
+            tried: list[tuple[Integrator, bool]] = [(name, True) for name in (*INTEGRATORS, DOP853)]
+            if rolling == "contact":
+                tried.append(("RK4", False))
+            for integrator, settled in tried:
+                if quick and not (settled and integrator in ("Euler", "RK4", DOP853) and (case, rolling) in _SAMPLE):
+                    continue
+                name = f"{case}, {rolling}, {integrator}" + ("" if settled else ", not settled")
+                reason = "bisection to 0.4 %, and an instability has to grow before it is seen"
+                measured = partial(measure, case, rolling, integrator, settled)
+                found.append(Row(GROUP, name, measured, bound=AGREEMENT, unit="relative", reason=reason))
+    return found
 
 
 def measure(case: str, rolling: Rolling, integrator: Integrator, settled: bool = True) -> dict[str, Any]:
     """Return the two limits of one way to simulate one scene, measured and predicted, all as omega h.
 
-    "agrees" is whether both are within `AGREEMENT` of the prediction. A can in contact that is not `settled` starts
-    where `simulate` starts it, 1e-9 radii deep, and only its stability is measured. For it, "lost_a_stage" is whether
-    one of RK4's stages in the first step has no contact at the limit; linear theory does not cover that.
+    "error" is the larger relative difference of the two. A can in contact that is not `settled` starts where `simulate`
+    starts it, 1e-9 radii deep, and only its stability is measured. For it, "lost_a_stage" is whether one of RK4's
+    stages in the first step has no contact at the limit; linear theory does not cover that.
     """
     swings = Swings(CASES[case].scene, rolling, integrator, settled)
     stable, unstable = _limit(swings.bounded, _FROM, _TO)
     predicted = linear_stability.stable_limit(integrator)
-    result = {
-        **{"case": case, "rolling": rolling, "integrator": integrator, "settled": settled},
-        **{"frequency": CASES[case].scene.frequency(), "stable": stable, "stable_predicted": predicted},
-        "stable_ratio": stable / predicted,
-    }
+    error = abs(stable / predicted - 1)
+    about = {"case": case, "rolling": rolling, "integrator": integrator, "settled": settled}
+    result = about | {"stable": stable, "stable_predicted": predicted}
     if not settled:
-        lost = not _close(stable, predicted) and swings.loses_a_stage(unstable)
-        return result | {"lost_a_stage": lost, "agrees": _close(stable, predicted) or lost}
+        lost = error > AGREEMENT and swings.loses_a_stage(unstable)
+        return result | {"lost_a_stage": lost, "error": 0.0 if lost else error}
     accurate, _ = _limit(swings.accurate, _ACCURATE_FROM[integrator in RUNGE_KUTTA], stable)
     expected = swings.accurate_limit()
-    return result | {
-        **{"accurate": accurate, "accurate_predicted": expected, "accurate_ratio": accurate / expected},
-        "agrees": _close(stable, predicted) and _close(accurate, expected),
-    }
+    error = max(error, abs(accurate / expected - 1))
+    return result | {"accurate": accurate, "accurate_predicted": expected, "error": error}
 
 
-def tasks(quick: bool = False) -> list[Task]:
-    """Return one task a scene, way of rolling and integrator; a `quick` study has a sample of them."""
-    chosen = []
-    for case, rolling, integrator, settled in _combinations():
-        if quick and not (integrator in ("Euler", "RK4", DOP853) and (case, rolling) in _SAMPLE and settled):
-            continue
+@dataclass(frozen=True)
+class Swings:
+    """Small swings of a scene about its equilibrium with one integrator. `swing` is the timestep as omega h."""
 
-        def take(case=case, rolling=rolling, integrator=integrator, settled=settled) -> dict[str, Any]:
-            return measure(case, rolling, integrator, settled)
+    scene: Scene
+    rolling: Rolling
+    integrator: Integrator
+    settled: bool = True
+    """Whether a can in contact starts at the depth at which it is carried, or 1e-9 radii deep as in `simulate`."""
 
-        name = f"{case}, {rolling}, {integrator}" + ("" if settled else ", not settled")
-        chosen.append(Task("limits", name, take))
-    return chosen
+    def bounded(self, swing: float) -> bool:
+        """Return whether the energy stays below `GROWTH` squared times its initial value, over `PERIODS` periods."""
+        form, rest = self.scene.oscillator, self.scene.equilibrium()
+        try:
+            motion = self._simulate(swing, _STABLE_AMPLITUDE, math.floor(PERIODS * 2 * math.pi / swing))
+        except DivergenceError:
+            return False
+        above = form.inertia(motion.phi) * motion.phi_dot**2 / 2 - form.drop(motion.phi, rest)
+        return bool((above < GROWTH**2 * above[0]).all())
+
+    def accurate(self, swing: float) -> bool:
+        """Return whether the error stays below `ACCURACY` over `ACCURATE_PERIODS` periods."""
+        steps, omega = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing), self.scene.frequency()
+        try:
+            motion = self._simulate(swing, _ACCURATE_AMPLITUDE, steps)
+        except DivergenceError:
+            return False
+        start = self.scene.equilibrium() + _ACCURATE_AMPLITUDE
+        truth = exact(self.scene, np.arange(steps + 1) * swing / omega, start)
+        off = np.hypot(motion.phi - truth.phi, (motion.phi_dot - truth.phi_dot) / omega)
+        return bool(off.max() < ACCURACY * _ACCURATE_AMPLITUDE)
+
+    def accurate_limit(self) -> float:
+        """Return the largest omega h of an accurate swing by theory.
+
+        A contact is the softer the longer the timestep to which it is tuned. The can sinks in by delta, in proportion
+        to h^2, and rolls like one of radius a - delta/2, whose equilibrium and frequency are slightly different. delta
+        is read from the model at rest.
+        """
+        scene = self.scene
+        if self.rolling != "contact":
+            return linear_stability.accurate_limit(self.integrator)
+        omega, rest = scene.frequency(), scene.equilibrium()
+        model = build(scene, self.rolling, integrator=self.integrator, timestep=1 / omega)
+        settled = state.settle(model, state.start(model, scene, rest, 0.0))
+        depth = -float(state.read(model, scene, settled[None], times=np.zeros(1)).lift[0])
+        reduce = Oscillator.sliding if scene.attachment == "sliding" else Oscillator.frozen
+
+        def excess(swing: float) -> float:
+            can = replace(scene.can, radius=scene.can.radius - depth * swing**2 / 2)
+            form = reduce(can, scene.load, scene.incline, scene.gravity)
+            drift = (form.equilibrium() - rest) / _ACCURATE_AMPLITUDE
+            return linear_stability.error(self.integrator, swing, drift, form.frequency() / omega) - ACCURACY
+
+        return linear_stability.first(excess, 5e-3, linear_stability.stable_limit(self.integrator))
+
+    def loses_a_stage(self, swing: float) -> bool:
+        """Return whether the last of RK4's stages in the first step has no contact and falls freely.
+
+        That stage has a weight of a sixth, so that it then adds -g h cos(alpha)/6 to lift_dot.
+        """
+        motion = self._simulate(swing, _STABLE_AMPLITUDE, 1)
+        falls = -self.scene.gravity * math.cos(self.scene.incline) * swing / self.scene.frequency() / 6
+        return bool(abs(motion.lift_dot[1] / falls - 1) < _FREE_FALL)
+
+    def _simulate(self, swing: float, amplitude: float, steps: int) -> Coordinates:
+        """Return a number of steps of a swing of an amplitude [rad]."""
+        scene, timestep = self.scene, swing / self.scene.frequency()
+        prepared = Prepared(scene, Setting(self.rolling, self.integrator, timestep))
+        start = prepared.start(scene.equilibrium() + amplitude, 0.0)
+        start = state.settle(prepared.model, start) if self.settled else start
+        times = timestep * np.arange(steps + 1)
+        return prepared.coordinates(prepared.solve(start, times).states, times)
 
 
-def table(results: list[dict[str, Any]]) -> Table:
-    """Return the limits as a table, each with measured over predicted in brackets."""
-    rows = []
-    for result in results:
-        accurate = f"{result['accurate']:.3g} ({result['accurate_ratio']:.3f})" if "accurate" in result else "-"
-        verdict = "yes" if result["agrees"] else "NO"
-        row = (
-            f"{result['case']}, {result['rolling']}" + ("" if result["settled"] else ", not settled"),
-            result["integrator"],
-            f"{result['stable']:.3f} ({result['stable_ratio']:.3f})",
-            accurate,
-            "a stage of RK4 loses the contact" if result.get("lost_a_stage") else verdict,
-        )
-        rows.append(row)
-    columns = ("scene", "integrator", "stable to ωh (over theory)", "accurate to ωh (over theory)", "agrees")
-    return Table("Largest timesteps of a small swing", columns, rows)
-
-
-def _combinations() -> list[tuple[str, Rolling, Integrator, bool]]:
-    """Return all scenes, ways of rolling and integrators, and whether a can in contact starts settled."""
-    combinations: list[tuple[str, Rolling, Integrator, bool]] = []
-    for case, kind in CASES.items():
-        for rolling in ROLLINGS:
-            if rolling != "reduced" and kind.scene.attachment == "sliding" and kind.scene.can.mass == 0:
-                continue  # in MuJoCo every moving body needs mass
-            combinations += [(case, rolling, integrator, True) for integrator in (*INTEGRATORS, DOP853)]
-            if rolling == "contact":
-                combinations.append((case, rolling, "RK4", False))
-    return combinations
+def bisected(holds: Callable[[float], bool], low: float, high: float, ratio: float) -> tuple[float, float]:
+    """Return two positive numbers of at most this ratio, where a condition that `holds` at `low` ends before `high`."""
+    while high / low > ratio:
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low, high
 
 
 def _limit(holds: Callable[[float], bool], low: float, high: float) -> tuple[float, float]:
@@ -114,12 +190,56 @@ def _limit(holds: Callable[[float], bool], low: float, high: float) -> tuple[flo
         low *= _RISE
         if low > high:
             return low, math.inf
-    above = low * _RISE
-    while above / low > _RESOLUTION:
-        middle = math.sqrt(low * above)
-        low, above = (middle, above) if holds(middle) else (low, middle)
-    return low, above
+    return bisected(holds, low, low * _RISE, _RESOLUTION)
 
 
-def _close(measured: float, predicted: float) -> bool:
-    return abs(measured / predicted - 1) <= AGREEMENT
+def table(results: Sequence[Result]) -> Table:
+    """Return the limits as a table, each with measured over predicted in brackets."""
+    lines = []
+    for result in results:
+        of, accurate = result.values, "-"
+        if "accurate" in of:
+            accurate = f"{of['accurate']:.3g} ({of['accurate'] / of['accurate_predicted']:.3f})"
+        stable = f"{of['stable']:.3f} ({of['stable'] / of['stable_predicted']:.3f})"
+        lost = "a stage of RK4 loses the contact"
+        lines.append((result.name, stable, accurate, lost if of.get("lost_a_stage") else PASSED[result.passed]))
+    columns = ("swing", "stable to ωh (over theory)", "accurate to ωh (over theory)", "verdict")
+    return Table("Largest timesteps of a small swing", columns, lines)
+
+
+def draw(results: Sequence[Result], path: Path) -> None:
+    """Draw the limits over the integrators, to `path` with .svg and with .png appended.
+
+    Raises:
+      OutputError: if a file cannot be written.
+    """
+    limits = [result.values for result in results]
+    names = [name for name in (*INTEGRATORS, DOP853) if any(of["integrator"] == name for of in limits)]
+    cases = [case for case in CASES if any(of["case"] == case for of in limits)]
+    markers, colours = dict(zip(ROLLINGS, "os^", strict=True)), dict(zip(CASES, COLOURS, strict=False))
+    title = "How long may a timestep be? Limits of small swings, and linear theory"
+    subtitle = "reduced: rolling is built into the coordinates; equality: a constraint of two joints; contact: friction"
+    with chart(path, width=10, height=6.5, title=title, subtitle=subtitle) as [axes]:
+        for place, name in enumerate(names):
+            for limit in (linear_stability.stable_limit(name), linear_stability.accurate_limit(name)):
+                axes.plot([place - 0.45, place + 0.45], [limit] * 2, color="black", linewidth=1.2, zorder=1)
+        for of in limits:
+            x = names.index(of["integrator"]) + (cases.index(of["case"]) - (len(cases) - 1) / 2) * 0.16
+            x += (ROLLINGS.index(of["rolling"]) - 1) * 0.045
+            style: dict[str, Any] = {"linestyle": "none", "color": colours[of["case"]], "markersize": 6}
+            marker = markers[of["rolling"]] if of["settled"] else "x"
+            axes.plot([x], [of["stable"]], marker=marker, **style)
+            if of["settled"]:
+                axes.plot([x], [of["accurate"]], marker=marker, markerfacecolor="white", **style)
+        style = {"linestyle": "none", "color": GREY}
+        handles: list[Artist] = [Patch(facecolor=colours[case], label=case) for case in cases]
+        handles += [Line2D([], [], marker=marker, label=name, **style) for name, marker in markers.items()]
+        handles += [
+            Line2D([], [], marker="o", label="largest stable timestep", **style),
+            Line2D([], [], marker="o", markerfacecolor="white", label="largest accurate timestep (1 %)", **style),
+            Line2D([], [], marker="x", label="stable, contact not settled", **style),
+            Line2D([], [], color="black", label="linear theory of the scene"),
+        ]
+        axes.set_xticks(range(len(names)), names)
+        axes.set(yscale="log", xlabel="integrator", ylabel="frequency of the swing × timestep, ωh", ylim=(1e-2, 12))
+        name_below([axes], 4, handles)

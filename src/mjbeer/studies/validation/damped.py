@@ -1,72 +1,86 @@
-"""Checks of damped scenes: between sliding and frozen, steady rolling with its modes, loops, and trajectories."""
+"""Rows of damped scenes: between sliding and frozen, steady rolling with its modes, loops, and trajectories."""
 
+import math
 from collections.abc import Iterator
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, partial
 
+import mujoco
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
-from mjbeer.model.setting import Rolling
+from mjbeer.model.build import build
+from mjbeer.model.setting import DOP853, Rolling
+from mjbeer.model.state import read, write
 from mjbeer.paper.equations.frozen import frequency_55
 from mjbeer.paper.equations.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies.check import Check
 from mjbeer.studies.convergence import observed_order
-from mjbeer.studies.validation import loops, modes
+from mjbeer.studies.rows import Row
 from mjbeer.theory.can import Can
+from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.scene import Scene, frozen, liquid_in, sliding
 
 CANS = {"massless can": Can(), "metal can": Can.sheet_metal()}
 """The cans of the paper's sections 2 and 3."""
+SIX_DECADES = tuple(float(c) for c in np.geomspace(1e-5, 10, 7))
+"""Damping from nearly free to stiff [N m s]: the fast mode decays with 9e4 1/s at the end."""
+_ASIDE = 1e-4
+"""Half the width of the central differences, relative. Their next term is its square over about 3, 4e-9; rounding over
+it is as large where steady rolling is fastest."""
+_SETTLED = 30.0
+"""Time after which a loop is steady [s]: what distinguishes it decays in a second or faster."""
 
 
-def checks() -> Iterator[Check]:
-    """Yield the checks of damped scenes."""
+def rows() -> Iterator[Row]:
+    """Yield the rows of damped scenes."""
     yield from _limits()
     yield from _steady_rolling()
-    yield from modes.checks(CANS)
-    yield from loops.checks(CANS)
-    yield from _trajectories()
+    yield from _modes()
+    yield from _loops()
+    metal, water = CANS["metal can"], liquid_in("water", can=CANS["metal can"])
+    scenes = {f"massless can, {c:g} N m s": sliding(damping=c) for c in (1e-5, 1e-3, 0.1, 10.0)}
+    scenes |= {
+        "metal can, 1e-3 N m s": sliding(can=metal, damping=1e-3),
+        "metal can, water": sliding(can=metal, density=water.density, damping=water.damping),
+    }
+    for name, scene in scenes.items():
+        yield Row(
+            "damped", "phi over 1 s from 1 rad, tolerance 1e-10",
+            lambda scene=scene: phi_error(simulate(scene, 1, 1.0, tolerance=1e-10), relative=True),
+            f"sliding, {name}, reduced", 1e-10, "rad", "the tolerance",
+        )  # fmt: skip
 
 
-def _limits() -> Iterator[Check]:
-    weak, strong, small = sliding(0.0, damping=1e-7), sliding(damping=10.0), "1e-3 rad"
-    yield Check(
-        quantity=f"frequency, eq. (10), damping 1e-7 N m s, amplitude {small}",
-        by="sliding on level ground, reduced, tolerance 1e-10",
-        bound=3e-7,
-        unit="relative",
-        reason="the amplitude itself: 2e-7",
-        deviation=lambda: _frequency(weak) / frequency_10(weak) - 1,
-    )
-    yield Check(
-        quantity=f"frequency, corrected eq. (55), damping 10 N m s, amplitude {small}",
-        by="sliding, reduced, tolerance 1e-10",
-        bound=3e-7,
-        unit="relative",
-        reason="the amplitude itself: 2.5e-7",
-        deviation=lambda: _frequency(strong) / frequency_55(frozen()) - 1,
-    )
+def _limits() -> Iterator[Row]:
+    weak, strong, small = sliding(0.0, damping=1e-7), sliding(damping=10.0), "amplitude 1e-3 rad"
+    yield Row(
+        "damped", f"frequency, eq. (10), damping 1e-7 N m s, {small}",
+        lambda: _frequency(weak) / frequency_10(weak) - 1, "sliding on level ground, reduced, tolerance 1e-10",
+        3e-7, "relative", "the amplitude itself: 2e-7",
+    )  # fmt: skip
+    yield Row(
+        "damped", f"frequency, corrected eq. (55), damping 10 N m s, {small}",
+        lambda: _frequency(strong) / frequency_55(frozen()) - 1, "sliding, reduced, tolerance 1e-10",
+        3e-7, "relative", "the amplitude itself: 2.5e-7",
+    )  # fmt: skip
     for name, can in CANS.items():
-        yield Check(
-            quantity="power of the damping with which it bends the free motion, less 1",
-            by=f"sliding, {name}, reduced, 1e-8 and 1e-7 N m s",
-            bound=1e-3,
-            unit="",
-            reason="the next power, which has 3e-4 of the first at 1e-7 N m s",
-            deviation=lambda can=can: _approach(sliding(can=can), can, (1e-8, 1e-7), 1e-12) - 1,
-        )
-        yield Check(
-            quantity="power of the damping with which the load creeps off the frozen motion, plus 1",
-            by=f"sliding, {name}, reduced, 1 and 10 N m s",
-            bound=5e-3,
-            unit="",
-            reason="the next power, which has 3e-3 of the first at 1 N m s",
-            deviation=lambda can=can: _approach(frozen(can=can), can, (1.0, 10.0), 1e-9) + 1,
-        )
+        yield Row(
+            "damped", "power of the damping with which it bends the free motion, less 1",
+            lambda can=can: _approach(sliding(can=can), can, (1e-8, 1e-7), 1e-12) - 1,
+            f"sliding, {name}, reduced, 1e-8 and 1e-7 N m s", 1e-3, "",
+            "the next power, which has 3e-4 of the first at 1e-7 N m s",
+        )  # fmt: skip
+        yield Row(
+            "damped", "power of the damping with which the load creeps off the frozen motion, plus 1",
+            lambda can=can: _approach(frozen(can=can), can, (1.0, 10.0), 1e-9) + 1,
+            f"sliding, {name}, reduced, 1 and 10 N m s", 5e-3, "",
+            "the next power, which has 3e-3 of the first at 1 N m s",
+        )  # fmt: skip
 
 
-def _steady_rolling() -> Iterator[Check]:
+def _steady_rolling() -> Iterator[Row]:
     settings: tuple[tuple[str, Rolling, float, str], ...] = (
         ("massless can", "reduced", 1e-12, "rounding, at a fixed point of RK4"),
         ("metal can", "reduced", 1e-12, "rounding, at a fixed point of RK4"),
@@ -74,41 +88,65 @@ def _steady_rolling() -> Iterator[Check]:
     )
     for name, rolling, bound, reason in settings:
         scene, by = sliding(can=CANS[name], damping=2e-3), f"sliding, {name}, 2e-3 N m s, {rolling}, RK4, 1 ms"
-        yield Check(
-            quantity="terminal speed, 15 s after a start at rest",
-            by=by,
-            bound=bound,
-            unit="relative",
-            reason=reason,
-            deviation=lambda scene=scene, rolling=rolling: _steady(scene, rolling)[0] / scene.terminal_speed() - 1,
-        )
-        yield Check(
-            quantity="terminal tilt, eq. (53), 15 s after a start at rest",
-            by=by,
-            bound=1e-12,
-            unit="rad",
-            reason="rounding of the torques",
-            deviation=lambda scene=scene, rolling=rolling: _steady(scene, rolling)[1] - scene.terminal_tilt(),
-        )
+        yield Row(
+            "damped", "terminal speed, 15 s after a start at rest",
+            lambda scene=scene, rolling=rolling: _steady(scene, rolling)[0] / scene.terminal_speed() - 1,
+            by, bound, "relative", reason,
+        )  # fmt: skip
+        yield Row(
+            "damped", "terminal tilt, eq. (53), 15 s after a start at rest",
+            lambda scene=scene, rolling=rolling: _steady(scene, rolling)[1] - scene.terminal_tilt(),
+            by, 1e-12, "rad", "rounding of the torques",
+        )  # fmt: skip
 
 
-def _trajectories() -> Iterator[Check]:
-    metal = CANS["metal can"]
-    water = liquid_in("water", can=metal)
-    scenes = {f"massless can, {c:g} N m s": sliding(damping=c) for c in (1e-5, 1e-3, 0.1, 10.0)}
-    scenes |= {
-        "metal can, 1e-3 N m s": sliding(can=metal, damping=1e-3),
-        "metal can, water": sliding(can=metal, density=water.density, damping=water.damping),
-    }
-    for name, scene in scenes.items():
-        yield Check(
-            quantity="phi over 1 s from 1 rad, tolerance 1e-10",
-            by=f"sliding, {name}, reduced",
-            bound=1e-10,
-            unit="rad",
-            reason="the tolerance",
-            deviation=lambda scene=scene: phi_error(simulate(scene, 1, 1.0, tolerance=1e-10), relative=True),
-        )
+def _modes() -> Iterator[Row]:
+    for name, can in CANS.items():
+        yield Row(
+            "damped", "decay and frequency of a swing of 3e-4 rad: root of the cubic",
+            lambda can=can: max(_root_error(sliding(0.0, can=can, damping=c)) for c in SIX_DECADES),
+            f"sliding on level ground, {name}, 1e-5 to 10 N m s, reduced, tolerance 1e-10", 1e-7, "relative",
+            "the amplitude itself: 2e-8",
+        )  # fmt: skip
+    differences = "the width of the differences, 4e-9, and as much rounding at the terminal speed, 37 m/s at most"
+    settings: tuple[tuple[str, Rolling, float, str], ...] = (
+        ("massless can", "reduced", 3e-8, differences),
+        ("metal can", "reduced", 3e-8, differences),
+        ("metal can", "equality", 1e-7, "rounding of the constraint's force at the terminal speed, 34 m/s at most"),
+    )
+    for name, rolling, bound, reason in settings:
+        yield Row(
+            "damped", "each decay and frequency of the linearized model: roots of the cubic",
+            lambda can=CANS[name], rolling=rolling: max(
+                _spectrum_error(sliding(can=can, damping=c), rolling) for c in SIX_DECADES
+            ),
+            f"sliding, {name}, 1e-5 to 10 N m s, {rolling}", bound, "relative", reason,
+        )  # fmt: skip
+
+
+def _loops() -> Iterator[Row]:
+    steep, shallow = math.radians(30), sliding(damping=3e-3)
+    for name, scene, rate in (
+        ("massless can, 30 degrees, 3e-3 N m s", sliding(steep, damping=3e-3), 132.9),
+        ("metal can, 30 degrees, 1e-2 N m s", sliding(steep, can=CANS["metal can"], damping=1e-2), 120.1),
+        ("massless can, 10 degrees, 3e-3 N m s", shallow, 72.7),
+    ):
+        by = f"sliding, {name}, looping, reduced, DOP853, 1 ms"
+        reason = "the ends of whole turns, interpolated between samples 0.2 ms apart"
+        yield Row(
+            "damped", "mean slip rate D of a load that turns steadily",
+            lambda scene=scene, rate=rate: _loop(scene, rate).mean / scene.slip_rate() - 1,
+            by, 1e-9, "relative", reason,
+        )  # fmt: skip
+        yield Row(
+            "damped", "variance of the slip rate, D times the mean rate of the load",
+            lambda scene=scene, rate=rate: _loop(scene, rate).excess(scene), by, 1e-9, "relative", reason,
+        )  # fmt: skip
+    yield Row(
+        "damped", "ways to go on for ever, less two: steady rolling and a loop",
+        lambda: sum((_rolls(shallow), _loop(shallow, 72.7).turning > 1)) - 2,
+        "sliding, massless can, 10 degrees, 3e-3 N m s, reduced", 0, "", "the load turns or not",
+    )  # fmt: skip
 
 
 def _frequency(scene: Scene) -> float:
@@ -133,3 +171,91 @@ def _steady(scene: Scene, rolling: Rolling) -> tuple[float, float]:
     """Return the speed of the axis [m/s] and phi [rad] in the end, after fifty times of the slowest decay."""
     end = simulate(scene, 15, 0.0, rolling=rolling)
     return float(end.u_dot[-1]), float(end.phi[-1])
+
+
+def _root_error(scene: Scene) -> float:
+    """Return the distance of a simulated swing's complex root from the cubic's, relative to its size.
+
+    The samples are states, each of which is the same matrix times the one before. Directions that the samples hardly
+    have are left out: rounding fills those of a mode that has decayed.
+    """
+    unit = math.sqrt(scene.gravity / scene.can.radius)
+    run = simulate(scene, 2, 3e-4, tolerance=1e-10, times=np.linspace(0, 2, 201))
+    states = np.stack([run.phi, run.phi_dot / unit, run.u_dot / (unit * scene.can.radius)])
+    left, sizes, right = np.linalg.svd(states[:, :-1], full_matrices=False)
+    kept = sizes > 1e-7 * sizes[0]
+    matrix = left[:, kept].T @ states[:, 1:] @ right[kept].T / sizes[kept]
+    factors, roots = np.linalg.eigvals(matrix), scene.modes()
+    swing, expected = factors[np.argmax(factors.imag)], roots[np.argmax(roots.imag)]
+    return float(abs(np.log(swing) / run.time[1] / expected - 1))
+
+
+def _spectrum_error(scene: Scene, rolling: Rolling) -> float:
+    """Return the largest error of a decay or a frequency among all eigenvalues of a linearized model, relative."""
+    found, roots = np.sort_complex(np.linalg.eigvals(_linearization(scene, rolling))), scene.modes()
+    pairs = [(found.real, roots.real), (found.imag[roots.imag != 0], roots.imag[roots.imag != 0])]
+    return max(float(np.abs(value / expected - 1).max()) for value, expected in pairs)
+
+
+def _linearization(scene: Scene, rolling: Rolling) -> np.ndarray:
+    """Return the matrix [1/s] of small motions of phi, phi_dot and u_dot about the steady rolling of a damped scene.
+
+    Rates are in units of sqrt(g/a), which leaves the eigenvalues as they are. No timestep takes part.
+    """
+    model, unit = build(scene, rolling), math.sqrt(scene.gravity / scene.can.radius)
+    data, units = mujoco.MjData(model), np.array([1.0, unit, scene.can.radius * unit])
+
+    def slope(state: np.ndarray) -> np.ndarray:
+        values = {"phi": state[0], "phi_dot": state[1], "u_dot": state[2], "roll_dot": state[2] / scene.can.radius}
+        sample = {name: np.array([values.get(name, 0.0)]) for name in Coordinates.__dataclass_fields__}
+        now = write(model, Coordinates(**sample))[0]
+        data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = now[: model.nq], now[model.nq :], 0.0
+        mujoco.mj_forward(model, data)
+        rates = read(model, scene, np.concatenate([data.qvel, data.qacc])[np.newaxis], np.zeros(1))
+        return np.array([state[1], rates.phi_dot[0], rates.u_dot[0]])
+
+    steady = np.array([scene.terminal_tilt(), 0.0, scene.terminal_speed()])
+    columns = [(slope(steady + aside) - slope(steady - aside)) / (2 * _ASIDE) for aside in np.diag(_ASIDE * units)]
+    return np.stack(columns, axis=1) / units[:, np.newaxis]
+
+
+@dataclass(frozen=True)
+class _Loop:
+    """A steady loop over a whole number of turns."""
+
+    turning: float
+    """Mean rate of the load [rad/s]."""
+    mean: float
+    """Mean slip rate [rad/s]."""
+    variance: float
+    """Variance of the slip rate [rad^2/s^2]."""
+
+    def excess(self, scene: Scene) -> float:
+        """Return by how much the variance exceeds D times the mean rate of the load, relative."""
+        return self.variance / (scene.slip_rate() * self.turning) - 1
+
+
+@cache
+def _loop(scene: Scene, rate: float) -> _Loop:
+    """Return what is measured on the steady loop that MuJoCo reaches from a start at phi = 0 with a `rate` [rad/s].
+
+    Over whole turns even samples give the mean of what is periodic to rounding; how long they last is found first.
+    """
+    run = partial(simulate, scene, _SETTLED + 1, 0.0, rate, integrator=DOP853)
+    some = run(times=np.linspace(_SETTLED, _SETTLED + 1, 5001))
+    turns = math.floor((some.phi[-1] - some.phi[0]) / (2 * math.pi))
+    angle = CubicHermiteSpline(some.time, some.phi, some.phi_dot)
+    last = angle.solve(some.phi[0] + 2 * math.pi * turns, extrapolate=False)[-1]
+    whole = run(times=np.linspace(_SETTLED, last, 64 * turns + 1))
+    slip = whole.u_dot / scene.can.radius - whole.phi_dot
+    duration = float(last) - _SETTLED
+    turning = float(whole.phi[-1] - whole.phi[0]) / duration
+    mean = float(whole.u[-1] - whole.u[0]) / scene.can.radius / duration - turning
+    return _Loop(turning, mean, float(((slip - mean) ** 2)[:-1].mean()))
+
+
+def _rolls(scene: Scene) -> bool:
+    """Return whether a load that starts at rest near the terminal tilt does not turn in the end."""
+    times = np.array([_SETTLED, _SETTLED + 1])
+    phi = simulate(scene, times[-1], scene.terminal_tilt() + 0.1, times=times).phi
+    return bool(abs(phi[1] - phi[0]) < 1e-3)

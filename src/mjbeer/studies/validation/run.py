@@ -1,14 +1,26 @@
-"""validate(): measure every check against theory and every claim of the paper's audit."""
+"""validate(): measure every row against theory and every claim of the paper's audit; the tables of both."""
 
+import dataclasses
+import json
+import math
 from dataclasses import dataclass
+from importlib.metadata import version
+from typing import Any
 
 from rich.console import Console
 
-from mjbeer.output.terminal import progress_bar
+from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import Finding
-from mjbeer.studies.check import Result
-from mjbeer.studies.validation import motions
+from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, LIMIT, Finding
+from mjbeer.studies.rows import FAILED, PASSED, Result, Row, table, told
+from mjbeer.studies.validation import damped, models, motions
+
+_WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
+"""The verdicts of the audit, short enough for a terminal."""
+_COLUMNS = (
+    "part", "equation", "quantity", "by", "error", "at most", "unit", "error of what is printed", "must be", "row",
+    "what dominates the error",
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -16,7 +28,7 @@ class Validation:
     """The results of a validation."""
 
     results: list[Result]
-    """Results of the checks against exact theory."""
+    """Results of the rows against exact theory."""
     findings: list[Finding]
     """Findings of the audit of the paper."""
 
@@ -25,16 +37,106 @@ class Validation:
         """Whether every result and every finding passed."""
         return all(row.passed for row in (*self.results, *self.findings))
 
+    @property
+    def sentence(self) -> str:
+        """How many checks and how many rows of the audit passed."""
+        return (
+            f"{sum(result.passed for result in self.results)} of {len(self.results)} checks and "
+            f"{sum(finding.passed for finding in self.findings)} of {len(self.findings)} rows of the audit passed"
+        )
+
+    @property
+    def failures(self) -> list[str]:
+        """A line for each check and each row of the audit that failed."""
+        audit = [
+            f"{finding.equation} {finding.quantity} ({finding.witness}): error {_judged(finding):.1e}, at most "
+            f"{finding.bound:.1e}"
+            + ("" if finding.misses_by is None
+               else f"; as printed {finding.printed:.2g}, expected {finding.misses_by:.2g}")
+            for finding in self.findings if not finding.passed
+        ]  # fmt: skip
+        return [*(told(result) for result in self.results if not result.passed), *audit]
+
+    def tables(self, document: bool = False) -> list[Table]:
+        """Return the tables of the checks and of the audit, for a terminal or a document."""
+        return [table("Validation against exact theory", self.results, document), audit(self.findings, document)]
+
+    def table(self) -> Table:
+        """Return one table for programs, with all digits: a row for each check and each row of the audit."""
+        checks = [
+            ("check", "", result.name, result.by, repr(result.error), repr(result.bound), result.unit, "", "",
+             PASSED[result.passed], result.reason)
+            for result in self.results
+        ]  # fmt: skip
+        findings = [
+            ("audit", finding.equation, finding.quantity, finding.witness, repr(_judged(finding)),
+             repr(finding.bound), "relative",
+             *(("", "") if finding.misses_by is None else (repr(finding.printed), repr(finding.misses_by))),
+             PASSED[finding.passed], finding.reason)
+            for finding in self.findings
+        ]  # fmt: skip
+        return Table("Validation", _COLUMNS, [*checks, *findings])
+
+    def json(self) -> str:
+        """Return the results and the findings as JSON, with the versions of the packages that were used."""
+        versions = {name: version(name) for name in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
+        names = {"name": "quantity", "by": "by", "error": "error", "bound": "bound", "unit": "unit", "reason": "reason"}
+        checks = [
+            {told: getattr(result, name) for name, told in names.items()} | {"passed": result.passed}
+            for result in self.results
+        ]
+        findings = [dataclasses.asdict(finding) | {"passed": finding.passed} for finding in self.findings]
+        content = {"checks": [_finite(each) for each in checks], "audit": [_finite(each) for each in findings]}
+        return json.dumps({"versions": versions, "passed": self.passed, **content}, indent=2, allow_nan=False) + "\n"
+
+
+def rows() -> list[Row]:
+    """Return all rows of the validation, in the order of its table."""
+    return [*motions.rows(), *damped.rows(), *models.rows(), *motions.extremes()]
+
 
 def validate(console: Console) -> Validation:
-    """Measure every check and every claim, and return the results; `console` shows a progress bar."""
-    checks, claims = motions.checks(), chapters.claims()
+    """Measure every row and every claim, and return the results; `console` shows a progress bar."""
+    listed, claims = rows(), chapters.claims()
     results, findings = [], []
-    with progress_bar(console, len(checks) + len(claims)) as begin:
-        for check in checks:
-            begin(f"{check.quantity} ({check.by})")
-            results.append(check.measure())
+    with progress_bar(console, len(listed) + len(claims)) as begin:
+        for row in listed:
+            begin(f"{row.name} ({row.by})")
+            results.append(row.result())
         for claim in claims:
             begin(f"{claim.equation} {claim.quantity}")
             findings.append(claim.measure())
     return Validation(results, findings)
+
+
+def audit(findings: list[Finding], document: bool = False) -> Table:
+    """Return the table of the audit; a `document` also has the witnesses, and what dominates each error."""
+    lines = []
+    for finding in findings:
+        errors = (
+            f"{finding.printed:.1e}" if finding.misses_by is None else f"{finding.printed:.2g}",
+            "" if finding.right is None else f"{finding.right:.1e}",
+        )
+        bound = f"{finding.bound:.1e}"
+        if document:
+            failed = "" if finding.passed else FAILED
+            line = (finding.verdict, finding.witness, *errors, bound + failed, finding.reason)
+        else:
+            line = (_WORDS[finding.verdict], *errors, bound, PASSED[finding.passed])
+        lines.append((finding.equation, finding.quantity, *line))
+    title, columns = "The paper, equation by equation", ("equation", "quantity", "verdict")
+    if document:
+        columns += ("witness", "error, printed", "error, right", "at most", "what dominates")
+        return Table(title, columns, lines, left=(0, 1, 2, 3, 7))
+    return Table(title, (*columns, "printed", "right", "at most", "row"), lines, left=(0, 1, 2, 6))
+
+
+def _judged(finding: Finding) -> float:
+    """Return the error of what is right: of the printed form, unless there is another."""
+    return finding.printed if finding.right is None else finding.right
+
+
+def _finite(fields: dict[str, Any]) -> dict[str, Any]:
+    """Return the fields of a row for JSON: infinity and NaN, which JSON lacks, become null."""
+    unknown = {name for name, value in fields.items() if isinstance(value, float) and not math.isfinite(value)}
+    return fields | dict.fromkeys(unknown)

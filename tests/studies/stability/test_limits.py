@@ -1,0 +1,266 @@
+"""Limits and maps of stability: MuJoCo against linear theory on a sample, and that a wrong theory is seen."""
+
+import functools
+import json
+import math
+import pathlib
+
+import mujoco
+import numpy as np
+import pytest
+
+from mjbeer import frozen
+from mjbeer.model.build import compose
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting
+from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
+from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow
+from mjbeer.predictions.soft_rolling import System
+from mjbeer.studies.rows import Result, Row
+from mjbeer.studies.stability import limits, stiff_maps, stiff_runs
+from mjbeer.studies.stability.stiff_maps import AGREEMENT, DAMPED_SHADES, SHADES, measure, measure_damped
+from mjbeer.studies.stability.stiff_runs import (
+    EXPLODED,
+    SILENT,
+    UNSTABLE,
+    WRONG,
+    DampedRuns,
+    Plan,
+    ShortRuns,
+)
+from mjbeer.theory.record import Record
+
+pytestmark = pytest.mark.slow
+
+COARSE, DAMPED_COARSE = (5, 5), (3, 4)
+SAMPLE = [
+    Plan("equality", "RK4"),
+    Plan("equality", "discrete"),
+    Plan("equality", "implicitfast", refsafe=True),
+    Plan("equality", "Euler", refsafe=True, dampratio=0.1),
+    Plan("equality", "Euler", written="slide"),
+    Plan("equality", "Euler", written="hinge"),
+    Plan("direct", "Euler", refsafe=True),
+    Plan("contact", "RK4"),
+    Plan("contact", "discrete", refsafe=True),
+    Plan("gravity", "discrete"),
+    Plan("spring", "discrete"),
+]
+DAMPED: dict[tuple[Rolling, Integrator], bool] = {
+    ("reduced", "Euler"): True,
+    ("reduced", "RK4"): True,
+    ("equality", "implicitfast"): True,
+    ("equality", "discrete"): False,
+    ("contact", "Euler"): False,
+}
+"""Maps of damping, and whether there are runs in them that explode."""
+DOCUMENT = (pathlib.Path(__file__).parents[3] / "docs" / "stability.md").read_text()
+ROUNDING = 1e-9
+
+
+@pytest.mark.parametrize("plan", SAMPLE, ids=lambda plan: plan.name)
+def test_every_cell_of_a_map_is_as_theory_says(plan: Plan) -> None:
+    found = measure(plan, COARSE)
+    assert found["same"] == 1.0
+    assert found["error"] <= AGREEMENT["maps"]
+    cells = set("".join(found["measured"]))
+    assert cells == set("012") or plan.name != "equality, RK4"
+    assert ("0" in cells) == (plan.name not in ("equality, discrete", "contact, discrete, refsafe", "spring, discrete"))
+
+
+@pytest.mark.parametrize(
+    ("plan", "module", "name", "wrong"),
+    [
+        (Plan("equality", "Euler", written="slide"), stiff_runs, "diagonal_excess", lambda _: 1.0),
+        (Plan("equality", "Euler", refsafe=True), soft_constraint, "refsafe_timeconst", lambda timeconst, _: timeconst),
+        (Plan("equality", "discrete"), SoftRow, "at_end_of_step", lambda self, _: self),
+        (
+            Plan("equality", "Euler"),
+            soft_constraint,
+            "spring",
+            lambda t, z, d: soft_constraint.direct(0.8 / t**2, 1.8 / t, d),
+        ),
+    ],
+    ids=["diagonal", "refsafe", "discrete", "solref"],
+)
+def test_a_wrong_theory_does_not_agree(
+    plan: Plan, module: object, name: str, wrong: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, name, wrong)
+    assert measure(plan, COARSE)["error"] > AGREEMENT["maps"]
+
+
+@pytest.mark.parametrize(("plan", "explode"), DAMPED.items())
+def test_damped_runs_explode_where_theory_says(plan: tuple[Rolling, Integrator], explode: bool) -> None:
+    found = measure_damped(*plan, DAMPED_COARSE)
+    assert found["error"] <= AGREEMENT["damped"]
+    assert (str(EXPLODED) in "".join(found["measured"])) == explode
+    assert explode or found["boundaries"] == [(None, None)] * 4
+    assert json.loads(json.dumps(found))["measured"] == found["measured"]
+
+
+@pytest.mark.parametrize(
+    ("plan", "name", "wrong"),
+    [(("reduced", "Euler"), "by_tendon", False), (("equality", "Euler"), "by_tendon", True)],
+)
+def test_a_wrong_theory_of_damping_does_not_agree(
+    plan: tuple[Rolling, Integrator], name: str, wrong: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Damping that is taken implicitly in place of explicitly, and the reverse."""
+    step = System.step
+
+    def mistaken(system: System, *settings: object) -> object:
+        object.__setattr__(system, name, wrong)
+        return step(system, *settings)
+
+    monkeypatch.setattr(System, "step", mistaken)
+    assert measure_damped(*plan, DAMPED_COARSE)["error"] > AGREEMENT["damped"]
+
+
+def test_a_wrong_run_that_is_trusted_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With an estimate of its error and a drift of nothing, a run whose load is 0.4 rad off would be silent."""
+    runs = DampedRuns("reduced", "implicit", 1.0, [8e-3])
+    assert runs.measure(8e-3) == WRONG
+    monkeypatch.setattr(Record, "implied_error", 0.0)
+    monkeypatch.setattr("mjbeer.simulation.run.Run.error_estimate", 0.0)
+    assert runs.measure(8e-3) == SILENT
+    row = Row("damped", "a map", lambda: measure_damped("reduced", "implicit", (2, 2)), bound=AGREEMENT["damped"])
+    result = row.result()
+    assert str(SILENT) in result.values["measured"][0]
+    assert not result.passed
+
+
+def test_friction_is_what_limits_rk4_in_contact(monkeypatch: pytest.MonkeyPatch) -> None:
+    runs = ShortRuns(Plan("contact", "RK4"), 1e-2)
+    assert runs.measure(1.2e-2) != UNSTABLE
+    assert runs.measure(1.3e-2) == runs.predict(1.3e-2) == UNSTABLE
+    without = functools.partial(soft_rolling.by_contact, impratio=1e-12)
+    monkeypatch.setattr(
+        soft_rolling, "by_contact", lambda scene, depth, points, impratio: without(scene, depth, points)
+    )
+    assert runs.predict(1.3e-2) != UNSTABLE
+
+
+@pytest.mark.parametrize("timeconst", [1e-2, 1e-5])
+@pytest.mark.parametrize("integrator", ["Euler", "discrete", "RK4"])
+def test_rows_are_those_that_mujoco_solves(integrator: str, timeconst: float) -> None:
+    """Reference acceleration and regularizer, in motion."""
+    timestep, impedance = 1e-3, 0.9
+    spec = compose(frozen(incline=0.0), Setting("equality", integrator, timestep))
+    rolling = spec.equality("rolling")
+    rolling.solref, rolling.solimp = [timeconst, 0.7], [impedance, impedance, 0.001, 0.5, 2]
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.joint("slide").qpos, data.joint("slide").qvel = 1e-5, -2e-3
+    mujoco.mj_forward(model, data)
+    jacobian, mass = np.array(data.efc_J).reshape(-1, model.nv), np.zeros((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, mass)
+    diagonal = float((jacobian @ np.linalg.solve(mass, jacobian.T))[0, 0])
+    row = soft_constraint.spring(timeconst, 0.7, impedance)
+    row = row.at_end_of_step(timestep) if integrator == "discrete" else row
+    assert float(data.efc_aref[0]) == pytest.approx(2e-3 * row.damping - 1e-5 * row.stiffness, rel=ROUNDING)
+    assert diagonal / (diagonal + float(data.efc_R[0])) == pytest.approx(row.impedance, rel=ROUNDING)
+    assert row.impedance <= MAX_IMPEDANCE
+
+
+@pytest.mark.parametrize(("impedance", "dampratio"), [(0.9, 0.5), (0.5, 1.0), (0.9, 2.0)])
+@pytest.mark.parametrize("share", [0.1, 0.99, 1.01, 3.0])
+def test_refsafe_resolves_contacts_under_discrete(impedance: float, dampratio: float, share: float) -> None:
+    """On either side of its threshold."""
+    timestep = 1e-3
+    timeconst = share * timestep / (dampratio * math.sqrt(impedance))
+    spec = compose(frozen(incline=0.0), Setting("contact", "discrete", timestep))
+    rolling = spec.pair("rolling")
+    rolling.solref, rolling.solimp = [timeconst, dampratio], [impedance, impedance, 0.001, 0.5, 2]
+    spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.joint("lift").qpos = -1e-6
+    mujoco.mj_forward(model, data)
+    row = soft_constraint.spring(
+        soft_constraint.discrete_refsafe_timeconst(timeconst, dampratio, impedance, timestep), dampratio, impedance
+    )
+    stiffness, damping, share_let_through, _ = data.efc_KBIP[0]
+    assert (stiffness * share_let_through, damping) == pytest.approx((row.stiffness, row.damping), rel=ROUNDING)
+    assert row.stiffness * timestep**2 <= 1 + ROUNDING
+
+
+@pytest.mark.parametrize(
+    "way", [("frozen", "reduced", "RK4"), ("pendulum", "equality", "Euler"), ("frozen", "contact", "DOP853")]
+)
+def test_limits_agree(way: tuple[str, Rolling, Integrator]) -> None:
+    found = limits.measure(*way)
+    assert found["error"] <= limits.AGREEMENT
+    if way[1] == "contact":  # softness, and not the integrator
+        assert found["accurate"] < 0.25 * linear_stability.accurate_limit("DOP853")
+
+
+def test_a_wrong_limit_does_not_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = linear_stability.stable_limit("RK4")
+    monkeypatch.setattr(linear_stability, "stable_limit", lambda _: 1.06 * right)
+    found = limits.measure("frozen", "reduced", "RK4")
+    assert found["error"] > limits.AGREEMENT
+
+
+def test_a_contact_that_is_not_settled_loses_a_stage() -> None:
+    found = limits.measure("frozen", "contact", "RK4", settled=False)
+    assert found["lost_a_stage"]
+    assert found["stable"] < 0.5 * found["stable_predicted"]
+    assert "loses the contact" in limits.table([Result("limits", "frozen", bound=1.0, values=found)]).markdown()
+
+
+def test_rows_are_told_apart() -> None:
+    for listed in (limits.rows, stiff_maps.rows):
+        names, few = ([(row.group, row.name) for row in listed(quick)] for quick in (False, True))
+        assert len(set(names)) == len(names)
+        assert set(few) < set(names)
+    assert len(limits.rows()) == 6 * (1 + 4 * 3) + 4
+    assert [len([row for row in stiff_maps.rows() if row.group == group]) for group in ("maps", "damped")] == [40, 18]
+
+
+def test_the_table_of_the_document_is_that_of_theory() -> None:
+    methods = ("Euler", "discrete", "RK4", "DOP853")
+
+    def spring(method: str) -> float:
+        return math.inf if method == "discrete" else linear_stability.stable_limit(method)
+
+    wanted = {
+        "swing by gravity: ωh below": linear_stability.stable_limit,
+        "swing by a joint's spring: ωh below": spring,
+        "equality, ζ = 1: h/τ below": soft_constraint.stable_ratio,
+        "equality, ζ = 0.1: h/τ below": lambda method: soft_constraint.stable_ratio(method, 0.1),
+        "friction of a contact: h/τ below": soft_constraint.stable_slip,
+        "direct `solref`, B = 2√K: h√K below": lambda method: soft_constraint.stable_timestep(
+            method, soft_constraint.direct(1.0, 2.0, 0.9)
+        ),
+        "error of a swing below 1 % for ten periods: ωh below": linear_stability.accurate_limit,
+    }
+    for head, limit in wanted.items():
+        line = next(line for line in DOCUMENT.splitlines() if line.startswith(f"| {head} |"))
+        told = [math.inf if each == "no limit" else float(each) for each in line.strip("| ").split(" | ")[1:]]
+        assert told == pytest.approx([limit(method) for method in methods], rel=2e-2), head  # two digits or three
+
+
+def test_the_errors_of_the_document_are_measured_now() -> None:
+    text = DOCUMENT.partition("errors of φ and u/a at h = 1 ms")[2]
+    for integrator in (*INTEGRATORS, DOP853):
+        line = next(line for line in text.splitlines() if line.startswith(f"| {integrator} |"))
+        for rolling, cell in zip(ROLLINGS, line.strip("| ").split(" | ")[1:], strict=True):
+            for damping, told in zip((0.01, 0.1, 1.0), cell.split(", "), strict=True):
+                runs = DampedRuns(rolling, integrator, damping, [1e-3])
+                outcome = runs.measure(1e-3)
+                if told == "explodes":
+                    assert outcome == EXPLODED
+                elif float(told) > 1e-10:  # below is rounding, which differs from machine to machine
+                    assert runs.error == pytest.approx(float(told), rel=0.05)
+
+
+def test_tables_count_outcomes() -> None:
+    values = {"measured": ["012", "222"], "same": 0.5}
+    results = [
+        Result("maps", "a", bound=0.05, error=0.01, values=values),
+        Result("maps", "b", bound=0.0, values=values),
+    ]
+    table = stiff_maps.table("Maps", results, list(SHADES))
+    assert table.rows[0] == ("a", "1", "1", "4", "50.0%", "1.0%", "[green]pass[/]")
+    assert table.rows[1][-2:] == ("-", "[bold red]FAIL[/]")
+    assert len(DAMPED_SHADES) == SILENT + 1
