@@ -51,6 +51,7 @@ def test_others_are_compared_at_equal_error_and_the_usual_at_equal_time() -> Non
     found += [point(1, 1e-3, "equality"), point(4, 1e-5, "equality"), point(0.5, 1e-12, "heyoka", "", "tolerance")]
     study = Benchmark({}, {}, found, [])
     assert tables.others(study).rows[0] == ("frozen, 1e-03 rad", "1e+03 ms", "2", "-", "-", "-", "0.5")
+    assert tables.others(study).rows[-1][1:] == ("not reached", "-", "-", "-", "-", "-")
     assert tables.usual(study).rows[0][-1] == "5.0e+03"
     assert tables.cheapest(study, "frozen").rows[0][1] == "DOP853 1 ms: 1e+03 ms"
 

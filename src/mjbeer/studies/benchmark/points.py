@@ -110,8 +110,8 @@ class Point:
 
 
 def milliseconds(time: float) -> str:
-    """Return a time [s] as text, in milliseconds."""
-    return f"{1e3 * time:.3g} ms"
+    """Return a time [s] as text, in milliseconds; an infinite one is that of what no setting reached."""
+    return f"{1e3 * time:.3g} ms" if math.isfinite(time) else "not reached"
 
 
 @dataclass

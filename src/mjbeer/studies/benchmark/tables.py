@@ -130,4 +130,5 @@ def sweeps(study: Benchmark) -> Table:
 
 
 def _ratio(value: float) -> str:
-    return "-" if not math.isfinite(value) else f"{value:.2g}"
+    """Return a ratio of run times as text; it is 0, NaN or infinite where one of the two did not reach the error."""
+    return f"{value:.2g}" if 0 < value < math.inf else "-"
