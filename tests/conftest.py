@@ -12,7 +12,7 @@ import pytest
 
 from mjbeer.drawing import opengl
 from mjbeer.model import looks
-from mjbeer.studies.benchmark.peers.installed import absent
+from mjbeer.studies.benchmark.peers import absent
 from tests.support import browser, screen
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED"):

@@ -12,7 +12,7 @@ import mjbeer
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
-PEERS = PACKAGE / "studies" / "benchmark" / "peers"
+PEERS = PACKAGE / "studies" / "benchmark" / "peers.py"
 PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
 ALWAYS = {Requirement(text).name for text in PROJECT["dependencies"]}
 EXTRAS = {
@@ -23,9 +23,9 @@ INSTALLED_AS = {"PIL": "pillow", "imageio_ffmpeg": "imageio-ffmpeg", "llvmlite":
 """Packages that are imported under another name, and two that are not declared since they only go with what is."""
 
 
-def imported(folder: pathlib.Path) -> Iterator[str]:
-    """What the modules in a folder import, anywhere, that is neither Python's nor mjbeer's; as it is installed."""
-    for path in folder.rglob("*.py"):
+def imported(*modules: pathlib.Path) -> Iterator[str]:
+    """What modules import, anywhere, that is neither Python's nor mjbeer's; as it is installed."""
+    for path in modules:
         for node in ast.walk(ast.parse(path.read_text())):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
@@ -34,7 +34,7 @@ def imported(folder: pathlib.Path) -> Iterator[str]:
 
 
 def test_what_is_imported_is_declared_and_what_is_declared_is_imported() -> None:
-    assert set(imported(PACKAGE)) == ALWAYS | OPTIONAL
+    assert set(imported(*PACKAGE.rglob("*.py"))) == ALWAYS | OPTIONAL
 
 
 def test_the_peers_are_optional() -> None:

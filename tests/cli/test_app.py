@@ -19,8 +19,6 @@ import pytest
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import main
 from mjbeer.cli.figures import Figures
-from mjbeer.studies.benchmark import advice
-from mjbeer.studies.benchmark.points import Benchmark
 from mjbeer.theory.trajectory import csv
 from tests.support import stubs
 
@@ -200,13 +198,6 @@ def test_a_tolerance_has_the_integrator_that_keeps_it(capsys: pytest.CaptureFixt
         assert f"{rolling}, {integrator}" in capsys.readouterr().out
     assert main(["simulate", "frozen", "--duration", "0.1"]) == 0
     assert "reduced, RK4" in capsys.readouterr().out
-
-
-def test_advise_offers_what_its_study_has(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        main(["advise", "--help"])
-    offered = re.findall(r"\{(sliding[^}]*)\}", capsys.readouterr().out)
-    assert set(offered) == {",".join(Benchmark.load(advice.SHIPPED).cases)}
 
 
 def test_the_version(capsys: pytest.CaptureFixture[str]) -> None:

@@ -18,7 +18,7 @@ from mjbeer.model.build import Stepped, compile_spec, compose
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, Softness, supported
 from mjbeer.model.state import places, read
-from mjbeer.studies.benchmark.curves import USUAL
+from mjbeer.studies.benchmark.points import USUAL
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, kinetic_energy
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes

@@ -13,8 +13,8 @@ from mjbeer.model.build import compile_spec, compose
 from mjbeer.model.setting import Setting, Softness
 from mjbeer.model.state import start
 from mjbeer.require import shown
-from mjbeer.studies.benchmark.curves import USUAL
 from mjbeer.studies.benchmark.measure import EffectiveSoftness, effective_softness
+from mjbeer.studies.benchmark.points import USUAL
 
 SLIDE_FIRST = USUAL["equality, slide first"]
 REFSAFE = int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)

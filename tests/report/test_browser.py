@@ -7,9 +7,8 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from mjbeer.report import films, page
-from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.advice import SHIPPED
-from mjbeer.studies.benchmark.points import Benchmark
+from mjbeer.studies.benchmark import points as measured
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from tests.support import browser, pages
 
 pytestmark = [pytest.mark.slow, pytest.mark.browses]
@@ -88,7 +87,7 @@ def test_every_film_plays(visit: Visit) -> None:
 @pytest.mark.parametrize("visit", [(PHONE, "light"), (PROJECTOR, "light")], indirect=True)
 def test_a_point_tells_its_setting(visit: Visit) -> None:
     visit.show("[data-plot=precision]")
-    assert visit.page.locator(POINTS).count() >= len(frontier.drawn(Benchmark.load(SHIPPED).of("sliding")))
+    assert visit.page.locator(POINTS).count() >= len(measured.drawn(Benchmark.load(SHIPPED).of("sliding")))
     visit.page.locator(POINTS).last.hover(force=True)
     tip = visit.page.locator("#vg-tooltip-element.visible")
     tip.wait_for()

@@ -18,9 +18,8 @@ from mjbeer.paper.misprints import FORMULAS
 from mjbeer.paper.stories import report as stories_report
 from mjbeer.report import films, formulas, page
 from mjbeer.report.embed import data_uri
-from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.advice import SHIPPED
-from mjbeer.studies.benchmark.points import Benchmark
+from mjbeer.studies.benchmark import points as measured
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stiff_maps
 from tests.support import pages, stubs
 from tests.support.pages import Page
@@ -195,7 +194,7 @@ def test_the_plots_have_every_point_and_every_map(text: str) -> None:
     (data,) = (element.text for element in Page.of(text).all("script") if element.attributes.get("id") == "plots")
     plots = json.loads(data)
     benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
-    points = [point for case in benchmark.cases for point in frontier.drawn(benchmark.of(case))]
+    points = [point for case in benchmark.cases for point in measured.drawn(benchmark.of(case))]
     told = plots["precision"]["data"]["values"]
     assert [record["time"] for record in told] == pytest.approx([1e3 * point.time for point in points], rel=1e-3)
     assert {
@@ -203,8 +202,8 @@ def test_the_plots_have_every_point_and_every_map(text: str) -> None:
     } == {"mjbeer"}
     assert "mjbeer to 1e-09" in {record["setting"] for record in told}
     for case in benchmark.cases:
-        ours = frontier.ours(benchmark.of(case))
-        levels = [frontier.cheapest(ours, level) for level in frontier.LEVELS]
+        ours = measured.ours(benchmark.of(case))
+        levels = [measured.cheapest(ours, level) for level in measured.LEVELS]
         marked = {
             (record["setting"], record["rolling"]) for record in told if record["cheapest"] and record["case"] == case
         }

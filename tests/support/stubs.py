@@ -19,42 +19,38 @@ from mjbeer.paper.audit import chapters
 from mjbeer.paper.audit.claim import confirmed
 from mjbeer.paper.stories import report
 from mjbeer.paper.stories.story import Story
-from mjbeer.studies.benchmark import curves
-from mjbeer.studies.benchmark import run as benchmark_run
-from mjbeer.studies.benchmark.curves import Curve
-from mjbeer.studies.benchmark.peers import with_scipy
+from mjbeer.studies.benchmark import measure, peers, sweeps
+from mjbeer.studies.benchmark.points import Curve
 from mjbeer.studies.rows import Row
 from mjbeer.studies.stability import search, stiff_maps, study
-from mjbeer.studies.sweep import speed
 from mjbeer.studies.validation import run as validation
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
 LADDERS = {
-    Curve("reduced", "Euler", "timestep"): STEPS,
-    Curve("reduced", "RK4", "timestep"): STEPS,
-    Curve("reduced", "DOP853", "timestep"): LARGE,
-    Curve("reduced", "DOP853", "tolerance"): (1e-6, 1e-9),
-    Curve("equality", "RK4", "timestep"): STEPS,
-    Curve("contact", "DOP853", "timestep"): LARGE[:5],
-    Curve("equality, slide first", "Euler", "timestep"): (2e-3,),
-    Curve("equality, hinge first", "Euler", "timestep"): (2e-3,),
-    Curve("contact, defaults", "Euler", "timestep"): (2e-3,),
+    Curve("reduced", "Euler"): STEPS,
+    Curve("reduced", "RK4"): STEPS,
+    Curve("reduced", "DOP853"): LARGE,
+    Curve("reduced", "mjbeer", "tolerance"): (1e-6, 1e-9),
+    Curve("equality", "RK4"): STEPS,
+    Curve("contact", "DOP853"): LARGE[:5],
+    Curve("equality, slide first", "Euler"): (2e-3,),
+    Curve("equality, hinge first", "Euler"): (2e-3,),
+    Curve("contact, defaults", "Euler"): (2e-3,),
+    Curve("SciPy DOP853", "", "tolerance"): (1e-3, 1e-6),
+    Curve("mjbeer.simulate", "", "tolerance"): (1e-6,),
 }
-FEW = {Curve("reduced", "RK4", "timestep"): STEPS[:2], Curve("equality", "RK4", "timestep"): STEPS[:2]}
+FEW = {Curve("reduced", "RK4"): STEPS[:2], Curve("equality", "RK4"): STEPS[:2]}
 """For what does not depend on the ladders."""
 
 
 def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[float, ...]] = LADDERS) -> None:
-    """Make the benchmark one of short ladders and two peers, timed twice, with made-up times of stages and sweeps."""
-    monkeypatch.setattr(curves, "curves", lambda scene, quick: dict(ladders))
-    monkeypatch.setattr(benchmark_run, "installed", lambda: [with_scipy.DOP853, with_scipy.ODEINT])
-    monkeypatch.setattr(benchmark_run, "absent", dict)
-    stages = [{"case": "frozen", "integrator": "RK4", "step": 1e-6, "clock": 2.0}]
-    monkeypatch.setattr(benchmark_run, "ablate", lambda: stages)
-    monkeypatch.setattr(benchmark_run, "REPEATS", 2)
-    swept = [speed.Timed("a sweep of stubs", lambda: (0.0, 0.0), 1e-3, 1e-7)]
-    monkeypatch.setattr(speed, "compare", lambda count, rounds: swept)
+    """Make the benchmark one of short ladders, timed twice, with all peers there and made-up times of sweeps."""
+    monkeypatch.setattr(measure, "ladders", lambda *_: dict(ladders))
+    monkeypatch.setattr(peers, "absent", dict)
+    monkeypatch.setattr(measure, "REPEATS", 2)
+    swept = {"ways": [{"name": "a sweep of stubs", "seconds": 1e-3, "error": 1e-7}]}
+    monkeypatch.setattr(sweeps, "compare", lambda quick: swept)
 
 
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,7 +17,7 @@ from rich.text import Text
 import mjbeer
 from mjbeer.cli.motions import Export, Render, Simulate
 from mjbeer.cli.scenes import Scenes
-from mjbeer.cli.studies import Advise, Benchmark, Paper, Report, Stability, Validate
+from mjbeer.cli.studies import Benchmark, Paper, Report, Stability, Validate
 from mjbeer.cli.sweep import Sweep
 from mjbeer.cli.view import View
 from mjbeer.drawing import opengl
@@ -26,9 +26,7 @@ from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _ERROR = 2
-Command = (
-    Simulate | Render | View | Export | Scenes | Sweep | Validate | Benchmark | Advise | Stability | Report | Paper
-)
+Command = Simulate | Render | View | Export | Scenes | Sweep | Validate | Benchmark | Stability | Report | Paper
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options, `mjbeer --version` the version."""
 _STYLE = (

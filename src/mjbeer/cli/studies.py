@@ -1,4 +1,4 @@
-"""The commands that check and measure: validate, report, benchmark, advise, stability and paper."""
+"""The commands that check and measure: validate, report, benchmark, stability and paper."""
 
 import pathlib
 import time
@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from mjbeer.cli.arguments import CaseName, if_given
+from mjbeer.cli.arguments import CaseName
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import Rolling
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.cases import DEFAULT
@@ -86,39 +85,13 @@ class Benchmark:
 
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
-        from mjbeer.studies.benchmark import report, tables
-        from mjbeer.studies.benchmark import run as benchmark
-        from mjbeer.studies.sweep import speed
+        from mjbeer.studies.benchmark import measure, tables
 
         with files.locked(self.output):
-            study = benchmark.conduct(names=self.scenes, folder=self.output, quick=self.quick, console=STDERR)
-            count, rounds = (50, 1) if self.quick else (200, 4)
-            say(f"timing sweeps of {count} scenes")
-            many = speed.table(speed.compare(count, rounds))
-            report.write(study, self.output, [many])
-        show(*tables.tables(study), many)
+            study = measure.conduct(names=self.scenes, folder=self.output, quick=self.quick, console=STDERR)
+            tables.write(study, self.output)
+        show(*tables.tables(study))
         say(f"the study is in {self.output / 'summary.md'}")
-        return 0
-
-
-@dataclass(frozen=True)
-class Advise:
-    """Print the fastest setting that met a tolerance in a stored benchmark."""
-
-    scene: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar=f"{{{','.join(DEFAULT)}}}")]
-    """Scene of the benchmark that is most like yours; a study of your own may have others."""
-    tolerance: float = 1e-6
-    """Largest error allowed in phi and u/radius [rad]."""
-    rolling: Annotated[Rolling | None, if_given(Rolling, "the fastest way")] = None
-    """What makes the can roll."""
-    study: Annotated[pathlib.Path | None, if_given(pathlib.Path, "the study that comes with mjbeer")] = None
-    """A study.json that `mjbeer benchmark` wrote."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status, 0."""
-        from mjbeer.studies.benchmark import advice
-
-        terminal.write(advice.advise(self.scene, self.tolerance, self.rolling, self.study) + "\n")
         return 0
 
 

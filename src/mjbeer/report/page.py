@@ -17,8 +17,7 @@ from mjbeer.report import precision, stability
 from mjbeer.report.embed import data_uri, plotting
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
-from mjbeer.studies.benchmark.advice import SHIPPED
-from mjbeer.studies.benchmark.points import Benchmark
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.rows import machine
 from mjbeer.studies.stability import stiff_maps
 from mjbeer.studies.validation.run import Validation

@@ -3,10 +3,8 @@
 from typing import Any
 
 from mjbeer.model.setting import OWN, ROLLINGS
-from mjbeer.studies.benchmark import frontier
-from mjbeer.studies.benchmark.curves import CHOSEN, USUAL
-from mjbeer.studies.benchmark.points import Benchmark, Point
-from mjbeer.studies.benchmark.tables import milliseconds, setting
+from mjbeer.studies.benchmark import points as benchmark
+from mjbeer.studies.benchmark.points import CHOSEN, USUAL, Benchmark, Point, milliseconds
 from mjbeer.studies.cases import CASES, DURATION
 
 TOOLS = ("mjbeer", "MuJoCo", "MuJoCo as usually written", "SciPy", "heyoka")
@@ -42,7 +40,7 @@ def plot(study: Benchmark) -> dict[str, Any]:
 
     Its parameter `scene` is the name of the case that is shown, and `shown` the list of the tools.
     """
-    points = [record for case in study.cases for record in _records(frontier.drawn(study.of(case)))]
+    points = [record for case in study.cases for record in _records(benchmark.drawn(study.of(case)))]
     x = {"field": "time", "type": "quantitative", "scale": {"type": "log"}}
     y = {"field": "error", "type": "quantitative", "scale": {"type": "log"}}
     span = f"run time of {DURATION:.1f} s of motion [ms]"
@@ -112,8 +110,8 @@ def plot(study: Benchmark) -> dict[str, Any]:
 
 def _records(points: list[Point]) -> list[dict[str, Any]]:
     """Return the points of a case as the plot has them: errors [rad], run times [ms], and what they tell in words."""
-    ours = frontier.ours(points)
-    front = {id(point) for point in frontier.front(ours)}
+    ours = benchmark.ours(points)
+    front = {id(point) for point in benchmark.front(ours)}
     marked = {id(best): f"{level:.0e}" for level, best in _levels(ours)}
     rungs: dict[Any, int] = {}
     records = []
@@ -127,12 +125,12 @@ def _records(points: list[Point]) -> list[dict[str, Any]]:
                 "tool": _tool(point),
                 "integrator": point.method or point.way,
                 "rolling": point.way if point.way in ROLLINGS else _rolling(point),
-                "setting": setting(point) if point.method else f"{point.knob} {point.value:g}",
+                "setting": point.setting if point.method else f"{point.knob} {point.value:g}",
                 "time": float(f"{1e3 * point.time:.4g}"),
                 "error": float(f"{max(point.error, _FLOOR):.3g}"),
                 "told_time": milliseconds(point.time),
                 "told_error": f"{point.error:.1e} rad",
-                "ratio": _ratio(point.time, frontier.time_for(ours, point.error)),
+                "ratio": _ratio(point.time, benchmark.time_for(ours, point.error)),
                 "front": id(point) in front,
                 "cheapest": marked.get(id(point)),
             }
@@ -142,7 +140,7 @@ def _records(points: list[Point]) -> list[dict[str, Any]]:
 
 def _cheapest(points: list[Point]) -> list[dict[str, str | float]]:
     """Return a row for each error: the cheapest setting of mjbeer's own, its time, and how much longer others take."""
-    ours = frontier.ours(points)
+    ours = benchmark.ours(points)
     rivals = {
         "rk4": [point for point in ours if point.method == "RK4"],
         "scipy": [point for point in points if point.way.startswith("SciPy")],
@@ -150,17 +148,17 @@ def _cheapest(points: list[Point]) -> list[dict[str, str | float]]:
     }
     rows = []
     for level, best in _levels(ours):
-        times = {name: frontier.cheapest(found, level) for name, found in rivals.items()}
+        times = {name: benchmark.cheapest(found, level) for name, found in rivals.items()}
         row: dict[str, str | float] = {
             name: "\N{EN DASH}" if found is None else _ratio(found.time, best.time) for name, found in times.items()
         }
-        rows.append(row | {"level": level, "setting": setting(best), "rolling": best.way, "time": best.time})
+        rows.append(row | {"level": level, "setting": best.setting, "rolling": best.way, "time": best.time})
     return rows
 
 
 def _levels(points: list[Point]) -> list[tuple[float, Point]]:
-    """Return the errors of `frontier.LEVELS` [rad] that can be reached, with the cheapest point of each."""
-    found = [(level, frontier.cheapest(points, level)) for level in frontier.LEVELS]
+    """Return the errors of `benchmark.LEVELS` [rad] that can be reached, with the cheapest point of each."""
+    found = [(level, benchmark.cheapest(points, level)) for level in benchmark.LEVELS]
     return [(level, best) for level, best in found if best is not None]
 
 

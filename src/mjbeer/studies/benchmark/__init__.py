@@ -1,1 +1,1 @@
-"""`mjbeer benchmark` measures error against run time; `mjbeer advise` picks a setting from what it measured."""
+"""`mjbeer benchmark` measures error against run time, of mjbeer's models and of other tools."""

@@ -1,79 +1,137 @@
-"""Measure one setting: its error against exact theory, the shares of model and integrator in it, and its run time."""
+"""Run the benchmark: climb each ladder of settings for its errors, then time all settings in rounds."""
 
+import gc
+import pathlib
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
-from functools import cached_property, partial
+from collections.abc import Container, Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any
 
 import mujoco
 import numpy as np
+from rich.console import Console
 
-from mjbeer.exceptions import DivergenceError
+from mjbeer import require
+from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.model.engine import quiet
-from mjbeer.simulation.dop853 import Integrator
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
 from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.stepping import Solution
-from mjbeer.simulation.tolerance import scales
-from mjbeer.studies.benchmark.peers.peer import Motion, Peer
-from mjbeer.studies.benchmark.points import Point
-from mjbeer.studies.cases import Case
-from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.trajectory import Trajectory, distance
+from mjbeer.studies.benchmark import peers, sweeps
+from mjbeer.studies.benchmark.peers import PEERS, Peer
+from mjbeer.studies.benchmark.points import (
+    CHOSEN,
+    COMMAND,
+    ERRORS,
+    SWEEPS,
+    TIMES,
+    TOLERANCE,
+    USUAL,
+    Benchmark,
+    Curve,
+    Point,
+)
+from mjbeer.studies.cases import INTERVAL, MEASURED, Case
+from mjbeer.studies.convergence import convergence
+from mjbeer.studies.rows import Row, Study, run
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
 
-_FINE = 1e-13
-"""Local tolerance of the run that separates a model's error from its integrator's."""
-_MOST_EVALUATIONS = 50_000
-"""Most evaluations of the accelerations in that run."""
+REPEATS = 5
+"""Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all settings alike."""
+_ENOUGH = 5
+"""Fewest rungs of a ladder that ends at its floor."""
 _SHORT = 0.05
 """A run shorter than this [s] is timed twice and the first time dropped, so that caches and predictors are warm."""
 
 
-@dataclass(eq=False)
+def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Console) -> Benchmark:
+    """Measure the cases of some names, write the study to study.jsonl in `folder`, and return it.
+
+    A peer that cannot be imported takes no part; the settings of the study have its name and the reason. A study of
+    the same settings and machine that is there already is gone on with.
+
+    Raises:
+      ParameterError: if a case does not exist, or study.jsonl is not a benchmark.
+      OutputError: if the file cannot be written.
+    """
+    cases = [MEASURED[require.choice("scene", name, MEASURED)] for name in names]
+    path, missing = folder / "study.jsonl", peers.absent()
+    (folder / "summary.md").unlink(missing_ok=True)  # an earlier summary would not match the study
+    climbed = [
+        Row(ERRORS, curve.label, partial(_climb, case, curve, values), case.name)
+        for case in cases
+        for curve, values in ladders(case.scene, quick, missing).items()
+    ]
+    rungs: dict[Any, Rung] = {}
+    timed = [
+        Row(TIMES, f"round {repeat + 1}", partial(_time, case, path, rungs), case.name)
+        for repeat in range(REPEATS)
+        for case in cases
+    ]
+    many = Row(SWEEPS, "sweeps of many scenes", partial(sweeps.compare, quick))
+    settings = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": missing}
+    return Benchmark.of_study(run([*climbed, *timed, many], console, path, COMMAND, settings))
+
+
+def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> dict[Curve, tuple[float, ...]]:
+    """Return the curves of a scene, each with its timesteps [s] or tolerances [rad], coarsest first.
+
+    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger one, unless damping
+    would make it explode, and halves it in two rungs, and GaussJackson, whose error falls by four decades in a halving,
+    halves it in four. With `quick`, the ladders of MuJoCo's integrators end earlier, and all others have at most every
+    second rung. Peers whose names are among the `missing` have no curve.
+    """
+    every = 2 if quick else 1
+    steps = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
+    large = tuple((1e-3 if scene.dissipates else 128e-3) / 2 ** (k / 2) for k in range(0, 15, every))
+    found: dict[Curve, tuple[float, ...]] = {}
+    for way in (way for way in ROLLINGS if supported(scene, way)):
+        found |= {Curve(way, integrator): steps for integrator in INTEGRATORS}
+        found[Curve(way, DOP853)] = large
+        found[Curve(way, CHOSEN, TOLERANCE)] = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
+    if not scene.dissipates:
+        found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
+    for name, setting in USUAL.items():
+        if supported(scene, setting.rolling):
+            found[Curve(name, setting.integrator)] = (setting.timestep,)
+    others = (peer for peer in PEERS.values() if peer.name not in missing)
+    return found | {Curve(peer.name, "", TOLERANCE): peer.tolerances[::every] for peer in others}
+
+
 class Rung:
-    """A point of the benchmark with the function that runs it, which is set up once and run often."""
+    """A setting of a case, set up once and run often."""
 
-    case: Case
-    point: Point
-    peer: Peer | None
-    """The other tool that the point is of; None for mjbeer's own models."""
+    def __init__(self, case: Case, curve: Curve, value: float) -> None:
+        self._case = case
+        peer: Peer | None = PEERS.get(curve.way)
+        if peer is None:
+            self._prepared = Prepared(case.scene, curve.setting(value))
+            self._start = self._prepared.start(case.phi0, 0.0)
+            self.run = partial(self._prepared.solve, self._start, case.times)
+        else:
+            self.run = peer.set_up(case.scene, case.phi0, 0.0, case.times, value)
 
-    @cached_property
-    def prepared(self) -> Prepared:
-        """The scene in the setting of the point; only for mjbeer's own models."""
-        return Prepared(self.case.scene, self.point.curve.setting(self.point.value))
-
-    @cached_property
-    def run(self) -> Callable[[], Solution] | Callable[[], Motion]:
-        """A function that integrates the motion from its start at every call; only these calls are timed."""
-        case = self.case
-        if self.peer is not None:
-            return self.peer.prepare(
-                case.scene, phi0=case.phi0, phi_dot0=0.0, times=case.times, tolerance=self.point.value
-            )
-        return partial(self.prepared.solve, self.prepared.start(case.phi0, 0.0), case.times)
-
-    def measure(self, truth: Trajectory) -> None:
-        """Run once, and store everything in the point but its run times.
+    def measure(self, point: Point, truth: Trajectory) -> None:
+        """Run once, and store errors against the exact motion in the point, and what else there is but run times.
 
         Raises:
-          UnsupportedError: if MuJoCo or the other tool has no model of the scene.
-          DivergenceError, ToleranceError: if the run fails.
+          DivergenceError: if the run fails, or its end is not finite.
         """
-        begin = time.perf_counter()
-        run = self.run
-        self.point.setup = time.perf_counter() - begin
-        result = run()
-        if not isinstance(result, Solution):
-            self.point.judge(*result, truth)
-            return
-        motion = self.prepared.coordinates(result.states, self.case.times)
-        self.point.judge(motion.phi, motion.u, truth)
-        self.point.describe(Trajectory(**vars(motion), scene=self.case.scene, phi0=self.case.phi0, phi_dot0=0.0))
-        self._split_error(motion, truth)
-        soft = effective_softness(self.prepared.model, self.prepared.start(self.case.phi0, 0.0))
-        if soft:
-            self.point.timeconst, self.point.effective_timeconst = soft.timeconst, soft.effective_timeconst
-            self.point.impedance, self.point.effective_impedance = soft.impedance, soft.effective_impedance
+        result, radius = self.run(), truth.scene.can.radius
+        if isinstance(result, Solution):
+            motion = self._prepared.coordinates(result.states, truth.time)
+            moved = Trajectory(**vars(motion), scene=truth.scene, phi0=truth.phi0, phi_dot0=0.0)
+            point.slip_max, point.energy_drift = float(np.abs(moved.slip).max()) / radius, moved.energy_drift
+            soft = effective_softness(self._prepared.model, self._start)
+            point.share = None if soft is None else soft.effective_impedance
+            result = motion.phi, motion.u
+        if not np.isfinite([values[-1] for values in result]).all():  # a value that is not finite stays so
+            raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
+        phi_error, u_error = np.abs(result[0] - truth.phi), np.abs(result[1] - truth.u) / radius
+        point.phi_max, point.phi_end = float(phi_error.max()), float(phi_error[-1])
+        point.u_max, point.u_end = float(u_error.max()), float(u_error[-1])
 
     def seconds(self) -> float:
         """Return the run time [s] of one run with warm caches."""
@@ -86,33 +144,65 @@ class Rung:
                 break
         return duration
 
-    def _split_error(self, motion: Coordinates, truth: Trajectory) -> None:
-        """Store the errors of the model and of the integrator in the point.
 
-        The same model is run once more with hardly any error of the integrator. A model that is too stiff or not
-        smooth enough for that run gets neither of the two.
-        """
-        prepared, case = self.prepared, self.case
-        start, scale = prepared.start(case.phi0, 0.0), scales(prepared.model, case.scene)
+def _climb(case: Case, curve: Curve, values: Sequence[float]) -> dict[str, Any]:
+    """Measure the rungs of a ladder, down to its floor or to its second failure after a rung that ran."""
+    truth, failures, ran = case.truth(), 0, False
+    points: list[Point] = []
+    for value in values:
+        point = Point(case.name, curve.way, curve.method, curve.knob, value)
+        points.append(point)
         try:
-            states = Integrator(prepared.model).run(
-                start, case.times, tolerance=_FINE, scale=scale, limit=_MOST_EVALUATIONS
-            )
-        except DivergenceError:
-            return
-        fine, radius = prepared.coordinates(states, case.times), case.scene.can.radius
-        self.point.model_error = distance(fine, truth, radius)
-        self.point.integrator_error = distance(motion, fine, radius)
+            begin = time.perf_counter()
+            rung = Rung(case, curve, value)
+            point.setup = time.perf_counter() - begin
+            rung.measure(point, truth)
+        except MjbeerError as error:
+            point.failure, failures = str(error), failures + ran
+        else:
+            ran = True
+        # Not for tolerances: the error may stay the same over some decades where the timesteps are finer than needed.
+        if failures > 1 or (curve.knob != TOLERANCE and _floored(points)):
+            break
+    return asdict(curve) | {"points": [point.known() for point in points]}
+
+
+def _floored(points: Sequence[Point]) -> bool:
+    """Return whether the errors stopped falling; rungs whose samples are interpolated would hide the order."""
+    exact = [point for point in points if point.failure is None and np.frexp(point.value / INTERVAL)[0] == 0.5]
+    if len(exact) < _ENOUGH:
+        return False
+    return convergence([point.value for point in exact], [point.error for point in exact]).floor is not None
+
+
+def _time(case: Case, path: pathlib.Path, rungs: dict[Any, Rung]) -> dict[str, list[float]]:
+    """Return the run times [s] of all settings of a case that did not fail in the study in a file, by their curves.
+
+    What is set up is kept in `rungs` for the next round.
+    """
+    points = [each for each in Benchmark.of_study(Study.load(path, COMMAND)).points if each.case == case.name]
+    times: dict[str, list[float]] = {point.curve.label: [] for point in points}
+    points = [point for point in points if point.failure is None]
+    for point in points:
+        if (case.name, point.curve, point.value) not in rungs:
+            rung = rungs[case.name, point.curve, point.value] = Rung(case, point.curve, point.value)
+            rung.run()  # warms its caches
+    gc.collect()
+    gc.disable()
+    try:
+        for point in points:
+            times[point.curve.label].append(round(rungs[case.name, point.curve, point.value].seconds(), 9))
+    finally:
+        gc.enable()
+    return times
 
 
 @dataclass(frozen=True)
 class EffectiveSoftness:
-    """The softness of a constraint, as asked for and as the solver used it."""
+    """The softness of a constraint as the solver used it."""
 
-    timeconst: float
-    """Time constant that solref asks for [s]."""
     effective_timeconst: float
-    """Time constant that the solver used [s]: `refsafe` raises one below two timesteps."""
+    """Time constant [s]: `refsafe` raises one below two timesteps."""
     impedance: float
     """d of solimp: the share of its reference acceleration that a row with the exact diagonal would reach."""
     effective_impedance: float
@@ -131,12 +221,11 @@ def effective_softness(model: mujoco.MjModel, state: np.ndarray) -> EffectiveSof
         mujoco.mj_forward(model, data)
     if data.nefc == 0:
         return None
-    solref, solimp = (model.eq_solref, model.eq_solimp) if model.neq else (model.pair_solref, model.pair_solimp)
+    solimp = model.eq_solimp if model.neq else model.pair_solimp
     jacobian, mass = np.array(data.efc_J).reshape(-1, model.nv)[0], np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
     diagonal = float(jacobian @ np.linalg.solve(mass, jacobian))
     return EffectiveSoftness(
-        timeconst=float(solref[0, 0]),
         effective_timeconst=1 / (float(solimp[0, 1]) * float(data.efc_KBIP[0, 0]) ** 0.5),
         impedance=float(data.efc_KBIP[0, 2]),
         effective_impedance=diagonal / (diagonal + float(data.efc_R[0])),

@@ -1,27 +1,68 @@
-"""The results of a benchmark: a Point for each setting, and the Benchmark that has them all, as JSON and as CSV."""
+"""What a benchmark measured: points on curves, the study that has them all, and the front of those that none beats."""
 
 import csv
-import dataclasses
 import io
-import json
 import math
+import pathlib
 import statistics
-from dataclasses import dataclass, field
-from typing import Any, Self
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
-from mjbeer.studies.benchmark.curves import Curve
-from mjbeer.studies.study import Study
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.model.setting import ROLLINGS, Setting, Softness
+from mjbeer.studies.benchmark.peers import WHOLE
+from mjbeer.studies.rows import Study
+
+COMMAND = "mjbeer benchmark"
+SHIPPED = pathlib.Path(__file__).with_name("study.jsonl")
+"""The benchmark that comes with mjbeer: errors to six digits, least run times."""
+ERRORS, TIMES, SWEEPS = "errors", "run times", "sweeps"
+"""The groups of a study's rows: a ladder with its errors, a round of timing, and the times of many scenes."""
+TIMESTEP, TOLERANCE = "timestep", "tolerance"
+CHOSEN = "mjbeer"
+"""The method of runs to a tolerance, which choose their integrator and its steps."""
+LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
+"""The errors [rad] for which tables and plots have the fastest setting."""
+_PLAIN = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)
+USUAL = {
+    "equality, slide first": Setting("equality", "Euler", 2e-3, softness=_PLAIN),
+    "equality, hinge first": Setting("equality", "Euler", 2e-3, softness=replace(_PLAIN, first="hinge")),
+    "contact, defaults": Setting("contact", "Euler", 2e-3, softness=replace(_PLAIN, impratio=1, elliptic=False)),
+}
+"""Settings as people usually write them, with MuJoCo's defaults wherever there are any. The order of the two joints in
+a joint equality matters: MuJoCo's default diagonal softens the two by different factors."""
+
+
+@dataclass(frozen=True, order=True)
+class Curve:
+    """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
+
+    way: str
+    """A way of rolling, the name of a setting as people usually write it (USUAL), or the name of another tool."""
+    method: str
+    """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
+    knob: str = TIMESTEP
+    """What is varied along the curve: "timestep" [s] or "tolerance"."""
+
+    @property
+    def label(self) -> str:
+        """The name of the curve, unlike that of any other."""
+        method = f"{self.method} to a tolerance" if self.method and self.knob == TOLERANCE else self.method
+        return ", ".join(part for part in (self.way, method) if part)
+
+    def setting(self, value: float) -> Setting:
+        """Return the setting of mjbeer for a `value` of the knob: a timestep [s] or a tolerance [rad]."""
+        if self.knob == TOLERANCE:
+            return replace(Setting(), rolling=self.way, tolerance=value)
+        written = USUAL[self.way] if self.way in USUAL else replace(Setting(), rolling=self.way)
+        return replace(written, integrator=self.method, timestep=value)
 
 
 @dataclass
 class Point:
-    """A setting with what was measured with it; errors are against exact theory.
-
-    `case` is the name of the case; `way`, `method` and `knob` are those of the Curve.
-    """
+    """A setting of a case with what was measured with it; errors are against exact theory."""
 
     case: str
     way: str
@@ -29,35 +70,18 @@ class Point:
     knob: str
     value: float
     """Timestep [s] or tolerance."""
-    phi_max: float = math.nan
-    """Largest error of phi over the run [rad]."""
-    phi_end: float = math.nan
-    """Error of phi at the end of the run [rad]."""
-    u_max: float = math.nan
-    """Largest error of u/a over the run, with a the can's radius [rad]."""
-    u_end: float = math.nan
-    """Error of u/a at the end of the run [rad]."""
+    phi_max: float = math.inf
+    phi_end: float = math.inf
+    u_max: float = math.inf
+    u_end: float = math.inf
+    """Errors of phi and of u/a, with a the can's radius, at most over the run and at its end [rad]."""
     slip_max: float | None = None
     """Largest slip [radii]."""
-    slip_integral: float | None = None
-    """Integral of the absolute slip over time [radii s]."""
     energy_drift: float | None = None
-    """The largest change of energy, with its sign, over the largest kinetic energy of the swing."""
-    pressed: bool | None = None
-    """Whether the normal force of the motion was positive throughout."""
-    model_error: float | None = None
-    """Largest error of phi and u/a of the same model, integrated with DOP853 to a local tolerance of 1e-13 [rad]."""
-    integrator_error: float | None = None
-    """Largest distance of the run from that more exact run [rad]."""
-    timeconst: float | None = None
-    """Time constant of the soft constraint as set in solref [s]."""
-    effective_timeconst: float | None = None
-    """Time constant that the solver used [s]."""
-    impedance: float | None = None
-    """Impedance as set in solimp: the share of the force of a hard constraint."""
-    effective_impedance: float | None = None
+    """The largest change of energy over the largest kinetic energy of the swing."""
+    share: float | None = None
     """Share of the force of a hard constraint that the solver applied."""
-    setup: float = math.nan
+    setup: float | None = None
     """Time to build the model and for all else that is done once [s]."""
     failure: str | None = None
     """The message of the exception if the run failed."""
@@ -72,8 +96,7 @@ class Point:
     @property
     def error(self) -> float:
         """Largest error of phi and u/a over the run [rad]; infinite if the run failed."""
-        worst = max(self.phi_max, self.u_max)
-        return worst if math.isfinite(worst) else math.inf
+        return max(self.phi_max, self.u_max)
 
     @property
     def time(self) -> float:
@@ -81,52 +104,62 @@ class Point:
         return min(self.times, default=math.nan)
 
     @property
-    def median_time(self) -> float:
-        """Median run time [s]; NaN if it was not timed."""
-        return statistics.median(self.times) if self.times else math.nan
+    def setting(self) -> str:
+        """The setting in a few words: its method, and its timestep [ms] or its tolerance."""
+        knob = f"{self.value:g}" if self.knob == TOLERANCE else milliseconds(self.value)
+        return f"{self.method} {'to ' if self.knob == TOLERANCE else ''}{knob}".strip()
 
-    def judge(self, phi: np.ndarray, u: np.ndarray, truth: Trajectory) -> None:
-        """Store the errors of phi [rad] and u [m], given at the samples of the exact motion."""
-        radius = truth.scene.can.radius
-        phi_error, u_error = np.abs(phi - truth.phi), np.abs(u - truth.u) / radius
-        self.phi_max, self.phi_end = float(phi_error.max()), float(phi_error[-1])
-        self.u_max, self.u_end = float(u_error.max()), float(u_error[-1])
+    def known(self) -> dict[str, Any]:
+        """Return what was measured but for the run times, without what is unknown or infinite, which JSON lacks."""
+        values = asdict(self)
+        for name in ("case", "way", "method", "knob", "times"):
+            del values[name]
+        return {name: value for name, value in values.items() if value is not None and value != math.inf}
 
-    def describe(self, run: Trajectory) -> None:
-        """Store the slip, the energy drift, and whether the normal force was positive throughout."""
-        radius = run.scene.can.radius
-        slip = np.abs(run.slip) / radius
-        self.slip_max, self.slip_integral = float(slip.max()), float(np.trapezoid(slip, run.time))
-        change = run.energy - run.energy[0]
-        self.energy_drift = math.copysign(run.energy_drift, float(change[np.abs(change).argmax()]))
-        self.pressed = math.isinf(run.rolls_until())
+
+def milliseconds(time: float) -> str:
+    """Return a time [s] as text, in milliseconds; an infinite one is that of what no setting reached."""
+    return f"{1e3 * time:.3g} ms" if math.isfinite(time) else "not reached"
 
 
 @dataclass
-class Benchmark(Study):
+class Benchmark:
     """A study of error against run time; its points are in the order in which they were measured."""
 
-    command = "mjbeer benchmark"
-    points: list[Point] = field(default_factory=list)
-    ablation: list[dict[str, Any]] = field(default_factory=list)
-    """Rows of `ablation.ablate`: the cost of each stage of a step."""
+    settings: dict[str, Any]
+    machine: dict[str, Any]
+    points: list[Point]
+    sweeps: list[dict[str, Any]]
+    """What `sweeps.compare` found; empty if sweeps were not timed."""
 
     @classmethod
-    def read(cls, document: dict[str, Any]) -> Self:
-        """Return the study in a JSON document."""
-        study = super().read(document)
-        study.points = [Point(**point) for point in document["points"]]
-        return study
+    def load(cls, path: pathlib.Path) -> "Benchmark":
+        """Return the benchmark in a file.
 
-    def json(self) -> str:
-        """Return the study as a JSON document with one line for each point."""
-        head = json.dumps({"settings": self.settings, "machine": self.machine, "ablation": self.ablation}, indent=1)
-        lines = [json.dumps(_known(point), allow_nan=False) for point in self.points]
-        return head[: head.rindex("}")] + ',\n "points": [\n' + ",\n".join(lines) + "\n]}\n"
+        Raises:
+          ParameterError: if the file is missing, or is no benchmark of this version.
+        """
+        return cls.of_study(Study.load(path, COMMAND))
+
+    @classmethod
+    def of_study(cls, study: Study) -> "Benchmark":
+        """Return the benchmark whose rows are in a study."""
+        points = []
+        for ladder in study.of(ERRORS):
+            curve = {name: ladder.values[name] for name in ("way", "method", "knob")}
+            rungs = [Point(ladder.by, **curve, **rung) for rung in ladder.values["points"]]
+            ran = [point for point in rungs if point.failure is None]
+            for timed in study.of(TIMES):
+                if timed.by == ladder.by:
+                    for point, time in zip(ran, timed.values[ladder.name], strict=True):
+                        point.times.append(time)
+            points += rungs
+        sweeps = [way for result in study.of(SWEEPS) for way in result.values["ways"]]
+        return cls(study.settings, study.machine, points, sweeps)
 
     def of(self, case: str) -> list[Point]:
         """Return the points of a case that have an error and a run time."""
-        return [point for point in self.points if point.case == case and math.isfinite(point.error) and point.times]
+        return [point for point in self.points if point.case == case and point.error < math.inf and point.times]
 
     @property
     def cases(self) -> list[str]:
@@ -135,20 +168,55 @@ class Benchmark(Study):
 
     def csv(self) -> str:
         """Return CSV with a line for each point: setting, errors, least and median run time; empty where unknown."""
-        names = [column.name for column in dataclasses.fields(Point) if column.name != "times"]
+        names = [column.name for column in fields(Point) if column.name != "times"]
         text = io.StringIO()
         writer = csv.DictWriter(text, [*names, "error", "time_min", "time_median", "repeats"], lineterminator="\n")
         writer.writeheader()
         for point in self.points:
-            known = {name: value for name, value in _known(point).items() if name != "times"}
-            if point.failure is None:
-                known |= {"error": point.error, "time_min": point.time, "time_median": point.median_time}
-            writer.writerow(known | {"repeats": len(point.times)})
+            known = {"case": point.case, **asdict(point.curve), **point.known(), "repeats": len(point.times)}
+            if point.times:
+                known |= {"error": point.error, "time_min": point.time, "time_median": statistics.median(point.times)}
+            writer.writerow(known)
         return text.getvalue()
 
 
-def _known(point: Point) -> dict[str, Any]:
-    """Return the fields of a point that are known and finite, with run times to a nanosecond; JSON lacks NaN."""
-    values = {name: value for name, value in dataclasses.asdict(point).items() if value is not None}
-    values["times"] = [round(time, 9) for time in point.times]
-    return {name: value for name, value in values.items() if not isinstance(value, float) or math.isfinite(value)}
+def ours(points: Iterable[Point]) -> list[Point]:
+    """Return the points of mjbeer's own models: not of other tools, nor of models as people usually write them."""
+    return [point for point in points if point.way in ROLLINGS]
+
+
+def drawn(points: Iterable[Point]) -> list[Point]:
+    """Return the points that plots show: not those of whole calls, which lie beside those of the runs alone."""
+    return [point for point in points if point.way != WHOLE]
+
+
+def front(points: Iterable[Point]) -> list[Point]:
+    """Return the points than which no other has both less error and less run time, fastest first."""
+    best: list[Point] = []
+    for point in sorted(points, key=lambda point: (point.time, point.error)):
+        if not best or point.error < best[-1].error:
+            best.append(point)
+    return best
+
+
+def cheapest(points: Iterable[Point], error: float) -> Point | None:
+    """Return the fastest point whose error is at most `error` [rad]; None if there is none."""
+    return min((point for point in points if point.error <= error), key=lambda point: point.time, default=None)
+
+
+def time_for(points: Iterable[Point], error: float) -> float:
+    """Return the run time [s] for an `error` [rad], interpolated on the front as a power law, or infinity."""
+    best = front(points)
+    if not best or best[-1].error > error:
+        return math.inf
+    errors, times = [-math.log(point.error) for point in best], [math.log(point.time) for point in best]
+    return math.exp(np.interp(-math.log(error), errors, times))
+
+
+def error_for(points: Iterable[Point], time: float) -> float:
+    """Return the error [rad] for a run `time` [s], interpolated as in `time_for`; infinite if no point is that fast."""
+    best = front(points)
+    if not best or best[0].time > time:
+        return math.inf
+    errors, times = [math.log(point.error) for point in best], [math.log(point.time) for point in best]
+    return math.exp(np.interp(math.log(time), times, errors))

@@ -1,1 +1,0 @@
-"""Other tools, to be timed on the same scenes as MuJoCo."""

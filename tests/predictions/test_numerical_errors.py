@@ -1,0 +1,97 @@
+"""Numerical errors that theory gives in advance, against simulations; each fails on a wrong theory."""
+
+from typing import Literal
+
+import numpy as np
+import pytest
+
+from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer.model.build import compile_spec, compose
+from mjbeer.model.setting import TUNED
+from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
+from mjbeer.studies.benchmark.measure import effective_softness
+from mjbeer.studies.benchmark.points import USUAL
+from mjbeer.studies.cases import CASES
+from mjbeer.theory.exact import phi_error
+
+pytestmark = pytest.mark.slow
+
+# What each prediction leaves out, relative to it. The factors that one might get wrong are all larger: 1/12 for 1/24,
+# delta/a for delta/2a, b for a.
+NEXT_ORDER = 2e-3  # frequency: (omega h)^2 of 4 ms; error of phi: the next power of a timestep of 1/16 ms
+SETTLING = 1e-2  # slip: the can still sinks and creeps a little
+ROUNDING = 1e-9  # distance and shares are exact
+METAL = sliding(can=Can.sheet_metal())
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum()])
+def test_euler_raises_the_frequency(scene: Scene) -> None:
+    """By (omega h)^2/24: the map has eigenvalues exp(+-i nu h) with sin(nu h/2) = omega h/2.
+
+    Measured is a swing of 1e-4 rad, whose finite amplitude adds 1e-9 only.
+    """
+    swing = simulate(scene, 20.0, scene.equilibrium() + 1e-4, integrator="Euler", timestep=4e-3)
+    predicted = (scene.frequency() * 4e-3) ** 2 / 24
+    assert swing.frequency() / scene.frequency() - 1 == pytest.approx(predicted, rel=NEXT_ORDER)
+
+
+def test_euler_lengthens_the_distance() -> None:
+    """From rest, after n = T/h steps the distance is a h^2 n (n + 1)/2 instead of a T^2/2."""
+    run = simulate(sliding(), 2.0, 0.0, integrator="Euler", timestep=1e-3)
+    excess = float(run.u[-1] / exact(run.scene, run.time, 0.0).u[-1] - 1)
+    assert excess == pytest.approx(1e-3 / 2.0, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("name", ["sliding", "frozen", "pendulum"])
+def test_the_error_of_euler_is_the_limit_of_small_steps(name: str) -> None:
+    """Not a fit: halving the step halves what the prediction misses, relative to it."""
+    case, missed = CASES[name], {}
+    slope = np.abs(semi_implicit_euler.euler_error(case.scene, case.times, case.phi0)).max()
+    for h in (1.25e-4, 6.25e-5):
+        run = simulate(case.scene, case.times[-1], case.phi0, integrator="Euler", timestep=h, times=case.times)
+        missed[h] = phi_error(run) / h / slope - 1
+    assert abs(missed[6.25e-5]) < NEXT_ORDER
+    assert missed[1.25e-4] / missed[6.25e-5] == pytest.approx(2, abs=0.3)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicit"])
+def test_the_motion_of_euler_is_right_to_second_order(integrator: Literal["Euler", "implicit"]) -> None:
+    """Rolling down: halving the step halves the error, and quarters what is missed of it."""
+    scene, times, missed, first = frozen(), np.array([0.0, 1.0]), [], []
+    for h in (5e-4, 2.5e-4):
+        predicted = semi_implicit_euler.euler_motion(scene, times, h, integrator, np.pi)[-1]
+        run = simulate(scene, 1.0, np.pi, rolling="equality", integrator=integrator, timestep=h, times=times)
+        missed.append(run.phi[-1] - predicted)
+        first.append(run.phi[-1] - exact(scene, times, np.pi).phi[-1])
+    assert np.sign(first[0]) == {"Euler": -1, "implicit": 1}[integrator]
+    assert abs(missed[0] / first[0]) < NEXT_ORDER
+    assert first[0] / first[1] == pytest.approx(2, abs=0.05)
+    assert missed[0] / missed[1] == pytest.approx(4, abs=0.2)
+
+
+@pytest.mark.parametrize("softness", [USUAL["contact, defaults"].softness, TUNED], ids=["defaults", "tuned"])
+def test_a_can_that_sinks_in_slips(softness) -> None:
+    """The contact point lies midway between the surfaces, at a - delta/2, and the can rolls as with that radius.
+
+    Measured is the second half of 2 s of steady rolling.
+    """
+    run = simulate(METAL, 2.0, METAL.equilibrium(), rolling="contact", softness=softness)
+    half = len(run.time) // 2
+    slip = float((run.slip[-1] - run.slip[half]) / (run.u[-1] - run.u[half]))
+    predicted = float(run.lift[half:].mean()) / (2 * METAL.can.radius)
+    assert slip == pytest.approx(predicted, rel=SETTLING)
+
+
+@pytest.mark.parametrize("scene", [frozen(), METAL, pendulum()])
+def test_a_usual_joint_equality_has_a_share_of_its_force(scene: Scene) -> None:
+    model = compile_spec(compose(scene, USUAL["equality, slide first"]))
+    soft = effective_softness(model, np.zeros(model.nq + model.nv))
+    assert soft is not None
+    predicted = soft_constraint.reached_share(0.9, soft_rolling.diagonal_excess(scene))
+    assert soft.effective_impedance == pytest.approx(predicted, rel=ROUNDING)
+
+
+def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
+    """A can of radius 1 m."""
+    assert soft_rolling.diagonal_excess(sliding(can=Can.hoop(1.0, 1.0, 2.0))) == pytest.approx(1, rel=1e-12)
+    assert soft_constraint.reached_share(0.9, 1.0) == pytest.approx(0.9, rel=1e-15)

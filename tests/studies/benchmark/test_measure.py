@@ -1,0 +1,198 @@
+"""The benchmark on short ladders: orders, floors, what an interruption leaves. Nothing is asserted of times."""
+
+import io
+import itertools
+import math
+import pathlib
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from mjbeer.cli.app import main
+from mjbeer.exceptions import ParameterError
+from mjbeer.studies.benchmark import diagrams, measure, peers
+from mjbeer.studies.benchmark.measure import Rung, conduct, ladders
+from mjbeer.studies.benchmark.points import Benchmark, Curve, Point
+from mjbeer.studies.cases import CASES, INTERVAL
+from mjbeer.studies.convergence import convergence
+from tests.support import stubs
+
+pytestmark = pytest.mark.slow
+
+# Next orders of rungs that are not all small: the issue of every convergence test.
+ORDER_MARGIN = 0.2
+
+
+@pytest.fixture(scope="module")
+def measured(tmp_path_factory: pytest.TempPathFactory) -> Benchmark:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        stubs.benchmark(monkeypatch)
+        return conduct(["frozen"], tmp_path_factory.mktemp("study"), False, quiet())
+
+
+def quiet() -> Console:
+    return Console(file=io.StringIO())
+
+
+def on(found: Benchmark, *curve: str) -> list[Point]:
+    return [each for each in found.points if each.curve == Curve(*curve)]
+
+
+@pytest.mark.parametrize(
+    ("way", "method", "order"),
+    # A soft contact with tau = h errs as tau^2, whatever integrates it.
+    [("reduced", "Euler", 1), ("reduced", "RK4", 4), ("equality", "RK4", 4), ("contact", "DOP853", 2)],
+)
+def test_fitted_orders_are_the_methods(measured: Benchmark, way: str, method: str, order: int) -> None:
+    points = on(measured, way, method)
+    found = convergence([point.value for point in points], [point.error for point in points]).order
+    assert found == pytest.approx(order, abs=ORDER_MARGIN)
+
+
+def test_dop853_gains_eight_orders_a_rung_before_its_floor_where_the_ladder_ends(measured: Benchmark) -> None:
+    """From 32 to 8 ms; coarser rungs have not settled, and from 8 ms on there is rounding."""
+    errors = {each.value: each.error for each in on(measured, "reduced", "DOP853")}
+    assert math.log(errors[32e-3] / errors[8e-3], 4) == pytest.approx(8, abs=ORDER_MARGIN)
+    assert min(errors.values()) < 1e-13
+
+
+def test_a_ladder_ends_at_its_floor() -> None:
+    ended = measure._climb(CASES["frozen"], Curve("reduced", "DOP853"), [16e-3 / 2**k for k in range(10)])
+    assert len(ended["points"]) < 10
+
+
+def test_the_usual_ways_are_far_off_and_say_why(measured: Benchmark) -> None:
+    slide, hinge, contact = (
+        next(each for each in measured.points if each.way == way)
+        for way in ("equality, slide first", "equality, hinge first", "contact, defaults")
+    )
+    assert slide.error > 1 > hinge.error > 1e-3 < contact.error
+    assert slide.share is not None
+    assert slide.share < 0.01
+    assert slide.slip_max is not None
+    assert slide.slip_max > 1
+
+
+def test_every_point_is_whole(measured: Benchmark) -> None:
+    assert {each.curve: len(on(measured, *vars(each.curve).values())) for each in measured.points} == {
+        curve: len(values) for curve, values in stubs.LADDERS.items()
+    }
+    for point in measured.points:
+        assert point.failure is None, point
+        assert math.inf > point.error >= max(point.phi_end, point.u_end)
+        assert len(point.times) == 2
+        assert point.time > 0
+        assert point.setup is not None
+        assert (point.energy_drift is None) == (point.method == "")
+    assert all(each.slip_max == 0 for each in on(measured, "reduced", "RK4"))
+
+
+def test_an_interrupted_study_goes_on(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interrupted in the third ladder, and again in the second round; what was measured stays to the bit."""
+    stubs.benchmark(monkeypatch)
+    seconds = Rung.seconds
+
+    def stop(count: int, function):
+        calls = iter(range(count))
+
+        def stopping(*arguments):
+            if next(calls, None) is None:
+                raise KeyboardInterrupt
+            return function(*arguments)
+
+        return stopping
+
+    (tmp_path / "summary.md").write_text("of another study")
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(Rung, "measure", stop(15, Rung.measure))
+        with pytest.raises(KeyboardInterrupt):
+            conduct(["frozen"], tmp_path, False, quiet())
+    assert not (tmp_path / "summary.md").exists()
+    first = Benchmark.load(tmp_path / "study.jsonl").points
+    assert len({each.curve for each in first}) == 2
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(Rung, "seconds", stop(70, seconds))
+        with pytest.raises(KeyboardInterrupt):
+            conduct(["frozen"], tmp_path, False, quiet())
+    second = Benchmark.load(tmp_path / "study.jsonl").points
+    assert {len(each.times) for each in second} == {1}
+    said = io.StringIO()
+    done = conduct(["frozen"], tmp_path, False, Console(file=said))
+    assert "going on from" in said.getvalue()
+    assert {len(each.times) for each in done.points} == {2}
+    assert [each.error for each in done.points][: len(first)] == [each.error for each in first]
+    assert [each.times[0] for each in done.points] == [each.times[0] for each in second]
+
+
+def test_a_setting_that_fails_is_a_point_with_a_reason(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the timesteps of DOP853 the coarsest ones diverge, and the ladder goes on to those that do not."""
+    curve = Curve("reduced", "DOP853")
+    stubs.benchmark(monkeypatch, {curve: ladders(CASES["hoop"].scene)[curve]})
+    done = conduct(["hoop"], tmp_path, False, quiet())
+    failed = [each for each in done.points if each.failure]
+    assert failed
+    assert all(math.isinf(each.error) and not each.times for each in failed)
+    assert min(each.error for each in done.of("hoop")) < 1e-10
+
+
+def test_a_peer_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, lost = CASES["frozen"], np.where(CASES["frozen"].times > 1, np.nan, 0)
+    for result in ((lost, 0 * case.times), (0 * case.times, lost)):
+        careless = peers.Peer("heyoka", (1e-3,), lambda *_, result=result: lambda: result)
+        monkeypatch.setitem(peers.PEERS, "heyoka", careless)
+        (point,) = measure._climb(case, Curve("heyoka", "", "tolerance"), [1e-3])["points"]
+        assert point["failure"] == "heyoka: the motion did not stay finite"
+
+
+def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When it is there again, the study begins anew, and the summary does not name it any more."""
+    assert "heyoka" not in {curve.way for curve in ladders(CASES["frozen"].scene, missing=["heyoka"])}
+    stubs.benchmark(monkeypatch, stubs.FEW)
+    reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
+    for name in ("draw", "draw_overview"):
+        monkeypatch.setattr(diagrams, name, lambda study, path: None)
+    monkeypatch.setattr(peers, "absent", lambda: {"heyoka": reason})
+    assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
+    assert f"\nheyoka is absent: {reason}\n" in (tmp_path / "summary.md").read_text()
+    monkeypatch.setattr(peers, "absent", dict)
+    assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
+    assert "absent" not in (tmp_path / "summary.md").read_text()
+
+
+def test_what_is_no_benchmark_is_refused(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(ParameterError, match=r"scene must be one of 'sliding', .*; got 'bottle'"):
+        conduct(["bottle"], tmp_path, True, quiet())
+    (tmp_path / "study.jsonl").write_text("{}\n")
+    with pytest.raises(ParameterError, match=r"study\.jsonl was not written by `mjbeer benchmark`"):
+        conduct(["frozen"], tmp_path, True, quiet())
+
+
+def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:
+    for name, case in CASES.items():
+        found = ladders(case.scene)
+        assert {each.way for each in found} >= {"reduced", *peers.PEERS}
+        assert ("equality" in {each.way for each in found}) == (name != "sliding")
+        steps = found[Curve("reduced", "RK4")]
+        assert (steps[0], steps[-1]) == (16e-3, 16e-3 / 2**9)
+        assert all(a == 2 * b for a, b in itertools.pairwise(steps))
+        assert all(INTERVAL % each == 0 for each in steps)
+        assert len(ladders(case.scene, quick=True)[Curve("reduced", "RK4")]) >= 6
+    labels = [curve.label for curve in ladders(CASES["frozen"].scene)]
+    assert len(set(labels)) == len(labels)  # by which rounds find their curves
+
+
+def test_the_command_writes_everything(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.benchmark(monkeypatch)
+    assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
+    drawn = {f"{name}.{kind}" for name in ("work_precision", "overview") for kind in ("svg", "png")}
+    names = {each.name for each in (tmp_path / "new").iterdir()}
+    assert names == {"study.jsonl", "points.csv", "summary.md", ".lock", *drawn}
+    summary = (tmp_path / "new" / "summary.md").read_text()
+    for text in ("cheapest setting for an error", "SciPy odeint", "share of the force", "a sweep of stubs"):
+        assert text in summary
+    assert "cheapest setting" in capsys.readouterr().out

@@ -1,0 +1,115 @@
+"""The front and what is read off it; the study that comes with mjbeer, its tables and its diagrams."""
+
+import csv
+import math
+import pathlib
+import re
+
+import pytest
+
+from mjbeer.studies.benchmark import diagrams, points, tables
+from mjbeer.studies.benchmark.measure import Rung
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark, Point
+from mjbeer.studies.cases import CASES, DEFAULT
+from mjbeer.studies.convergence import convergence
+from mjbeer.theory.named import in_words
+from tests.support import figures
+
+# Next orders of rungs that are not all small: the issue of every convergence test.
+ORDER_MARGIN = 0.2
+
+
+def point(time: float, error: float, way: str = "reduced", method: str = "RK4", knob: str = "timestep") -> Point:
+    return Point("frozen", way, method, knob, 1e-3, phi_max=error, u_max=error / 2, times=[time, 2 * time])
+
+
+LADDER = [point(1, 1e-2), point(2, 1e-3), point(3, 5e-3), point(4, 1e-5), point(8, 1e-5)]
+
+
+def test_the_front_has_no_point_that_another_beats() -> None:
+    assert [(each.time, each.error) for each in points.front(LADDER)] == [(1, 1e-2), (2, 1e-3), (4, 1e-5)]
+
+
+def test_the_cheapest_is_a_measured_one() -> None:
+    assert points.cheapest(LADDER, 1e-3) is LADDER[1]
+    assert points.cheapest(LADDER, 9e-4) is LADDER[3]
+    assert points.cheapest(LADDER, 1e-6) is None
+
+
+def test_between_points_error_is_a_power_of_time() -> None:
+    assert points.time_for(LADDER, 1e-4) == pytest.approx(math.sqrt(2 * 4))
+    assert points.error_for(LADDER, math.sqrt(2 * 4)) == pytest.approx(1e-4)
+    assert points.time_for(LADDER, 1e-1) == 1  # nothing is faster than the fastest
+    assert math.isinf(points.time_for(LADDER, 1e-6))
+    assert math.isinf(points.error_for(LADDER, 0.5))
+    assert math.isinf(points.time_for([], 1.0))
+
+
+def test_others_are_compared_at_equal_error_and_the_usual_at_equal_time() -> None:
+    """RK4 takes twice as long as the best for 1e-3 rad; the usual errs by 0.5 where its twin errs by 1e-4."""
+    found = [point(1, 1e-3, method="DOP853"), point(2, 1e-3), point(2, 0.5, "equality, slide first", "Euler")]
+    found += [point(1, 1e-3, "equality"), point(4, 1e-5, "equality"), point(0.5, 1e-12, "heyoka", "", "tolerance")]
+    study = Benchmark({}, {}, found, [])
+    assert tables.others(study).rows[0] == ("frozen, 1e-03 rad", "1e+03 ms", "2", "-", "-", "-", "0.5")
+    assert tables.others(study).rows[-1][1:] == ("not reached", "-", "-", "-", "-", "-")
+    assert tables.usual(study).rows[0][-1] == "5.0e+03"
+    assert tables.cheapest(study, "frozen").rows[0][1] == "DOP853 1 ms: 1e+03 ms"
+
+
+@pytest.fixture(scope="module")
+def stored() -> Benchmark:
+    return Benchmark.load(SHIPPED)
+
+
+@pytest.mark.slow
+def test_the_study_that_comes_with_mjbeer_is_of_this_code(stored: Benchmark) -> None:
+    """On a few of its points, to the digits that rounding leaves."""
+    assert stored.cases == list(DEFAULT)
+    compared = 0
+    for old in stored.points[:: len(stored.points) // 24]:
+        if old.failure or not 1e-10 < old.error < 1e-2 or not old.method:
+            continue
+        case, new = CASES[old.case], Point(old.case, old.way, old.method, old.knob, old.value)
+        Rung(case, new.curve, new.value).measure(new, case.truth())
+        assert (new.error, new.share or 0) == pytest.approx((old.error, old.share or 0), rel=1e-3)
+        compared += 1
+    assert compared > 5
+
+
+def test_every_order_of_the_study_is_the_method_s_or_the_softness_s(stored: Benchmark) -> None:
+    """Contacts tuned to the timestep err as tau^2 = h^2 or, where friction creeps, as h, once the method errs less."""
+    fitted = 0
+    for curve in {(each.case, each.curve) for each in stored.points if each.curve.knob == "timestep"}:
+        found = [each for each in stored.of(curve[0]) if each.curve == curve[1] and each.method != "GaussJackson"]
+        # Of DOP853 every second rung has its samples at its steps.
+        found = found[:: 2 if curve[1].method == "DOP853" else 1]
+        order = convergence([each.value for each in found], [each.error for each in found]).order
+        method = {"RK4": 4, "DOP853": 8}.get(curve[1].method, 1)
+        soft = [1, 2] if curve[1].way == "contact" and method > 2 else []
+        assert order is None or min(abs(order - each) for each in (method, *soft)) <= ORDER_MARGIN, curve
+        fitted += order is not None
+    assert fitted > 40
+
+
+def test_csv_has_every_point(stored: Benchmark) -> None:
+    rows = list(csv.DictReader(stored.csv().splitlines()))
+    assert [(each["way"], float(each["error"] or "inf")) for each in rows] == [
+        (each.way, each.error) for each in stored.points
+    ]
+
+
+@pytest.mark.slow
+def test_the_diagrams_name_everything_that_they_show(
+    stored: Benchmark, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = figures.saved(monkeypatch)
+    diagrams.draw(stored, tmp_path / "diagram")
+    diagrams.draw_overview(stored, tmp_path / "overview")
+    assert [figures.faults(figure) for figure in seen] == [[], []]
+    assert max(file.stat().st_size for file in tmp_path.glob("*.svg")) < 160_000
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "diagram.svg").read_text())
+    for case in stored.cases:
+        assert any(text.startswith(f"{case}: {in_words(CASES[case].scene)}") for text in texts)
+    for label in ("RK4, contact", "mjbeer to a tolerance, reduced", "the best of mjbeer", "heyoka", "SciPy LSODA"):
+        assert label in texts
+    assert any(text.startswith("DOP853 ") and text.endswith(" ms") for text in texts)
