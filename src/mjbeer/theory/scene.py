@@ -4,7 +4,6 @@ import dataclasses
 import functools
 import inspect
 import math
-import warnings
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from typing import Any, Literal, ParamSpec, get_args
@@ -12,7 +11,7 @@ from typing import Any, Literal, ParamSpec, get_args
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, NoLibrationError, ParameterError
+from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError, warn_of_liquid
 from mjbeer.theory import motion, steady
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import LIQUIDS, NAMES, Damping, Liquid, about_scene, liquid_law
@@ -471,7 +470,7 @@ def liquid(
     except NoEquilibriumError:  # no terminal speed on so steep an incline
         reason = about_scene(used, 0.0, scene)
     if reason is not None:
-        warnings.warn(reason, LiquidWarning, stacklevel=3)
+        warn_of_liquid(reason, stacklevel=3)
     return scene
 
 
