@@ -97,11 +97,12 @@ def sweep(
     if executor is not None and not isinstance(executor, Executor):
         raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.shown(executor)}")
     path = None if output is None else checked(output, (".npz",))
+    if not callable(make):
+        raise ParameterError(f"make must be a function that returns a scene, got {require.shown(make)}")
     try:
         inspect.signature(make).bind(**parameters)
     except TypeError as error:
-        got = require.shown(make)
-        raise ParameterError(f"make must be a function that returns a scene, got {got}: {error}") from error
+        raise ParameterError(f"make is {require.shown(make)}: {error}") from error
     except ValueError:  # a function in C without a signature
         pass
     axes, fixed = _arranged({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
