@@ -203,9 +203,10 @@ def load(path: pathlib.Path) -> Sweep:
       ParameterError: if the file has none, or not all of it.
     """
     try:
-        with np.load(path) as file:
-            header = json.loads(file[_HEADER])
-            arrays = {name: file[name] for name in file.files if name != _HEADER}
+        with zipfile.ZipFile(path) as archive:
+            header = json.loads(archive.read(_HEADER))
+            names = [name.removesuffix(".npy") for name in archive.namelist() if name != _HEADER]
+            arrays = {name: np.lib.format.read_array(archive.open(f"{name}.npy")) for name in names}
         axes = {name: arrays.pop(name) for name in header["axes"]}
         reasons = {int(scene): reason for scene, reason in header["reasons"].items()}
         sweep = Sweep(axes, header["paired"], header["about"], arrays, reasons)
@@ -213,7 +214,7 @@ def load(path: pathlib.Path) -> Sweep:
         found = {name: (array.shape, array.dtype.kind) for name, array in arrays.items()}
         if found != {name: (sweep.shape, kind) for name, kind in kinds.items()}:
             raise ValueError(f"its arrays are not those of {' x '.join(map(str, sweep.shape))} scenes")
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise ParameterError(f"{path} was not written by `mjbeer.sweep`: {error}") from error
     return sweep
 

@@ -116,8 +116,7 @@ def sweep(
         result.quantities[name] = np.full(result.shape, np.nan)
     result.quantities[measure.TRUSTED] = np.zeros(result.shape, np.bool_)
     result.quantities[measure.STATUS] = np.full(result.shape, measure.NOT_YET, np.int8)
-    with liquid_notes() as told:
-        digest = _check_scenes(work, result)
+    digest, notes = _check_scenes(work, result)
     result.about.update(
         {
             "make": _label(make),
@@ -128,10 +127,10 @@ def sweep(
             "scenes": digest,
             "functions": [] if path is None else [_source(each) for each in (make, *measures.values())],
             "versions": [f"{package} {version(package)}" for package in ("mjbeer", "mujoco")],
-            "notes": list({re.sub(r"\d[\d.e+-]*", "", note): note for note in reversed(told)}.values()),
+            "notes": notes,
         }
     )
-    for note in result.about["notes"]:
+    for note in notes:
         warnings.warn(note, LiquidWarning, stacklevel=2)
     if path is not None and path.exists() and not overwrite:
         result = _continued(path, result)
@@ -189,23 +188,27 @@ def _end(duration: float, setting: Setting, every_step: bool) -> float:
     return setting.timestep * math.ceil(steps * (1 - 1e-10))  # which allows for rounding
 
 
-def _check_scenes(work: measure.Work, plan: Sweep) -> str:
+def _check_scenes(work: measure.Work, plan: Sweep) -> tuple[str, list[str]]:
     """Check that every value is allowed in some scene; where they are paired, that every scene is.
 
     Two values may be allowed, and their combination not: such a scene is left to fail by itself, as is one for which
-    `make` raises an error of its own. Return a digest of the scenes that are made here.
+    `make` raises an error of its own. Return a digest of the scenes that are made here, and what liquids have warned
+    of, once where only the numbers differ.
     """
-    digest = hashlib.sha256()
+    digest, notes = hashlib.sha256(), dict[str, str]()
 
     def problem(number: Any) -> ParameterError | None:
         try:
-            scene, *_ = work.scene(plan.rows(np.array([number]))[0])
+            with liquid_notes() as told:
+                scene, *_ = work.scene(plan.rows(np.array([number]))[0])
             made = [getattr(scene, each.name) for each in dataclasses.fields(scene) if each.compare]
         except ParameterError as error:
             return error
         except Exception as error:
             made = [type(error)]
         digest.update(_shown(made).encode())
+        for note in told:
+            notes.setdefault(re.sub(r"\d[\d.e+-]*", "", note), note)
         return None
 
     numbers = np.arange(math.prod(plan.shape)).reshape(plan.shape)
@@ -219,7 +222,7 @@ def _check_scenes(work: measure.Work, plan: Sweep) -> str:
     for place, group in groups:
         if (first := problem(group[0])) and all(problem(number) for number in group):
             raise ParameterError(f"{place}: {first}".removeprefix(": ")) from first
-    return digest.hexdigest()
+    return digest.hexdigest(), list(notes.values())
 
 
 def _shown(thing: Any) -> str:
@@ -230,7 +233,7 @@ def _shown(thing: Any) -> str:
 def _source(function: Any) -> str:
     """Return what a function is, its text, and the values in it that come from a call or a function around it."""
     inner = inspect.unwrap(getattr(function, "func", function))
-    if inner.__module__.split(".")[0] == "mjbeer":  # a version of which does not count
+    if str(inner.__module__).startswith("mjbeer."):  # versions do not count
         return _shown(function)
     held = (
         getattr(inner, "__defaults__", None),
