@@ -328,6 +328,9 @@ def test_an_interrupted_sweep_goes_on_where_it_was(
         assert same(gone_on, whole)
         assert len(counted) == kept.size - done
         assert gone_on.about["versions"] == [*whole.about["versions"], "mjbeer 99", "mujoco 99"]
+    whole.save(tmp_path / "whole.npz")
+    assert same(sweep_of_sliding(quantity=highest, output=tmp_path / "whole.npz"), whole)
+    assert len(counted) == kept.size - done
 
 
 def edited(incline: float, fill: float) -> Scene:
@@ -370,6 +373,14 @@ def test_an_edited_function_of_a_trajectory_counts_as_another_one(tmp_path: path
         told = contextlib.nullcontext() if place == 0 else pytest.raises(ParameterError, match="functions differ")
         with told:
             sweep_of_sliding(quantity=named("phi_at", lambda motion, place=place: motion.phi[place]), output=path)
+
+
+def test_a_function_without_a_source_is_not_saved(tmp_path: pathlib.Path) -> None:
+    typed: dict[str, Any] = {}
+    exec("def last(motion): return motion.u[-1]", typed)
+    assert sweep_of_sliding(quantity=typed["last"])["last"].shape == (3, 4)
+    with pytest.raises(ParameterError, match="they must be defined in a file, got <function last"):
+        sweep_of_sliding(quantity=typed["last"], output=tmp_path / "map.npz")
 
 
 def test_what_is_no_sweep_is_not_overwritten(tmp_path: pathlib.Path, counted: list[Any]) -> None:

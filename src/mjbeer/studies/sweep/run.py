@@ -116,6 +116,12 @@ def sweep(
         result.quantities[name] = np.full(result.shape, np.nan)
     result.quantities[measure.TRUSTED] = np.zeros(result.shape, np.bool_)
     result.quantities[measure.STATUS] = np.full(result.shape, measure.NOT_YET, np.int8)
+    functions = [_source(function) for function in (make, *measures.values())]
+    if path is not None and not all(functions):
+        raise ParameterError(
+            "a sweep that is saved is known again by the source of its functions: they must be defined in a file, got "
+            + require.shown([make, *measures.values()][functions.index("")])
+        )
     digest, notes = _check_scenes(work, result)
     result.about.update(
         {
@@ -125,7 +131,7 @@ def sweep(
             "end [s]": end,
             "quantities": [*measure.ALWAYS, *measures],
             "scenes": digest,
-            "functions": [] if path is None else [_source(each) for each in (make, *measures.values())],
+            "functions": functions,
             "versions": [f"{package} {version(package)}" for package in ("mjbeer", "mujoco")],
             "notes": notes,
         }
@@ -231,21 +237,16 @@ def _shown(thing: Any) -> str:
 
 
 def _source(function: Any) -> str:
-    """Return what a function is, its text, and the values in it that come from a call or a function around it."""
+    """Return what a function is, its text, and the values that it has from around it; empty if there is no text."""
     inner = inspect.unwrap(getattr(function, "func", function))
     if str(inner.__module__).startswith("mjbeer."):  # versions do not count
         return _shown(function)
-    held = (
-        getattr(inner, "__defaults__", None),
-        [cell.cell_contents for cell in getattr(inner, "__closure__", None) or ()],
-    )
+    cells = [cell.cell_contents for cell in getattr(inner, "__closure__", None) or ()]
     try:
-        return _shown((function, held)) + inspect.getsource(inner if inspect.isroutine(inner) else type(inner))
-    except (OSError, TypeError) as error:
-        raise ParameterError(
-            f"a sweep that is saved is known again by the source of its functions, which {require.shown(function)} has "
-            "not: define it in a file"
-        ) from error
+        text = inspect.getsource(inner if inspect.isroutine(inner) else type(inner))
+    except (OSError, TypeError):  # typed at a prompt, or in C
+        return ""
+    return _shown((function, getattr(inner, "__defaults__", None), cells)) + text
 
 
 def _label(function: Any) -> str:
@@ -284,9 +285,9 @@ def _fill(
             closing(_carried_out(work, result, scenes, pool)) as pieces,
         ):
             for piece, values, reasons in pieces:
+                result.reasons.update({int(piece[place]): reason for place, reason in reasons.items()})
                 for array, column in zip(result.quantities.values(), values.T, strict=True):  # the status is the last
                     array.flat[piece] = column
-                result.reasons.update({int(piece[place]): reason for place, reason in reasons.items()})
                 before, done = done, done + len(piece)
                 for _ in range(100 * before // len(scenes), 100 * done // len(scenes)):
                     advance(f"{len(scenes)} scenes [%]")
