@@ -1,4 +1,9 @@
-"""The errors that mjbeer raises on purpose. Catching `MjbeerError` catches all of them."""
+"""The errors that mjbeer raises on purpose, and its warnings. Catching `MjbeerError` catches all errors."""
+
+import warnings
+from collections.abc import Generator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 
 class MjbeerError(Exception):
@@ -55,3 +60,25 @@ class TemplateError(MjbeerError):
 
 class OutputError(MjbeerError):
     """An output file could not be written, or another command is writing to its folder."""
+
+
+_NOTES: ContextVar[list[str] | None] = ContextVar("notes", default=None)
+
+
+def warn_of_liquid(message: str, stacklevel: int) -> None:
+    """Give a `LiquidWarning`, with the `stacklevel` of the caller's; in a block of `liquid_notes`, note it there."""
+    if (notes := _NOTES.get()) is None:
+        warnings.warn(message, LiquidWarning, stacklevel=stacklevel + 1)
+    else:
+        notes.append(message)
+
+
+@contextmanager
+def liquid_notes() -> Generator[list[str]]:
+    """Yield a list that gets what liquids warn of in this block and this thread, instead of the user."""
+    notes: list[str] = []
+    token = _NOTES.set(notes)
+    try:
+        yield notes
+    finally:
+        _NOTES.reset(token)

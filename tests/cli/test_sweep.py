@@ -46,6 +46,16 @@ def test_the_file_has_what_python_gives(
         assert path.stat().st_size > 5000
 
 
+def test_a_file_of_another_sweep_is_replaced_on_request_only(
+    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["sweep", "frozen", "--fill", "0.3,0.5", "--output", str(tmp_path / "map.npz"), "--duration"]
+    assert main([*words, "0.1"]) == main([*words, "0.1"]) == 0
+    assert main([*words, "0.2"]) == 2
+    assert "map.npz has another sweep, whose end [s] differ" in capsys.readouterr().err.replace("\n", " ")
+    assert main([*words, "0.2", "--overwrite"]) == 0
+
+
 def test_scenes_without_a_period_are_counted_by_reason(
     tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

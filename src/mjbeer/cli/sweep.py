@@ -127,6 +127,8 @@ class Sweep:
     output: pathlib.Path = pathlib.Path("sweep.png")
     """File to write: a plot (.png or .svg) over one or two options, a table (.csv), or all arrays (.npz for NumPy,
     .nc for xarray). An interrupted sweep to .npz goes on where it was."""
+    overwrite: bool = False
+    """Replace a .npz of another sweep, and begin the same one anew."""
 
     def run(self) -> int:
         """Run the command and return its exit status, 0.
@@ -134,7 +136,7 @@ class Sweep:
         Raises:
           ParameterError: if an option is not allowed, or the plot would have other than one or two dimensions.
         """
-        from mjbeer.studies.sweep.files import NUMPY, checked
+        from mjbeer.studies.sweep.result import checked
         from mjbeer.studies.sweep.run import sweep
 
         checked(self.output, ENDINGS)
@@ -156,7 +158,7 @@ class Sweep:
                 "instead"
             )
         tolerance = 1e-6 if self.tolerance is None and self.integrator is None else self.tolerance
-        resumed = self.output if self.output.suffix == NUMPY else None
+        resumed = self.output if self.output.suffix == ".npz" else None
         with files.whole(self.output) if resumed is None else contextlib.nullcontext() as temporary:
             result = sweep(
                 _Maker(name),
@@ -168,6 +170,7 @@ class Sweep:
                 friction=self.friction,
                 quantity=self.quantity,
                 output=resumed,
+                overwrite=self.overwrite,
                 **angles,
                 **others,
             )
@@ -203,7 +206,7 @@ class _Maker:
 
 def _in_degrees(result: Any, index: tuple[int, ...]) -> str:
     """Return the parameters of a scene in words, with its angles as they were given."""
-    from mjbeer.studies.sweep.plots import shown
+    from mjbeer.studies.sweep.result import shown
 
     return ", ".join(
         f"{name} = {shown(name, result[name])[place]:.6g}" for name, place in zip(result.dims, index, strict=True)

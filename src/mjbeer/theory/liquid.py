@@ -21,14 +21,13 @@ level ground they are all there is: it then rolls more slowly than the layers of
 """
 
 import math
-import warnings
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, NoEquilibriumError, ParameterError
+from mjbeer.exceptions import NoEquilibriumError, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import segment
@@ -159,7 +158,7 @@ def liquid(
             "g cos(alpha), which spreads it round the can"
         )
     if reason := _no_lump(name, scene, abs(speed) / scene.can.radius, reasons, "steady rolling"):
-        warnings.warn(reason, LiquidWarning, stacklevel=3)
+        warn_of_liquid(reason, stacklevel=3)
     return scene
 
 

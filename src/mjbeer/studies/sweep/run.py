@@ -1,40 +1,43 @@
 """`mjbeer.sweep`: many scenes in one call, on all cores, or on a cluster."""
 
-import json
+import dataclasses
+import hashlib
+import inspect
+import math
 import os
 import pathlib
+import pickle
+import re
 import time
 import warnings
-from collections.abc import Callable, Generator, Sequence
-from concurrent.futures import Executor, ThreadPoolExecutor
-from contextlib import closing, contextmanager
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import closing, nullcontext
 from importlib.metadata import version
-from inspect import isfunction
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, ParameterError
+from mjbeer.exceptions import LiquidWarning, ParameterError, liquid_notes
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output.terminal import STDERR, progress_bar
 from mjbeer.simulation.run import Run
-from mjbeer.studies.sweep import files
-from mjbeer.studies.sweep.arrays import Sweep, empty
-from mjbeer.studies.sweep.chunks import carry_out
-from mjbeer.studies.sweep.plan import Plan, arrange, check_names, label
-from mjbeer.studies.sweep.quantities import ALWAYS, ASKED, NOT_YET, STATUS, TRUSTED
-from mjbeer.studies.sweep.work import MOST_SAMPLES, Work
+from mjbeer.studies.sweep import measure
+from mjbeer.studies.sweep.result import SCENE, Sweep, checked, load
 from mjbeer.theory.scene import Scene
 
-_MOST_STEPS = 1e9
+_MOST_STEPS = 1_000_000_000
 """Largest number of timesteps of each run: they take some minutes."""
-_SAVE_EVERY = 5.0
-"""Time between two savings of what is there so far [s]."""
-_SAVING = 20.0
-"""Smallest ratio of that time to the time that saving takes."""
-_PERCENT = 100
+_MOST_SCENES = 10_000_000
+"""Largest number of scenes: they take a gigabyte."""
+_SAVE_EVERY, _SAVING = 5.0, 20.0
+"""Time between two savings of what is there so far [s], and its smallest ratio to the time that saving takes."""
+_LARGEST_PIECE = 1000
+"""Largest number of scenes that are handed out in one piece."""
+_UNKNOWN_WORKERS = 128
+"""Number of workers that an executor is taken to have that does not tell: a cluster's."""
 
 Asked = str | Callable[[Run], float]
 """A quantity that is measured if it is asked for: its name, or a function of a trajectory."""
@@ -55,6 +58,7 @@ def sweep(
     paired: bool = False,
     executor: Executor | None = None,
     output: str | os.PathLike[str] | None = None,
+    overwrite: bool = False,
     progress: bool = True,
     **parameters: Any,
 ) -> Sweep:
@@ -74,199 +78,262 @@ def sweep(
 
     The scenes are simulated by an `executor` of `concurrent.futures`, by default by a thread for each core. The result
     does not depend on it. With an `output`, whose name ends in .npz, what is there is saved every few seconds; the same
-    call goes on from there after an interruption.
+    sweep goes on from there after an interruption. Two sweeps are the same if parameters and their values, start,
+    setting, end and quantities are; if `make` gives the same scenes, for which it is asked once for each value; and if
+    the source of `make` and of functions of a trajectory is, but not of what these call. Versions do not count;
+    `Sweep.about` has all that were at work. A file of another sweep is refused, unless `overwrite`, which begins anew
+    whatever the file has.
 
-    A value that is not allowed is refused before anything runs. A scene that fails is listed in `Sweep.failed`.
+    A value that is not allowed is refused before anything runs. A scene that fails is listed in `Sweep.failed`. What
+    liquids warn of is said beforehand, once for each kind of reason, and kept in `Sweep.about`.
 
     Raises:
       ParameterError: if an argument is not allowed; for an entry of an array the message has its index.
       OutputError: if the output cannot be written.
       OSError: if the system ends one of the executor's processes.
     """
-    paired, progress = require.boolean("paired", paired), require.boolean("progress", progress)
+    for name, value in (("paired", paired), ("overwrite", overwrite), ("progress", progress)):
+        require.boolean(name, value)
     if executor is not None and not isinstance(executor, Executor):
         raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.shown(executor)}")
-    path = None if output is None else files.checked(output, (files.NUMPY,))
-    check_names(make, parameters)
-    plan, fixed = arrange({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
-    start = {name: require.number(name, fixed.pop(name)) for name in ("phi0", "phi_dot0") if name in fixed}
-    require.radians(float(np.abs(plan.axes.get("phi0", start.get("phi0", 0.0))).max()))
+    path = None if output is None else checked(output, (".npz",))
+    if not callable(make):
+        raise ParameterError(f"make must be a function that returns a scene, got {require.shown(make)}")
+    try:
+        inspect.signature(make).bind(**parameters)
+    except TypeError as error:
+        raise ParameterError(f"make is {require.shown(make)}: {error}") from error
+    except ValueError:  # a function in C without a signature
+        pass
+    axes, fixed = _arranged({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
+    require.radians(float(np.abs(axes.get("phi0", fixed.get("phi0"))).max()))
     setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
-    asked, functions = _asked(quantity)
-    end = _end(require.positive("duration", duration, "s"), setting)
-    if functions and end / setting.timestep > MOST_SAMPLES:
+    measures = _asked(quantity, axes)
+    end = _end(require.positive("duration", duration, "s"), setting, bool(set(measures) - {measure.PERIOD}))
+    work = measure.Work(make, fixed, tuple(axes), setting, end, measures)
+    result = Sweep(axes, paired, {}, {}, {})
+    for name in (*measure.ALWAYS, *measures):
+        result.quantities[name] = np.full(result.shape, np.nan)
+    result.quantities[measure.TRUSTED] = np.zeros(result.shape, np.bool_)
+    result.quantities[measure.STATUS] = np.full(result.shape, measure.NOT_YET, np.int8)
+    functions = [_source(function) for function in (make, *measures.values())]
+    if path is not None and not all(functions):
         raise ParameterError(
-            f"a function of a trajectory has samples at every timestep, at most {MOST_SAMPLES}: a duration of "
-            f"{duration!r} s has too many of {setting.timestep!r} s"
+            "a sweep that is saved is known again by the source of its functions: they must be defined in a file, got "
+            + require.shown([make, *measures.values()][functions.index("")])
         )
-    work = Work(make, fixed, start, tuple(plan.axes), setting, end, asked, functions)
-    with _one_warning_of_liquids():
-        return _swept(work, plan, executor, path, progress)
-
-
-def _swept(work: Work, plan: Plan, executor: Executor | None, path: pathlib.Path | None, progress: bool) -> Sweep:
-    """Check the scenes, go on from what is there already, and simulate the others."""
-    plan.check(work)
-    about = _about(work)
-    result = empty(plan, about, work.columns)
-    if path is not None:
-        _nameable(work.make, *work.functions.values())
+    digest, notes = _check_scenes(work, result)
+    result.about.update(
+        {
+            "make": _label(make),
+            "arguments": {name: _shown(value) for name, value in fixed.items()},
+            "setting": repr(setting),
+            "end [s]": end,
+            "quantities": [*measure.ALWAYS, *measures],
+            "scenes": digest,
+            "functions": functions,
+            "versions": [f"{package} {version(package)}" for package in ("mjbeer", "mujoco")],
+            "notes": notes,
+        }
+    )
+    for note in notes:
+        warnings.warn(note, LiquidWarning, stacklevel=2)
+    if path is not None and path.exists() and not overwrite:
         result = _continued(path, result)
     _fill(result, work, executor, path, progress)
     return result
 
 
-def _fill(result: Sweep, work: Work, executor: Executor | None, path: pathlib.Path | None, progress: bool) -> None:
-    """Simulate the scenes that a sweep lacks, and write them into its arrays; save them if there is a path."""
-    scenes = np.flatnonzero(result[STATUS].ravel() == NOT_YET)
-    assert isinstance(result.reasons, dict)
-    saved, interval = time.monotonic(), _SAVE_EVERY
-    done, shown = 0, 0
-    console = STDERR if progress else None
-    if path is not None:
-        files.save(result, path)  # a file that cannot be written is an error before the first scene
-    try:
-        with (
-            progress_bar(console, _PERCENT) as advance,
-            _running(executor) as pool,
-            closing(carry_out(work, result.plan, scenes, pool)) as chunks,
-        ):
-            for chunk, measured in chunks:
-                for column, name in enumerate(work.columns):
-                    result.quantities[name].flat[chunk] = measured.values[:, column]
-                result.quantities[TRUSTED].flat[chunk] = measured.trusted
-                result.reasons.update((int(chunk[index]), reason) for index, reason in measured.reasons.items())
-                result.quantities[STATUS].flat[chunk] = (
-                    measured.status
-                )  # the last, as it says that the others are there
-                done += len(chunk)
-                while shown < _PERCENT * done // len(scenes):
-                    advance(f"{len(scenes)} scenes [%]")
-                    shown += 1
-                if path is not None and time.monotonic() - saved > interval:
-                    began = time.monotonic()
-                    files.save(result, path)
-                    saved = time.monotonic()
-                    interval = max(_SAVE_EVERY, _SAVING * (saved - began))
-    finally:
-        if path is not None:
-            files.save(result, path)
+def _arranged(parameters: Mapping[str, Any], paired: bool) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+    """Return the parameters that are lists or arrays, and the others."""
+    listed = list, tuple, range
+    several = [name for name, value in parameters.items() if isinstance(value, listed) or getattr(value, "ndim", 0) > 0]
+    axes = {name: require.samples(name, value) for name, value in parameters.items() if name in several}
+    fixed = {name: value for name, value in parameters.items() if name not in several}
+    fixed |= {name: require.number(name, fixed[name]) for name in ("phi0", "phi_dot0") if name in fixed}
+    lengths = [len(values) for values in axes.values()]
+    told = ", ".join(f"{name} has {len(values)}" for name, values in axes.items()) or "no parameter is an array"
+    if paired and len(set(lengths)) != 1:
+        raise ParameterError(f"paired=True needs arrays of one length: {told}")
+    if (count := lengths[0] if paired else math.prod(lengths)) > _MOST_SCENES:
+        raise ParameterError(
+            f"a sweep has at most {_MOST_SCENES:,} scenes, got {count:,} ({told}): cut it into several, each with an "
+            "output of its own"
+        )
+    return axes, fixed
 
 
-@contextmanager
-def _one_warning_of_liquids() -> Generator[None]:
-    """Have what liquids warn of shown for the first such scene only: each would say it with other numbers."""
-    show, shown = warnings.showwarning, set[type[Warning]]()
-
-    def show_once(message: Warning | str, category: type[Warning], *place: Any) -> None:
-        if category not in shown:
-            show(message, category, *place)
-        shown.update({category} & {LiquidWarning})
-
-    cast("Any", warnings).showwarning = show_once
-    try:
-        yield
-    finally:
-        warnings.showwarning = show
-
-
-@contextmanager
-def _running(executor: Executor | None) -> Generator[Executor]:
-    """Yield the user's executor, which is left as it is, or one with a thread for each core."""
-    if executor is not None:
-        yield executor
-        return
-    with ThreadPoolExecutor(os.cpu_count()) as threads:
-        yield threads
+def _asked(quantity: Asked | Sequence[Asked], axes: Mapping[str, Any]) -> dict[str, Callable[[Run], Any]]:
+    """Return what measures the quantities that are asked for besides those of every sweep, by their names."""
+    there = (*measure.NAMED, measure.TRUSTED, measure.STATUS)
+    if clash := {*there, SCENE} & set(axes):
+        raise ParameterError(f"a quantity has the name of the parameter {clash.pop()!r}: give that another name")
+    found: dict[str, Callable[[Run], Any]] = {}
+    for each in quantity if isinstance(quantity, (list, tuple)) else (quantity,):
+        if callable(each) and not isinstance(each, type):
+            if (name := _label(each)) in (*there, SCENE, *axes, *found):
+                raise ParameterError(f"quantity {name!r} is there already: give the function another name")
+            found[name] = each
+        elif not isinstance(each, str):
+            raise ParameterError(f"quantity must be a name or a function of a trajectory, got {require.shown(each)}")
+        elif require.choice("quantity", each, there) == measure.PERIOD:
+            found = {measure.PERIOD: measure.NAMED[measure.PERIOD].of} | found
+    return found
 
 
-def _end(duration: float, setting: Setting) -> float:
-    """Return the time at which the runs end [s]: MuJoCo's integrators end at a timestep, the first one after it.
-
-    Raises:
-      ParameterError: if there are too many timesteps.
-    """
-    if setting.tolerance is not None:
-        return duration
-    steps = duration / setting.timestep
-    if steps > _MOST_STEPS:
+def _end(duration: float, setting: Setting, every_step: bool) -> float:
+    """Return the time at which the runs end [s]: MuJoCo's integrators end at a timestep, the first one after it."""
+    steps, most = duration / setting.timestep, measure.MOST_SAMPLES if every_step else _MOST_STEPS
+    if steps > most and (every_step or setting.tolerance is None):
         raise ParameterError(
             f"a duration of {duration!r} s has too many timesteps of {setting.timestep!r} s for a sweep: at most "
-            f"{_MOST_STEPS:g}"
+            f"{most:,}{', at each of which a function of a trajectory has a sample' * every_step}"
         )
-    if setting.integrator in OWN:
+    if setting.tolerance is not None or setting.integrator in OWN:
         return duration
-    nearest = round(steps)
-    on_a_step = nearest > 0 and abs(steps - nearest) <= 1e-10 * steps
-    return setting.timestep * (nearest if on_a_step else int(np.ceil(steps)))
+    return setting.timestep * math.ceil(steps * (1 - 1e-10))  # which allows for rounding
 
 
-def _asked(quantity: Asked | Sequence[Asked]) -> tuple[tuple[str, ...], dict[str, Callable[[Run], float]]]:
-    """Return the names of the quantities that are asked for, and the functions by their names.
+def _check_scenes(work: measure.Work, plan: Sweep) -> tuple[str, list[str]]:
+    """Check that every value is allowed in some scene; where they are paired, that every scene is.
 
-    Raises:
-      ParameterError: if a name is unknown, or something is neither a name nor a function, or a name is there twice.
+    Two values may be allowed, and their combination not: such a scene is left to fail by itself, as is one for which
+    `make` raises an error of its own. Return a digest of the scenes that are made here, and what liquids have warned
+    of, once where only the numbers differ.
     """
-    several: Sequence[Any] = quantity if isinstance(quantity, (list, tuple)) else (quantity,)
-    names: list[str] = []
-    functions: dict[str, Any] = {}
-    for each in several:
-        if callable(each) and not isinstance(each, type):
-            if (name := label(each)) in (*ALWAYS, *ASKED, *functions, STATUS, TRUSTED):
-                raise ParameterError(f"quantity {name!r} is there already: give the function another name")
-            functions[name] = each
-        elif isinstance(each, str):
-            name = require.choice("quantity", each, (*ALWAYS, *ASKED, STATUS, TRUSTED))
-            names += [name] if name in ASKED and name not in names else []
-        else:
-            raise ParameterError(f"quantity must be a name or a function of a trajectory, got {require.shown(each)}")
-    return tuple(names), functions
+    digest, notes = hashlib.sha256(), dict[str, str]()
+
+    def problem(number: Any) -> ParameterError | None:
+        try:
+            with liquid_notes() as told:
+                scene, *_ = work.scene(plan.rows(np.array([number]))[0])
+            made = [getattr(scene, each.name) for each in dataclasses.fields(scene) if each.compare]
+        except ParameterError as error:
+            return error
+        except Exception as error:
+            made = [type(error)]
+        digest.update(_shown(made).encode())
+        for note in told:
+            notes.setdefault(re.sub(r"\d[\d.e+-]*", "", note), note)
+        return None
+
+    numbers = np.arange(math.prod(plan.shape)).reshape(plan.shape)
+    groups: Iterable[tuple[str, Any]] = ((plan.named(number), [number]) for number in numbers.flat)
+    if plan.axes and not plan.paired:
+        groups = (
+            (f"{name}[{index}]", of_value.flat)
+            for dimension, name in enumerate(plan.axes)
+            for index, of_value in enumerate(np.moveaxis(numbers, dimension, 0))
+        )
+    for place, group in groups:
+        if (first := problem(group[0])) and all(problem(number) for number in group):
+            raise ParameterError(f"{place}: {first}".removeprefix(": ")) from first
+    return digest.hexdigest(), list(notes.values())
 
 
-def _about(work: Work) -> dict[str, Any]:
-    """Return what all scenes of a sweep have in common, as it is saved: a sweep that differs in it is another one."""
-    setting = work.setting
-    stepped = f"{setting.integrator} at {setting.timestep:g} s"
-    if setting.tolerance is not None:
-        stepped = f"to a tolerance of {setting.tolerance:g} rad"
-    return {
-        "make": label(work.make),
-        "defined in": getattr(work.make, "__module__", ""),
-        "with": "" if isfunction(work.make) else repr(work.make),
-        "arguments": {name: repr(value) for name, value in {**work.fixed, **work.start}.items()},
-        "stepped": f"{setting.rolling}, {stepped}",
-        "setting": repr(setting),
-        "end [s]": work.end,
-        "quantities": list(work.columns),
-        "functions of": [getattr(function, "__module__", "") for function in work.functions.values()],
-        "versions": {package: version(package) for package in ("mjbeer", "mujoco")},
-    }
+def _shown(thing: Any) -> str:
+    """Return what an object is, without what is another in each process."""
+    return re.sub(r" at 0x[0-9a-f]+", "", repr(thing))
 
 
-def _nameable(*functions: Callable[..., Any]) -> None:
-    """Check that functions have names by which a saved sweep can be known again.
+def _source(function: Any) -> str:
+    """Return what a function is, its text, and the values that it has from around it; empty if there is no text."""
+    inner = inspect.unwrap(getattr(function, "func", function))
+    if str(inner.__module__).startswith("mjbeer."):  # versions do not count
+        return _shown(function)
+    cells = [cell.cell_contents for cell in getattr(inner, "__closure__", None) or ()]
+    try:
+        text = inspect.getsource(inner if inspect.isroutine(inner) else type(inner))
+    except (OSError, TypeError):  # typed at a prompt, or in C
+        return ""
+    return _shown((function, getattr(inner, "__defaults__", None), cells)) + text
 
-    Raises:
-      ParameterError: if one is a lambda or defined within another function.
-    """
-    for function in functions:
-        if "<" in label(function) or "<locals>" in getattr(function, "__qualname__", ""):
-            raise ParameterError(
-                "a sweep that is saved must be known again when it goes on: its functions must be defined at the top "
-                f"of a module, got {require.shown(function)}"
-            )
+
+def _label(function: Any) -> str:
+    """Return the name of a function; a partial one that has been given none has that of its function."""
+    function = function if hasattr(function, "__name__") else getattr(function, "func", type(function))
+    return getattr(function, "__name__", type(function).__name__)
 
 
 def _continued(path: pathlib.Path, new: Sweep) -> Sweep:
-    """Return the sweep in a file if it is the same one, or else the new one.
+    """Return the sweep in a file, if it is the same as the new one in the sense of `sweep`."""
+    stored, asked = load(path), ("arguments", "setting", "end [s]", "quantities", "scenes", "functions")
+    same = stored.paired == new.paired and list(stored.axes) == list(new.axes)
+    same = same and all(map(np.array_equal, stored.axes.values(), new.axes.values()))
+    if differ := ["parameters"] * (not same) + [name for name in asked if stored.about.get(name) != new.about[name]]:
+        raise ParameterError(
+            f"{path} has another sweep, whose {', '.join(differ)} differ: give another name, or overwrite=True to "
+            "replace it"
+        )
+    if measure.NOT_YET in stored[measure.STATUS]:
+        stored.about["versions"] = list(dict.fromkeys([*stored.about["versions"], *new.about["versions"]]))
+    return stored
 
-    Raises:
-      ParameterError: if the file is there but is no sweep's.
+
+def _fill(
+    result: Sweep, work: measure.Work, executor: Executor | None, path: pathlib.Path | None, progress: bool
+) -> None:
+    """Simulate the scenes that a sweep lacks, and write them into its arrays; save them if there is a path."""
+    scenes = np.flatnonzero(result[measure.STATUS].ravel() == measure.NOT_YET)
+    saved, pause, done = time.monotonic(), _SAVE_EVERY, 0
+    if path is not None:
+        result.save(path)  # a file that cannot be written is an error before the first scene
+    try:
+        with (
+            progress_bar(STDERR if progress else None, 100) as advance,
+            nullcontext(executor) if executor else ThreadPoolExecutor(os.cpu_count()) as pool,
+            closing(_carried_out(work, result, scenes, pool)) as pieces,
+        ):
+            for piece, values, reasons in pieces:
+                result.reasons.update({int(piece[place]): reason for place, reason in reasons.items()})
+                for array, column in zip(result.quantities.values(), values.T, strict=True):  # the status is the last
+                    array.flat[piece] = column
+                before, done = done, done + len(piece)
+                for _ in range(100 * before // len(scenes), 100 * done // len(scenes)):
+                    advance(f"{len(scenes)} scenes [%]")
+                if path is not None and time.monotonic() - saved > pause:
+                    began = time.monotonic()
+                    result.save(path)
+                    saved = time.monotonic()
+                    pause = max(_SAVE_EVERY, _SAVING * (saved - began))
+    finally:
+        if path is not None:
+            result.save(path)
+
+
+def _carried_out(
+    work: measure.Work, plan: Sweep, scenes: np.ndarray, executor: Executor
+) -> Generator[tuple[np.ndarray, np.ndarray, dict[int, str]]]:
+    """Yield the numbers of some scenes and what was measured on them, piece by piece, as the pieces come back.
+
+    A piece is a share of what is left, and what is left of it after a second is handed out again. What is measured on a
+    scene does not depend on that. If the generator is closed, pieces that have not begun are cancelled.
     """
-    if not path.exists():
-        return new
-    stored = files.load(path)
-    same = json.dumps(stored.about) == json.dumps(new.about) and stored.plan.paired == new.plan.paired
-    same = same and list(stored.plan.axes) == list(new.plan.axes)
-    same = same and all(np.array_equal(stored[name], axis) for name, axis in new.plan.axes.items())
-    return stored if same else new
+    workers = getattr(executor, "_max_workers", None) or _UNKNOWN_WORKERS
+    waiting, left, out = [scenes], len(scenes), dict[Future[Any], np.ndarray]()
+    try:
+        while left or out:
+            while left and len(out) < 2 * workers:
+                size = min(math.ceil(left / (4 * workers)), _LARGEST_PIECE)
+                piece, rest = np.split(waiting.pop(), [size])
+                waiting += [rest] * bool(len(rest))
+                left -= len(piece)
+                out[executor.submit(measure.measure, work, plan.rows(piece))] = piece
+            for future in wait(out, return_when=FIRST_COMPLETED).done:
+                piece = out.pop(future)
+                try:
+                    found, reasons = future.result()
+                except (pickle.PicklingError, AttributeError, TypeError) as error:  # none of a scene's gets here
+                    raise ParameterError(
+                        "what makes the scenes, and functions of their runs, must be defined at the top of a module to "
+                        f"be sent to processes: {' '.join(str(error).split())}"
+                    ) from error
+                piece, rest = np.split(piece, [len(found)])
+                waiting += [rest] * bool(len(rest))
+                left += len(rest)
+                yield piece, np.array(found), reasons
+    except BrokenExecutor as error:
+        raise OSError("a process of the sweep was ended from outside: is memory short?") from error
+    finally:
+        for future in out:
+            future.cancel()

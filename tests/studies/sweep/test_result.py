@@ -4,15 +4,15 @@ import csv
 import math
 import pathlib
 import sys
+import zipfile
 
 import numpy as np
 import pytest
 
 import mjbeer
-from mjbeer import frozen
+from mjbeer import frozen, sliding
 from mjbeer.exceptions import MjbeerError, OutputError, ParameterError
-from mjbeer.studies.sweep import files
-from mjbeer.studies.sweep.arrays import Sweep
+from mjbeer.studies.sweep.result import Sweep, checked, load
 
 INCLINES, FILLS = np.radians([5.0, 60.0]), [0.3, 0.5, 0.7]
 
@@ -33,17 +33,10 @@ def test_parameters_and_quantities_are_found_by_name(swept: Sweep) -> None:
     assert swept["phi"].shape == swept.shape == (2, 3)
     with pytest.raises(ParameterError, match=r"name must be one of 'incline', .*; got 'perod': did you mean 'period'"):
         _ = swept["perod"]
-
-
-def test_it_is_described_in_a_line_and_in_a_table(swept: Sweep) -> None:
     assert repr(swept) == (
         "<Sweep of frozen over incline (2) x fill (3) to t = 1.5 s: 3 of 6 scenes went well; "
         "3: a quantity has no value>"
     )
-    table = swept._repr_html_()
-    assert "period of the swing: 0.3" in table
-    assert "reduced, to a tolerance of 1e-06 rad" in table
-    assert "incline[1] = 1.0472, fill[0] = 0.3: period: no equilibrium" in table
 
 
 def test_a_run_that_is_not_trusted_is_counted() -> None:
@@ -57,11 +50,25 @@ def test_a_run_that_is_not_trusted_is_counted() -> None:
 def test_a_numpy_file_has_all_of_it(which: str, tmp_path: pathlib.Path, request: pytest.FixtureRequest) -> None:
     sweep: Sweep = request.getfixturevalue(which)
     sweep.save(tmp_path / "map.npz")
-    read = files.load(tmp_path / "map.npz")
+    read = load(tmp_path / "map.npz")
     assert (read.dims, read.about, read.reasons) == (sweep.dims, sweep.about, sweep.reasons)
-    for name in (*sweep.plan.axes, *sweep.names):
+    for name in (*sweep.axes, *sweep.quantities):
         assert np.array_equal(read[name], sweep[name], equal_nan=sweep[name].dtype.kind == "f")
         assert read[name].dtype == sweep[name].dtype
+
+
+def test_a_file_whose_arrays_differ_in_length_is_refused(listed: Sweep, tmp_path: pathlib.Path) -> None:
+    listed.save(tmp_path / "whole.npz")
+    with zipfile.ZipFile(tmp_path / "whole.npz") as whole, zipfile.ZipFile(tmp_path / "cut.npz", "w") as cut:
+        for name in whole.namelist():
+            if name != "u.npy":
+                cut.writestr(name, whole.read(name))
+        with cut.open("u.npy", "w") as member:
+            np.save(member, listed["u"][:1])
+    with pytest.raises(
+        ParameterError, match=r"cut.npz was not written by `mjbeer.sweep`: its arrays are not those of 2"
+    ):
+        load(tmp_path / "cut.npz")
 
 
 def test_a_csv_file_has_a_line_for_each_scene(swept: Sweep, tmp_path: pathlib.Path) -> None:
@@ -77,7 +84,7 @@ def test_an_xarray_dataset_has_all_of_it_with_units(swept: Sweep, listed: Sweep,
     xarray = pytest.importorskip("xarray")
     dataset = swept.to_xarray()
     assert dataset.phi.dims == ("incline", "fill")
-    assert dataset.phi.attrs["units"] == "rad"
+    assert (dataset.phi.attrs["units"], dataset.incline.attrs["units"]) == ("rad", "rad")
     assert dataset.phi.sel(fill=0.5).values.tolist() == swept["phi"][:, 1].tolist()
     assert listed.to_xarray().phi.dims == ("scene",)
     assert listed.to_xarray().fill.values.tolist() == [0.3, 0.5]
@@ -88,10 +95,9 @@ def test_an_xarray_dataset_has_all_of_it_with_units(swept: Sweep, listed: Sweep,
 
 def test_without_xarray_an_error_says_what_brings_it(swept: Sweep, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(MjbeerError, match=r"need xarray: pip install xarray"):
-        swept.to_xarray()
-    with pytest.raises(MjbeerError, match=r"\.nc files need xarray"):
-        files.checked("map.nc", (files.NETCDF,))
+    for failing in (swept.to_xarray, lambda: checked("map.nc", (".nc",))):
+        with pytest.raises(MjbeerError, match=r"need xarray: pip install xarray"):
+            failing()
 
 
 def test_a_file_that_cannot_be_written_is_refused(swept: Sweep, tmp_path: pathlib.Path) -> None:
@@ -116,6 +122,19 @@ def test_a_map_has_its_parameters_in_degrees_and_no_colour_without_a_value(swept
 def test_one_parameter_gives_a_line(listed: Sweep) -> None:
     axes = mjbeer.sweep(frozen, 0.1, [0.6, 0.7], tolerance=1e-6).plot("phi_dot")
     assert np.asarray(axes.get_lines()[0].get_xdata()).tolist() == pytest.approx(np.degrees([0.6, 0.7]))
-    assert axes.get_ylabel() == "rate of φ at the end [°/s]"
-    with pytest.raises(ParameterError, match="a plot needs a sweep over one or two parameters, got 2 scenes of fill, "):
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("phi0 [°]", "rate of φ at the end [°/s]")
+    with pytest.raises(ParameterError, match=r"a sweep over one or two parameters, got <Sweep of .* fill, "):
         listed.plot()
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_map_over_decades_is_logarithmic(turned: bool) -> None:
+    """Its cells are around their values, and a parameter in even steps stays as it is."""
+    parameters = [("damping", np.geomspace(1e-4, 1e-2, 3)), ("incline", np.radians([5.0, 10.0, 15.0]))]
+    axes = mjbeer.sweep(sliding, 0.01, 1.0, tolerance=1e-6, **dict(parameters[::-1] if turned else parameters)).plot()
+    limits, scales = [axes.get_xlim(), axes.get_ylim()], [axes.get_xscale(), axes.get_yscale()]
+    assert scales[:: -1 if turned else 1] == ["log", "linear"]
+    assert limits[turned] == pytest.approx((10**-4.5, 10**-1.5))
+    assert limits[not turned] == pytest.approx((2.5, 17.5))
+    line = mjbeer.sweep(sliding, 0.01, 1.0, tolerance=1e-6, damping=[1e-4, 2e-3, 1e-2]).plot("u")
+    assert (line.get_xlabel(), line.get_xscale()) == ("damping [N m s]", "linear")
