@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 
 from mjbeer.model.setting import Rolling
-from mjbeer.paper.equations.frozen import frequency_55
-from mjbeer.paper.equations.sliding import frequency_10
+from mjbeer.paper.frozen import frequency_55
+from mjbeer.paper.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.check import Check
 from mjbeer.studies.convergence import observed_order

@@ -1,12 +1,12 @@
-"""validate(): measure every check against theory and every claim of the paper's audit."""
+"""validate(): measure every check against theory and every row of the paper's audit."""
 
 from dataclasses import dataclass
 
 from rich.console import Console
 
+from mjbeer import paper
 from mjbeer.output.terminal import progress_bar
-from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import Finding
+from mjbeer.paper.row import Finding
 from mjbeer.studies.check import Result
 from mjbeer.studies.validation import motions
 
@@ -27,14 +27,14 @@ class Validation:
 
 
 def validate(console: Console) -> Validation:
-    """Measure every check and every claim, and return the results; `console` shows a progress bar."""
-    checks, claims = motions.checks(), chapters.claims()
+    """Measure every check and every row of the audit, and return the results; `console` shows a progress bar."""
+    checks, rows = motions.checks(), paper.rows()
     results, findings = [], []
-    with progress_bar(console, len(checks) + len(claims)) as begin:
+    with progress_bar(console, len(checks) + len(rows)) as begin:
         for check in checks:
             begin(f"{check.quantity} ({check.by})")
             results.append(check.measure())
-        for claim in claims:
-            begin(f"{claim.equation} {claim.quantity}")
-            findings.append(claim.measure())
+        for row in rows:
+            begin(f"{row.equation} {row.quantity}")
+            findings.append(row.measure())
     return Validation(results, findings)

@@ -7,7 +7,7 @@ from importlib.metadata import version
 from typing import Any
 
 from mjbeer.output.terminal import Table
-from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, LIMIT, Finding
+from mjbeer.paper.row import CONFIRMED, CORRECTED, LIMIT, Finding
 from mjbeer.studies.check import Result
 from mjbeer.studies.validation.run import Validation
 
