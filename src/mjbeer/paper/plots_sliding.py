@@ -142,8 +142,8 @@ def draw_looping(path: pathlib.Path) -> None:
             axes.plot(x[::5], np.degrees(right[::5]), "k.", label=name)
             axes.plot(x, np.degrees(printed), label="ε sin Ωt, eqs. (26) and (28)", **PRINTED)
             free, held = "MuJoCo, a free can", "MuJoCo, a can that is held down: a free one would lift off"
-            shown = {"label": free, **SIMULATED} if least_push(start) > 0 else {"label": held, **UNPHYSICAL}
-            axes.plot(x, np.degrees(phi), **shown)
+            name, style = (free, SIMULATED) if least_push(start) > 0 else (held, UNPHYSICAL)
+            axes.plot(x, np.degrees(phi), label=name, **style)
             about = f"{start:g} rad/s at the bottom, Ω = {turn.rate:.0f} rad/s in the mean"
             ylabel = "beer ahead of even turning, φ − Ωt [°]"
             label(axes, "even turning, Ωt [°]", ylabel, about, xticks=range(0, 361, 90))
@@ -228,10 +228,8 @@ def _draw_inertia(path: pathlib.Path, title: str, lines: dict[str, np.ndarray], 
         for angle, value, text, offset in notes:
             axes.plot(angle, value, "k.")
             note(axes, text, (angle, value), offset, color="black")
-        xlabel, highest = (
-            "β, half the angle under which the beer is seen from the axis [°]",
-            max(map(np.max, lines.values())),
-        )
+        xlabel = "β, half the angle under which the beer is seen from the axis [°]"
+        highest = max(values.max() for values in lines.values())
         label(axes, xlabel, "moment of inertia / m a²", xticks=range(0, 181, 30), ylim=(0, 1.05 * highest))
         above = axes.secondary_xaxis("top")
         above.set_xticks([0, 60, 90, 120, 180], ["0", "¼", "½", "¾", "1"])
