@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 
 from mjbeer import paper
-from mjbeer.paper.row import APPROXIMATION, CONFIRMED, CONSEQUENCE, CORRECTED, LIMIT, MISPRINT, Finding, Row, Terms, miss
+from mjbeer.paper.row import (
+    APPROXIMATION,
+    CONFIRMED,
+    CONSEQUENCE,
+    CORRECTED,
+    LIMIT,
+    MISPRINT,
+    Finding,
+    Row,
+    Terms,
+    miss,
+)
 from mjbeer.paper.witness import EXACT, FOOTNOTE_8, HELD, METAL, ROLL_DOWN, SWING, WHEEL, examine
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import sliding
@@ -39,15 +50,14 @@ def test_what_is_no_numbered_equation_is_quoted() -> None:
 
 
 def test_kinds_of_what_is_wrong() -> None:
-    """Every row has one verdict, and what misses misses by more than the bound; a consequence is one of a misprint."""
+    """A consequence is one of a misprint; what misses does so by more than the bound."""
     wrong = {row: row.misprint for row in ROWS if row.misprint}
     assert Counter(each.kind for each in wrong.values()) == {MISPRINT: 18, CONSEQUENCE: 4, APPROXIMATION: 3}
     slips = {row.equation for row, each in wrong.items() if each.kind == MISPRINT}
     for row in ROWS:
-        other = row.misprint or row.limit
         assert row.verdict == (CORRECTED if row.misprint else LIMIT if row.limit else CONFIRMED)
         assert not (row.misprint and row.limit)
-        assert other is None or other.misses_by > 5 * row.bound.error
+        assert row.misses_by is None or row.misses_by > 5 * row.bound.error
         if row.misprint:
             assert (row.misprint.of in slips) == (row.misprint.kind == CONSEQUENCE)
 
@@ -57,10 +67,11 @@ def test_a_misprint_that_is_none_is_found_out(row: Row) -> None:
     """The row would fail if the printed form were right, and if the right form were the printed one."""
     if row.misprint:
         none = dataclasses.replace(row, misprint=dataclasses.replace(row.misprint, terms=row.terms))
-        wrong = dataclasses.replace(row, terms=row.misprint.terms)
+        wrong = dataclasses.replace(row, terms=row.printed)
     else:
-        none = dataclasses.replace(row, limit=dataclasses.replace(row.limit, see=row.witness.see))
-        wrong = dataclasses.replace(row, witness=dataclasses.replace(row.witness, see=row.limit.see))
+        limit = row.limit or pytest.fail()
+        none = dataclasses.replace(row, limit=dataclasses.replace(limit, see=row.witness.see))
+        wrong = dataclasses.replace(row, witness=dataclasses.replace(row.witness, see=limit.see))
     assert not none.measure().passed
     assert not wrong.measure().passed
 
@@ -80,7 +91,9 @@ def test_each_term_counts(row: Row) -> None:
         assert miss(broken(terms, index, factor)) > row.bound.error, index
 
 
-MOTIONS = [row for row in ROWS if row.witness in (SWING, METAL, WHEEL, ROLL_DOWN) and "equation of motion" in row.quantity]
+MOTIONS = [
+    row for row in ROWS if row.witness in (SWING, METAL, WHEEL, ROLL_DOWN) and "equation of motion" in row.quantity
+]
 ACCELERATION = next(row for row in ROWS if row.equation == "(15)")
 
 

@@ -1,4 +1,4 @@
-"""The rows, derived with symbols: by Lagrange's equations the terms of a row sum to zero, and those of a misprint do not."""
+"""The rows, derived with symbols: by Lagrange's equations their terms sum to zero, and those of a misprint do not."""
 
 from collections.abc import Callable
 from functools import cache
@@ -94,7 +94,7 @@ def test_derived(row: Row) -> None:
     for left_out in range(len(terms)):
         assert not vanishes(terms[:left_out] + terms[left_out + 1 :], motion)
     if row.misprint:
-        assert not vanishes(row.misprint.terms(Q), motion)
+        assert not vanishes(row.printed(Q), motion)
 
 
 def test_small_oscillations() -> None:
@@ -112,7 +112,7 @@ def test_small_oscillations() -> None:
     assert sp.simplify(frozen.eq_55(Q, sp.cos(rest), sp.cos(alpha + rest)) - squared) == 0
     assert sp.simplify(frozen.eq_55(Q, sp.cos(rest), sp.cos(alpha + rest), 1) - squared) != 0
     (linear,) = (row for row in paper.rows() if row.equation == "(4)" and row.misprint)
-    for terms, right in ((linear.terms, True), (linear.misprint.terms, False)):
+    for terms, right in ((linear.terms, True), (linear.printed, False)):
         assert (sp.diff(sum(terms(Q)), phi).subs(phi, 0) == 0) is right
 
 

@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from mjbeer import hoop, simulate
-from mjbeer.paper.equations import hopping
+from mjbeer.paper import hopping
 from mjbeer.theory.equations import rolling_forces
 
 MU, WEIGHT, HOOP = 0.2, 3.0, 1.0

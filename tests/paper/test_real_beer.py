@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from mjbeer import exact, liquid, sliding
-from mjbeer.paper.stories import real_beer
-from mjbeer.paper.stories.real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
+from mjbeer.paper import real_beer
+from mjbeer.paper.real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.liquid import ENDS, FIT_ERROR, LIQUIDS, NAMES, WALL
 from mjbeer.theory.load import segment

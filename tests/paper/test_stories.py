@@ -11,18 +11,18 @@ import pytest
 from mjbeer import exact
 from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
-from mjbeer.paper.scenarios import MU, footnote_scene
-from mjbeer.paper.stories import report
-from mjbeer.paper.stories.frozen import _contact_at_equilibrium, _footnote_8_as_printed
-from mjbeer.paper.stories.hopping import _skids
-from mjbeer.paper.stories.sliding import _least_push
+from mjbeer.paper import stories
+from mjbeer.paper.hopping import MU
+from mjbeer.paper.plots_frozen import contact_at_equilibrium, footnote_8_as_printed, skids
+from mjbeer.paper.plots_sliding import least_push
+from mjbeer.paper.witness import footnote_scene
 from mjbeer.theory.scene import in_words
 from tests.support import figures, stubs
 
 pytestmark = pytest.mark.slow
 
 SKETCH = ("letters.svg", "letters.png")
-STORIES = {story.name: story for story in report.stories()}
+STORIES = {story.name: story for story in stories.stories()}
 CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
@@ -76,7 +76,7 @@ def test_films_show_what_they_say(name: str) -> None:
 
 
 def test_footnote_7_holds_just_above_and_slides_just_below() -> None:
-    above, below = _contact_at_equilibrium(1.02), _contact_at_equilibrium(0.98)
+    above, below = contact_at_equilibrium(1.02), contact_at_equilibrium(0.98)
     radius = above.scene.can.radius
     assert np.abs(above.u - above.u[0]).max() < 1e-5 * radius
     assert abs(below.u[-1] - below.u[0]) > 0.1 * radius
@@ -84,7 +84,7 @@ def test_footnote_7_holds_just_above_and_slides_just_below() -> None:
 
 def test_a_jump_is_a_gap_and_no_slope() -> None:
     """At a friction coefficient of 0.8, a hoop of 0.8 % skids before 84 degrees or only after 90."""
-    _, angles = _skids(np.geomspace(1e-3, 0.07, 60), MU)
+    _, angles = skids(np.geomspace(1e-3, 0.07, 60), MU)
     steps = np.diff(angles)
     assert np.isnan(angles).sum() == 1
     assert np.nanmax(np.abs(steps)) < 3
@@ -94,14 +94,14 @@ def test_a_jump_is_a_gap_and_no_slope() -> None:
 
 
 def test_looping_beer_leaves_its_can_down_up_to_47_rad_a_second() -> None:
-    assert _least_push(47.3) > 0 > _least_push(47.5)
+    assert least_push(47.3) > 0 > least_push(47.5)
     assert FILMS["looping"].trajectory().forces.normal.min() > 0
 
 
-def test_footnote_8_as_printed_is_another_motion() -> None:
+def testfootnote_8_as_printed_is_another_motion() -> None:
     times = np.linspace(0, 3, 301)
     truth = exact(footnote_scene(), times, 0.0).phi
-    assert np.abs(_footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(4)
+    assert np.abs(footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(4)
 
 
 def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:

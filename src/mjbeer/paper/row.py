@@ -213,17 +213,25 @@ class Row:
         """What a row that passes shows of the paper."""
         return LIMIT if self.limit else CORRECTED if self.misprint else CONFIRMED
 
+    @property
+    def printed(self) -> Callable[[Any], Terms]:
+        """The terms as the paper prints them."""
+        return (self.misprint or self).terms
+
+    @property
+    def misses_by(self) -> float | None:
+        """Error of what is printed, or of what is beyond the limit; None where the paper is right."""
+        other = self.misprint or self.limit
+        return other.misses_by if other else None
+
     def measure(self) -> Finding:
         """Compute the errors of the printed and of the right form, and return both beside the bound."""
         seen = self.witness.see()
         error, right = miss(self.terms(seen)), None
-        misses_by = None
-        if wrong := self.misprint:
-            error, right, misses_by = miss(wrong.terms(seen)), error, wrong.misses_by
-        elif self.limit:
-            error, right, misses_by = miss(self.terms(self.limit.see())), error, self.limit.misses_by
+        if self.misprint or self.limit:
+            error, right = miss(self.printed(self.limit.see() if self.limit else seen)), error
         given = self.equation, self.quantity, self.verdict, self.witness.name
-        return Finding(*given, error, right, self.bound.error, misses_by, self.bound.reason)
+        return Finding(*given, error, right, self.bound.error, self.misses_by, self.bound.reason)
 
 
 def miss(terms: Terms) -> float:
