@@ -69,7 +69,7 @@ def test_a_misprint_that_is_none_is_found_out(row: Row) -> None:
         none = dataclasses.replace(row, misprint=dataclasses.replace(row.misprint, terms=row.terms))
         wrong = dataclasses.replace(row, terms=row.printed)
     else:
-        limit = row.limit or pytest.fail()
+        limit = row.limit or pytest.fail("confirmed")
         none = dataclasses.replace(row, limit=dataclasses.replace(limit, see=row.witness.see))
         wrong = dataclasses.replace(row, witness=dataclasses.replace(row.witness, see=limit.see))
     assert not none.measure().passed

@@ -28,8 +28,8 @@ def validation(misprints: slice = slice(None)) -> Validation:
     checks = [Result(name, "a <stub>", error, 1e-3, "rad", "phi_0^2") for name, error in (("fine", 1e-6), ("bad", 0.5))]
     findings = [
         Finding(
-            row.equation, row.quantity, CORRECTED, "a witness", 0.0127 * (place + 1), right=1.7e-9 * (place + 1), bound=1e-6,
-            misses_by=0.0123 * (place + 1), reason="rounding",
+            row.equation, row.quantity, CORRECTED, "a witness", 0.0127 * (place + 1), right=1.7e-9 * (place + 1),
+            bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
         )
         for place, row in enumerate(row for row in paper.rows() if row.misprint)
     ]  # fmt: skip
