@@ -135,11 +135,6 @@ def _turned() -> tuple[float, float, float]:
     return scene.equilibrium(), scene.equilibrium() + SMALL, scene.incline
 
 
-def _cosine_54(at: tuple[float, float, float]) -> Terms:
-    rest, turned, _ = at
-    return math.cos(turned) - math.cos(rest), SMALL * math.sin(rest)
-
-
 def _sine_54(at: tuple[float, float, float], sign: int) -> Terms:
     rest, turned, alpha = at
     return math.sin(alpha + turned) - math.sin(alpha + rest), -sign * SMALL * math.cos(alpha + rest)
@@ -209,7 +204,8 @@ ROWS = (
         lambda least: (least, -math.tan(frozen().incline)),
         quote="only if the coefficient μ of static friction is larger than tan α"),
     Row("(54)", "change of cos(phi) to first order",
-        _TAYLOR, Bound(3e-3, "the next order: swing cot(phi_0)/2 = 2e-3"), _cosine_54),
+        _TAYLOR, Bound(3e-3, "the next order: swing cot(phi_0)/2 = 2e-3"),
+        lambda at: (math.cos(at[1]) - math.cos(at[0]), SMALL * math.sin(at[0]))),
     Row("(54)", "change of sin(alpha + phi) to first order: its sign",
         _TAYLOR, Bound(3e-4, "the next order: swing tan(alpha + phi_0)/2 = 2e-4"), lambda at: _sine_54(at, 1),
         Misprint(2.0, lambda at: _sine_54(at, -1), "Frozen beer: the sine near the equilibrium",

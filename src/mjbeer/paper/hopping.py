@@ -21,8 +21,6 @@ RATIO = 1 / 20
 """M/m of the hoop that hops."""
 MU = 0.8
 """Friction coefficient of the hoop that skids: the kinetic one in the paper's last figure."""
-_STEPS = 2000
-"""Angles at which a fall is searched for the first slip."""
 
 
 def rate(ratio: float, phi: float) -> float:
@@ -72,8 +70,7 @@ def slip(ratio: float, mu: float) -> float:
     def margin(phi: float) -> float:
         return mu * normal(ratio, phi) - abs(friction(ratio, phi))
 
-    angles = [math.pi * (1 - i / _STEPS) for i in range(1, _STEPS)]
-    for before, after in itertools.pairwise(angles):
+    for before, after in itertools.pairwise(math.pi * (1 - i / 2000) for i in range(1, 2000)):
         if margin(after) < 0:
             return math.pi - float(brentq(margin, after, before, xtol=1e-14))
     return math.nan

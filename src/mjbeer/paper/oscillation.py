@@ -19,6 +19,7 @@ SLOW = 45.0
 """The same of a load that just loops. It takes 39.4 rad/s to loop; above 47.4 rad/s the can would leave the incline."""
 _HESITATION = 0.01
 """Amplitude [rad] of the swing in which the can's hesitation is measured."""
+_PHASE = np.linspace(0, 2 * math.pi, 65)
 _TOP = 3.1
 """Angle [rad] beside the top from which a load is let go that does not loop."""
 
@@ -58,11 +59,6 @@ def _ripple_at_twice(ripple: np.ndarray, expected: float) -> Terms:
     return ripple[1], abs(ripple[2]) + _beer().b * expected, -ripple[1]
 
 
-def _waves() -> tuple[np.ndarray, np.ndarray]:
-    phase = np.linspace(0, 2 * math.pi, 65)
-    return np.sin(phase), np.cos(2 * phase)
-
-
 def _normal_force(phi_dot0: float) -> np.ndarray:
     """Return N [N] over three turns, from MuJoCo's acceleration of the load."""
     q = watch(sliding(), "reduced", 3 * 2 * math.pi / phi_dot0, 0.0, phi_dot0)
@@ -96,10 +92,9 @@ def _slope() -> float:
 
 def _synthesis(turn: Looping) -> Terms:
     """Return the terms [rad] of: phi over one turn is Omega t and its ripples at Omega to 16 Omega."""
-    phase = np.linspace(0, 2 * math.pi, 65)
-    times = phase / turn.rate
+    times = _PHASE / turn.rate
     run = simulate(sliding(), times[-1], 0.0, FAST, integrator=DOP853, timestep=times[1], times=times)
-    return run.phi - phase, *(-turn.phi[k] * np.sin(k * phase) for k in range(1, 17))
+    return run.phi - _PHASE, *(-turn.phi[k] * np.sin(k * _PHASE) for k in range(1, 17))
 
 
 _HESITATES = Witness(REDUCED, _ripple)
@@ -128,7 +123,7 @@ ROWS = (
             CONSEQUENCE, "(25)"),
         quote="a small modulation at angular frequency 2ω, which would appear as a small, periodic “hesitation”"),
     Row("(25)", "last step, sin^2 = 1/2 - cos(2wt)/2: the coefficient of phi_0^2 cos(2wt) is 1/4, printed 1/2",
-        Witness("algebra", _waves), Bound(1e-15, "rounding"),
+        Witness("algebra", lambda: (np.sin(_PHASE), np.cos(2 * _PHASE))), Bound(1e-15, "rounding"),
         lambda waves: squares_25(waves, 4),
         Misprint(0.5, lambda waves: squares_25(waves, 2), "The last step, from the sine's square to the double angle",
             r"-\frac{\varphi_0^2\sin^2\!\omega t}{2}=-\frac{\varphi_0^2}{4}+\frac{\varphi_0^2\cos 2\omega t}{<2|4>}")),

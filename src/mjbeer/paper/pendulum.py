@@ -26,21 +26,14 @@ def _bob_59(q: Motion) -> Terms:
     return q.m * q.s_dot**2 / 2, q.m * q.b**2 * q.sin_phi**2 * q.phi_dot**2 / 2
 
 
-def _swings(scene: Scene, amplitude: float) -> float:
-    """Return omega [rad/s], measured over some twenty swings of an amplitude [rad]."""
-    return frequency(scene, scene.equilibrium() + amplitude, 120 / scene.frequency())
+def _bob(ratio: float, heavy: bool = False) -> tuple[Scene, float]:
+    """Return the scene of a bob of `ratio` wheel masses, and the omega [rad/s] of some twenty small swings.
 
-
-def _light_bob(ratio: float) -> tuple[Scene, float]:
-    """Return the scene of a bob of `ratio` wheel masses, and the omega [rad/s] of its small swings."""
+    A swing of a heavy bob is small only if phi^2 is well below 2M/m.
+    """
     scene = pendulum(load_mass=0.2 * ratio)
-    return scene, _swings(scene, SMALL)
-
-
-def _heavy_bob(ratio: float) -> tuple[Scene, float]:
-    """Return the same for a heavy bob, whose swing is small only if phi^2 is well below 2M/m."""
-    scene = pendulum(load_mass=0.2 * ratio)
-    return scene, _swings(scene, SMALL / math.sqrt(ratio / 2))
+    amplitude = SMALL / math.sqrt(ratio / 2) if heavy else SMALL
+    return scene, frequency(scene, scene.equilibrium() + amplitude, 120 / scene.frequency())
 
 
 def _as_if_pivot_accelerated(found: tuple[Scene, float]) -> Terms:
@@ -58,6 +51,7 @@ def _as_if_bob_stood(found: tuple[Scene, float]) -> Terms:
     return math.sqrt(scene.gravity * math.cos(scene.incline) * ratio / scene.load.offset), -omega
 
 
+_AS_IN_3 = "the considerations in sec. 3 above with m_can → M, I_can/a² → M and I_cm → 0"
 _LIMITS = "can be analyzed simply only in the limits that m ≪ M or m ≫ M"
 
 # fmt: off
@@ -81,19 +75,21 @@ ROWS = (
         Misprint(0.28, lambda q: (*can_39(q, 2 * q.can_mass, q.sin_phi**2), *_bob_59(q), -q.kinetic),
             "Pendulum in a wheel: kinetic energy of the wheel",
             r"M(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2)",
-            CONSEQUENCE, "(39)")),
+            CONSEQUENCE, "(39)"),
+        quote=_AS_IN_3),
     Row("(59)", "V in s and phi", WHEEL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
     Row("(60)", "equation of motion of s", WHEEL, HELD, lambda q: motion_48(q, 2 * q.can_mass)),
     Row("(61)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", WHEEL, HELD,
         lambda q: motion_49(q, 2 * q.can_mass),
         Misprint(1.09, lambda q: printed_49(q, 2 * q.can_mass), "Pendulum in a wheel: equation of motion of φ",
             r"mb^2(\sin^2\!\varphi\,\ddot\varphi+\sin\varphi\,\cos\varphi\,\dot\varphi^2)\\ {}+2M(" + BRACKET_49
-            + r"<|{}+Mgb\sin\alpha\,\cos\varphi>", CONSEQUENCE, "(49)")),
+            + r"<|{}+Mgb\sin\alpha\,\cos\varphi>", CONSEQUENCE, "(49)"),
+        quote=_AS_IN_3),
     Row("appendix B", "m << M: a pendulum in a frame at (g/2) sin(alpha): beyond, m = M; within, m = 1e-6 M",
-        Witness(REDUCED, lambda: _light_bob(1e-6)), Bound(2e-6, "m/M = 1e-6"), _as_if_pivot_accelerated,
-        limit=Limit(0.182, lambda: _light_bob(1.0)), quote=_LIMITS),
+        Witness(REDUCED, lambda: _bob(1e-6)), Bound(2e-6, "m/M = 1e-6"), _as_if_pivot_accelerated,
+        limit=Limit(0.182, lambda: _bob(1.0)), quote=_LIMITS),
     Row("appendix B", "m >> M: omega^2 = g cos(alpha) m/(2 M b), without bound: beyond, m = M; within, 1e4 M",
-        Witness(REDUCED, lambda: _heavy_bob(1e4)), Bound(2e-4, "M/m = 1e-4"), _as_if_bob_stood,
-        limit=Limit(0.42, lambda: _heavy_bob(1.0)), quote=_LIMITS),
+        Witness(REDUCED, lambda: _bob(1e4, True)), Bound(2e-4, "M/m = 1e-4"), _as_if_bob_stood,
+        limit=Limit(0.42, lambda: _bob(1.0, True)), quote=_LIMITS),
 )
 # fmt: on

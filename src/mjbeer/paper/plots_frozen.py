@@ -2,6 +2,7 @@
 
 import math
 import pathlib
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,15 +36,14 @@ _MARGIN = 0.02
 """Relative difference of footnote 7's two friction coefficients from tan(alpha)."""
 _MU = 1.0
 """Friction coefficient of the incline from which the can lifts off."""
+ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853)
+LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=_MU)
+HOP = partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4)
+"""The motions of films: a light hoop is pushed with the weight on top, in contact with level ground."""
 _HOOP = f"{in_words(hoop(), {'load'})}; M: mass of the hoop, m: mass of the weight"
 _JUMP = 3.0
 """Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
 _FROM_TOP = "angle of the weight from the top [°]"
-
-
-def rocking() -> Trajectory:
-    """Return the rocking of frozen beer that is let go with its surface along the incline."""
-    return simulate(frozen(), 2.0, 0.0, integrator=DOP853)
 
 
 def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
@@ -61,7 +61,7 @@ def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.nd
 
 def draw_rocking(path: pathlib.Path) -> None:
     """Draw how frozen beer rocks, by MuJoCo and by footnote 8, and how far each is from theory."""
-    run = rocking()
+    run = ROCKING()
     scene, times = run.scene, run.time
     title = "A can of frozen beer rocks about its equilibrium and stays"
     subtitle = f"{in_words(scene)}; let go at φ = 0"
@@ -79,14 +79,9 @@ def draw_rocking(path: pathlib.Path) -> None:
         name_below([angle], 4)
 
 
-def lift_off() -> Trajectory:
-    """Return a roll-down from the top in contact, which ends after the can has left the incline."""
-    return simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=_MU)
-
-
 def draw_roll_down(path: pathlib.Path) -> None:
     """Draw the roll-down of frozen beer: how far it turns, what rolling needs, and how high the can hops."""
-    contact = lift_off()
+    contact = LIFT_OFF()
     scene, times = contact.scene, np.linspace(0, 1, 1001)
     run = simulate(scene, times[-1], math.pi, integrator=DOP853, times=times)
     parts = exact(scene, times, math.pi).rolls_until()
@@ -185,14 +180,9 @@ def _draw_range(axes: Axes) -> None:
     label(axes, "incline α [°]", ylabel, about, ylim=(-190, 190), yticks=range(-180, 181, 60))
 
 
-def hop(friction: float) -> Trajectory:
-    """Return the motion of a light hoop, pushed with the weight on top, in contact with level ground."""
-    return simulate(hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=friction)
-
-
 def _draw_hop(axes: Axes, friction: float, slips: bool) -> None:
     """Draw the height of a pushed hoop, how far it has slid if asked for, and what theory foresees."""
-    run = hop(friction)
+    run = HOP(friction=friction)
     rolling = exact(run.scene, np.linspace(0, 0.06, 6001), run.phi0, run.phi_dot0)
     if slips:
         axes.plot(run.time, 1e3 * run.slip, color=COLOURS[2], label="slip: distance less the arc turned, MuJoCo")

@@ -3,6 +3,7 @@
 import math
 import pathlib
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -35,6 +36,10 @@ from mjbeer.theory.trajectory import Trajectory, mean_acceleration
 
 _SWING = math.radians(30)
 """Amplitude [rad] of the swing that shows the hesitation: wide enough to be seen in the can's way."""
+HESITATION = partial(simulate, sliding(), 1.0, _SWING, integrator=DOP853, times=np.linspace(0, 1, 501))
+LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
+WIDE_PENDULUM = partial(simulate, pendulum(), 1.5, 1.0, integrator=DOP853)
+"""The motions of films: beer loops so slowly here that its can stays on the incline."""
 _FILL = "fill: height of the beer / can's diameter"
 _METAL, _HOOP = Can.sheet_metal(), Can.hoop(mass=0.05)
 _CANS = {
@@ -69,14 +74,9 @@ def draw_trivial(path: pathlib.Path) -> None:
         name_below((angle, axis), 3)
 
 
-def hesitation() -> Trajectory:
-    """Return one second of beer that swings so far that its can can be seen to hesitate."""
-    return simulate(sliding(), 1.0, _SWING, integrator=DOP853, times=np.linspace(0, 1, 501))
-
-
 def draw_hesitation(path: pathlib.Path) -> None:
     """Draw how far a can is ahead of one that accelerates evenly, and eq. (25) as printed."""
-    run = hesitation()
+    run = HESITATION()
     scene, times, b = run.scene, run.time, run.scene.load.offset
     even = scene.acceleration() * times**2 / 2
     # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2 omega t) is -1.
@@ -110,11 +110,6 @@ def draw_release(path: pathlib.Path) -> None:
             axes.plot(swings, run.phi / run.scene.incline, label=f"MuJoCo, α = {in_degrees(run.scene.incline)}")
         label(axes, "time / period of small swings", "beer's tilt / incline, φ / α", xlim=(0, 3))
         name_below([axes], 3)
-
-
-def looping() -> Trajectory:
-    """Return half a second of beer that loops so slowly that its can stays on the incline."""
-    return simulate(sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
 
 
 def least_push(rate: float) -> float:
@@ -184,11 +179,6 @@ def _beer(fills: Sequence[float] | np.ndarray, can: Can) -> list[Scene]:
     return [sliding(fill=float(fill), can=can) for fill in fills]
 
 
-def _steady_acceleration(scene: Scene) -> float:
-    """Return the acceleration [m/s^2] that MuJoCo computes for a can whose load does not swing."""
-    return mean_acceleration(simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853))
-
-
 def draw_accelerations(path: pathlib.Path) -> None:
     """Draw the acceleration of cans whose beer does not swing over their fill."""
     # Near 0 and near 1 the curves are steep, so that the points are denser there.
@@ -205,8 +195,8 @@ def draw_accelerations(path: pathlib.Path) -> None:
         for name, can in _CANS.items():
             theory = [scene.acceleration() / full for scene in _beer(fills, can)]
             (line,) = axes.plot(fills, theory, label=f"beer sliding, {name}: exact theory")
-            measured = [_steady_acceleration(scene) / full for scene in _beer(few, can)]
-            axes.plot(few, measured, "o", color=line.get_color())
+            runs = [simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853) for scene in _beer(few, can)]
+            axes.plot(few, [mean_acceleration(run) / full for run in runs], "o", color=line.get_color())
         ice = [frozen(fill=float(fill)).acceleration() / full for fill in fills]
         axes.plot([], [], "o", color=GREY, label="MuJoCo")
         axes.plot(fills, ice, "--", label="beer frozen, massless can: theory as if it were balanced")
@@ -273,14 +263,9 @@ def draw_tilt(path: pathlib.Path) -> None:
         name_below([angle], 3)
 
 
-def wide_pendulum() -> Trajectory:
-    """Return a wide swing of a pendulum in its wheel."""
-    return simulate(pendulum(), 1.5, 1.0, integrator=DOP853)
-
-
 def draw_pendulum(path: pathlib.Path) -> None:
     """Draw a wide swing of the pendulum, and the frequency of small ones over the mass of its bob."""
-    run = wide_pendulum()
+    run = WIDE_PENDULUM()
     scene, ratio = run.scene, run.scene.load.mass / run.scene.can.mass
     title = "A wheel with a pendulum: a wide swing, and how the bob's mass changes small ones"
     with chart(path, 1, 2, width=12, height=5.4, title=title, subtitle=in_words(scene, {"load"})) as (swing, rate):
@@ -295,8 +280,7 @@ def draw_pendulum(path: pathlib.Path) -> None:
 
 def _small_swing_frequency(scene: Scene) -> float:
     """Return omega [rad/s], measured over some six swings of 0.001 rad."""
-    omega = scene.frequency()
-    start = scene.equilibrium() + 1e-3
+    omega, start = scene.frequency(), scene.equilibrium() + 1e-3
     return simulate(scene, 40 / omega, start, integrator=DOP853, timestep=0.02 / omega).frequency()
 
 

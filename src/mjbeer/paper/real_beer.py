@@ -5,7 +5,6 @@ import math
 import pathlib
 
 import numpy as np
-from matplotlib.axes import Axes
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
@@ -121,18 +120,14 @@ def draw_first_metre(path: pathlib.Path) -> None:
         ylabel = "mean acceleration over the first metre / g sin α"
         label(inclines, "water in the can [mL]", ylabel, "On three inclines, without air")
         label(air, "water in the can [mL]", ylabel, f"What the air adds, at {in_degrees(steepest)}")
-        _mark(inclines)
+        inclines.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
+        note(inclines, "Rosch: slower near 10 mL", (_ROSCH, 0.42), (6, 0))
+        note(inclines, "Jackson et al.: a nearly full can comes near g sin α", (400, 1.035), (0, 0), ha="right")
+        note(inclines, "Jackson et al.: a nearly empty can\nis slower than ½ g sin α", (0.33, 0.35), (0, 0))
+        note(inclines, "hoop: ½", (400, 0.5), (0, 7), ha="right")
+        film = "the wall could carry all of\nthe water round as a film:\nan estimate only"
+        note(inclines, film, (0.33, 0.72), (0, 0))
         name_below([inclines, air], 3)
-
-
-def _mark(axes: Axes) -> None:
-    """Write what was measured, and where the theory of a lump ends, beside the lines."""
-    axes.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
-    note(axes, "Rosch: slower near 10 mL", (_ROSCH, 0.42), (6, 0))
-    note(axes, "Jackson et al.: a nearly full can comes near g sin α", (400, 1.035), (0, 0), ha="right")
-    note(axes, "Jackson et al.: a nearly empty can\nis slower than ½ g sin α", (0.33, 0.35), (0, 0))
-    note(axes, "hoop: ½", (400, 0.5), (0, 7), ha="right")
-    note(axes, "the wall could carry all of\nthe water round as a film:\nan estimate only", (0.33, 0.72), (0, 0))
 
 
 def draw_liquids(path: pathlib.Path) -> None:

@@ -69,11 +69,6 @@ def _chord(shape: Segment) -> Terms:
     return 1 - np.cos(shape.half_angle), below * np.sqrt(1 - np.sin(shape.half_angle) ** 2) - 1
 
 
-def _least_axial() -> float:
-    """Return the least I_axis/(m a^2) among a thousand fills."""
-    return float(_axial(_segments(tuple(np.linspace(0.5, 0.999, 1000).tolist()))).min())
-
-
 @cache
 def _shell() -> tuple[float, float]:
     """Return the mass [kg] and the axial inertia [kg m^2] that MuJoCo computes for a closed cylinder of sheet metal."""
@@ -91,11 +86,6 @@ def _shell() -> tuple[float, float]:
     return float(can.mass[0]), float((axes @ np.diag(can.inertia) @ axes.T)[2, 2])
 
 
-def _share_of_shell() -> float:
-    mass, inertia = _shell()
-    return inertia / (mass * RADIUS**2)
-
-
 def _centre_of_mass() -> tuple[float, float]:
     """Return the distance [m] of the common centre of mass from the axis by MuJoCo, and d = m b/(m + m_can) of (38)."""
     scene = sliding(can=Can.sheet_metal())
@@ -110,7 +100,8 @@ def _centre_of_mass() -> tuple[float, float]:
 _QUADRATURE, _METAL = "segment quadrature", "MuJoCo's shell of a cylinder"
 _HALF = Witness(_QUADRATURE, partial(segment, 0.5))
 _FILLED = Witness(_QUADRATURE, _segments)
-_SHELL, _SHARE = Witness(_METAL, _shell), Witness(_METAL, _share_of_shell)
+_THOUSAND = Witness(_QUADRATURE, lambda: _segments(tuple(np.linspace(1e-3, 1, 1000).tolist())))
+_SHELL = Witness(_METAL, _shell)
 _CLOSED = Bound(1e-13, "rounding; the closed forms cancel at small fills")
 _ROUNDING = Bound(1e-13, "rounding")
 _DIGIT = "half a unit of the last digit"
@@ -127,9 +118,10 @@ ROWS = (
         lambda shell: (2 * math.pi * RADIUS * THICKNESS * (LENGTH + RADIUS) * ALUMINIUM, -shell[0])),
     Row("(31)", "I_can", _SHELL, _ROUNDING,
         lambda shell: (math.pi * RADIUS**3 * THICKNESS * (2 * LENGTH + RADIUS) * ALUMINIUM, -shell[1])),
-    Row("(31)", "I_can/(m_can a^2)", _SHARE, _ROUNDING,
-        lambda share: ((2 * LENGTH + RADIUS) / (2 * (LENGTH + RADIUS)), -share)),
-    Row("(31)", "I_can = 0.89 m_can a^2", _SHARE, Bound(5.6e-3, _DIGIT), lambda share: (0.89, -share)),
+    Row("(31)", "I_can/(m_can a^2)", _SHELL, _ROUNDING,
+        lambda shell: ((2 * LENGTH + RADIUS) / (2 * (LENGTH + RADIUS)), -shell[1] / (shell[0] * RADIUS**2))),
+    Row("(31)", "I_can = 0.89 m_can a^2", _SHELL, Bound(5.6e-3, _DIGIT),
+        lambda shell: (0.89, -shell[1] / (shell[0] * RADIUS**2))),
     Row("(32)", "h/a", Witness("chord of a circle", _segments), _CLOSED, _chord),
     Row("(34)", "mass of the beer",
         Witness(_QUADRATURE, lambda: np.array([Load.segment(fill=fill).mass for fill in FILLS])), _CLOSED,
@@ -156,11 +148,12 @@ ROWS = (
         Witness(_QUADRATURE, lambda: _segments((0.5, 1.0))), _CLOSED, lambda at: (np.full(2, 0.5), -_axial(at)),
         quote="k decreases from 1 … to 1/2 at β = π/2 …, then dips slightly and returns to k = 1/2 at β = π"),
     Row("figure of (36)", "k is 1 for a film (fill 1e-5)", Witness(_QUADRATURE, partial(segment, 1e-5)),
-        Bound(1e-4, "the film's height"), lambda film: (1.0, -_axial(film)), quote="from 1 (for a point mass)"),
-    Row("figure of (36)", "in between k dips, to 0.456 at 115 degrees", Witness(_QUADRATURE, _least_axial),
-        Bound(2e-3, f"{_DIGIT}; the paper gives no number"), lambda least: (0.456, -least), quote="then dips slightly"),
-    Row("figure of (37)", "k rises all the way: it is never below what it was",
-        Witness(_QUADRATURE, lambda: _segments(tuple(np.linspace(1e-3, 1, 1000).tolist()))), _ROUNDING,
+        Bound(1e-4, "the film's height"), lambda film: (1.0, -_axial(film)),
+        quote="decreases from 1 (for a point mass at distance a from the axis)"),
+    Row("figure of (36)", "in between k dips, to 0.456 at 115 degrees", _THOUSAND,
+        Bound(2e-3, f"{_DIGIT}; the paper gives no number"), lambda at: (0.456, -_axial(at).min()),
+        quote="then dips slightly"),
+    Row("figure of (37)", "k rises all the way: it is never below what it was", _THOUSAND, _ROUNDING,
         lambda at: (at.inertia, -np.maximum.accumulate(at.inertia)),
         quote="as angle β increases from 0 to π, k increases"),
     Row("figure of (37)", "k goes from 0 by 0.32 at beta = pi/2 to 0.5",

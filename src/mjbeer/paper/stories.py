@@ -56,7 +56,7 @@ _STORIES = (
         "the beer. Eq. (25) as printed has b cos φ instead, a smaller ripple at twice the frequency. It is drawn "
         "without its constant, and from the same start.",
         plots_sliding.draw_hesitation,
-        Take(plots_sliding.hesitation, 0.25,
+        Take(plots_sliding.HESITATION, 0.25,
             look=Look("A can hesitates in every swing of its beer", ("phi", "ahead"), _GHOST))),
     Story("release",
         "A can is held until its beer is level and then let go, so that φ starts at −α. The steeper the incline, the "
@@ -70,7 +70,7 @@ _STORIES = (
         "follows only the left motion: if the beer is faster than 47 rad/s at the bottom, it lifts its can off the "
         "incline. At this lower rate, formulas of first order in δ are only near the truth.",
         plots_sliding.draw_looping,
-        Take(plots_sliding.looping, 0.1,
+        Take(plots_sliding.LOOPING, 0.1,
             look=Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces")))),
     Story("ripples",
         "Both ripples over a decade of the mean rate Ω. The one at Ω falls in proportion to 1/Ω² and is 8 % smaller "
@@ -96,20 +96,20 @@ _STORIES = (
         "as if its pivot accelerated at half of g sin α. Under a heavy bob the wheel swings instead, the faster the "
         "heavier the bob.",
         plots_sliding.draw_pendulum,
-        Take(plots_sliding.wide_pendulum, 0.25,
+        Take(plots_sliding.WIDE_PENDULUM, 0.25,
             look=Look("A wheel hesitates in every swing of its pendulum", ("phi", "ahead"), _GHOST))),
     Story("rocking",
         "A can with frozen beer, let go at φ = 0, rocks about its equilibrium and does not roll off. Footnote 8's "
         "equation as printed, with ½ a b in place of a b, gives another swing.",
         plots_frozen.draw_rocking,
-        Take(plots_frozen.rocking, 0.5,
+        Take(plots_frozen.ROCKING, 0.5,
             look=Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths")))),
     Story("roll-down",
         "The figure of A.3: the same can, let go with the beer on top. It rolls down like a solid cylinder, but in "
         "jerks. Rolling needs more and more friction, and from 0.834 s on the incline would have to pull the can: what "
         "comes after that is dotted. A can on an incline with μ = 1 slips and hops instead.",
         plots_frozen.draw_roll_down,
-        Take(plots_frozen.lift_off, 0.25,
+        Take(plots_frozen.LIFT_OFF, 0.25,
             look=Look("Frozen beer, let go on top: it rolls, slips and hops", ("normal", "lift"), _EVERYTHING))),
     Story("friction",
         "Footnote 7: at the equilibrium the can stays if the friction coefficient is more than tan α, and slides off "
@@ -126,14 +126,14 @@ _STORIES = (
         "ground would have to pull, the lines are dotted; there the hoop hops, which needs M/m < 1/13. Right: a fast "
         "hoop of M/m = 1/20, in contact with the ground, with a friction coefficient of 1.",
         plots_frozen.draw_normal,
-        Take(partial(plots_frozen.hop, FRICTION), 0.1,
+        Take(partial(plots_frozen.HOP, friction=FRICTION), 0.1,
             look=Look("A weight on the rim makes a light hoop hop", ("normal", "lift"), _HOOP))),
     Story("lift-off",
         "Left: the angles at which a hoop that starts from rest lifts off and at which it skids, over its mass. "
         "Littlewood's 90° hold for a massless hoop; with any finite friction coefficient the hoop skids first. A hoop "
         "just too heavy to skid at 80° grips until after 90°: hence the jump. Right: a fast hoop skids, then hops.",
         plots_frozen.draw_lift_off,
-        Take(partial(plots_frozen.hop, MU), 0.1,
+        Take(partial(plots_frozen.HOP, friction=MU), 0.1,
             look=Look("With less friction the hoop skids before it hops", ("normal", "slip"), _HOOP))),
     Story("real-beer",
         "What footnote 4 leaves open. Without friction a nearly empty can has a little more than half of g sin α (wide "
@@ -200,8 +200,7 @@ def _summary(drawn: list[Story], films: bool, missing: list[str]) -> str:
 
 _INCLINE, _PHI = math.radians(18), math.radians(35)
 """Angles of the sketch [rad]: steep enough to be seen."""
-_DOWNHILL = np.array([math.cos(_INCLINE), -math.sin(_INCLINE)])
-_AWAY = np.array([math.sin(_INCLINE), math.cos(_INCLINE)])
+_DOWNHILL, _AWAY = np.array([[math.cos(_INCLINE), -math.sin(_INCLINE)], [math.sin(_INCLINE), math.cos(_INCLINE)]])
 _LENGTH, _WAY = 5.4, 3.2
 """Length of the incline, and how far the can has rolled down it, in radii of the can."""
 _AXIS = _WAY * _DOWNHILL + _AWAY
@@ -217,68 +216,55 @@ def draw_letters(path: pathlib.Path) -> None:
     with chart(path, width=6.4, height=3.9) as (axes,):
         axes.set_axis_off()
         axes.set_aspect("equal")
-        _draw_incline(axes)
         _draw_can(axes)
-        _draw_lengths(axes)
-        _draw_forces(axes)
-
-
-def _draw_incline(axes: Axes) -> None:
-    """Draw the incline, the horizontal at its foot, and the angle α between them."""
-    foot, angle = _LENGTH * _DOWNHILL, math.degrees(_INCLINE)
-    axes.plot(*np.transpose([-0.5 * _DOWNHILL, foot]), color="black", linewidth=2)
-    axes.plot([foot[0] - 1.9, foot[0]], [foot[1], foot[1]], color="black", linewidth=1)
-    axes.add_patch(Arc(tuple(foot), 3, 3, theta1=180 - angle, theta2=180, color=_LETTER))
-    _letter(axes, "α", foot + np.array([-1.72, 0.2]))
+        _draw_arrows(axes)
 
 
 def _draw_can(axes: Axes) -> None:
-    """Draw the can, the half of it that beer fills, and the angle φ of the beer's surface to the incline."""
+    """Draw the incline with α, the can with the half that beer fills and φ, the radius a, and the distance b."""
+    foot, slope = _LENGTH * _DOWNHILL, math.degrees(_INCLINE)
+    axes.plot(*np.transpose([-0.5 * _DOWNHILL, foot]), color="black", linewidth=2)
+    axes.plot([foot[0] - 1.9, foot[0]], [foot[1], foot[1]], color="black", linewidth=1)
+    axes.add_patch(Arc(tuple(foot), 3, 3, theta1=180 - slope, theta2=180, color=_LETTER))
+    _letter(axes, "α", foot + np.array([-1.72, 0.2]))
     tilt = -_INCLINE - _PHI  # of the surface to the horizontal: positive φ is clockwise, as the can rolls
-    around, below = np.linspace(0, 2 * math.pi, 361), tilt - np.linspace(0, math.pi, 181)
-    axes.plot(*(_AXIS[:, None] + [np.cos(around), np.sin(around)]), color="black", linewidth=1.5)
-    axes.fill(*(_AXIS[:, None] + [np.cos(below), np.sin(below)]), color="#E8A33D", alpha=0.6, linewidth=0)
-    surface = np.array([math.cos(tilt), math.sin(tilt)])
-    axes.plot(*np.transpose([_AXIS - surface, _AXIS + surface]), color="#A05A00", linewidth=1.5)
+    rim, filled = (
+        _AXIS + np.transpose([np.cos(angles), np.sin(angles)])
+        for angles in (np.linspace(0, 2 * math.pi, 361), tilt - np.linspace(0, math.pi, 181))
+    )
+    axes.plot(*rim.T, color="black", linewidth=1.5)
+    axes.fill(*filled.T, color="#E8A33D", alpha=0.6, linewidth=0)
+    axes.plot(*filled[[-1, 0]].T, color="#A05A00", linewidth=1.5)
     axes.plot(*np.transpose([_AXIS - 1.3 * _DOWNHILL, _AXIS + 1.5 * _DOWNHILL]), "--", color="grey", linewidth=0.8)
-    start, end = math.degrees(tilt), math.degrees(-_INCLINE)
-    axes.add_patch(Arc(tuple(_AXIS), 1.5, 1.5, theta1=start, theta2=end, color=_LETTER))
-    middle = math.radians((start + end) / 2)
-    _letter(axes, "φ", _AXIS + 0.9 * np.array([math.cos(middle), math.sin(middle)]))
-
-
-def _draw_lengths(axes: Axes) -> None:
-    """Draw the radius a, the distance b of the beer's centre of mass from the axis, and the way u of the axis."""
-    down, up, above = -_INCLINE - _PHI - math.pi / 2, 0.5, 2.15 * _AWAY
-    centre = _AXIS + segment(0.5).offset * np.array([math.cos(down), math.sin(down)])
-    rim = _AXIS + np.array([math.cos(up), math.sin(up)])
+    axes.add_patch(Arc(tuple(_AXIS), 1.5, 1.5, theta1=math.degrees(tilt), theta2=-slope, color=_LETTER))
+    _letter(axes, "φ", _AXIS + 0.9 * _towards((tilt - _INCLINE) / 2))
+    centre, top = _AXIS + segment(0.5).offset * _towards(tilt - math.pi / 2), _AXIS + _towards(0.5)
     axes.plot(*_AXIS, "o", color="black", markersize=3)
     axes.plot(*centre, "o", color="black", markersize=6)
-    for letter, end, offset in (("b", centre, [-0.16, 0.06]), ("a", rim, [-0.08, 0.14])):
+    for letter, end, offset in (("b", centre, [-0.16, 0.06]), ("a", top, [-0.08, 0.14])):
         axes.plot(*np.transpose([_AXIS, end]), color=_LETTER)
         _letter(axes, letter, (_AXIS + end) / 2 + offset)
+
+
+def _draw_arrows(axes: Axes) -> None:
+    """Draw the way u of the axis, the forces N and F of the incline on the can, and the direction of gravity."""
+    above, touch = 2.15 * _AWAY, _AXIS - _AWAY
     for end in (np.zeros(2), _WAY * _DOWNHILL):
         axes.plot(*np.transpose([end + 0.1 * _AWAY, end + above + 0.08 * _AWAY]), ":", color="grey", linewidth=0.8)
-    _arrow(axes, above, _WAY * _DOWNHILL + above, _LETTER)
-    _letter(axes, "u", _WAY / 2 * _DOWNHILL + 2.35 * _AWAY)
-
-
-def _draw_forces(axes: Axes) -> None:
-    """Draw the forces N and F of the incline on the can, and the direction of gravity."""
-    touch, corner = _AXIS - _AWAY, np.array([_LENGTH * _DOWNHILL[0] - 0.2, 0.9])
-    under = touch - 0.07 * _AWAY
-    for letter, start, end, place in (
-        ("N", touch - 0.9 * _AWAY, touch, touch - 0.6 * _AWAY + [-0.2, 0]),
-        ("F", under, under - 0.9 * _DOWNHILL, touch - 0.75 * _DOWNHILL - 0.27 * _AWAY),
-        ("g", corner, corner - [0, 0.9], corner + np.array([0.2, -0.5])),
+    under, corner = touch - 0.07 * _AWAY, np.array([_LENGTH * _DOWNHILL[0] - 0.2, 0.9])
+    for letter, start, end, place, colour in (
+        ("u", above, _WAY * _DOWNHILL + above, _WAY / 2 * _DOWNHILL + 2.35 * _AWAY, _LETTER),
+        ("N", touch - 0.9 * _AWAY, touch, touch - 0.6 * _AWAY + [-0.2, 0], _FORCE),
+        ("F", under, under - 0.9 * _DOWNHILL, touch - 0.75 * _DOWNHILL - 0.27 * _AWAY, _FORCE),
+        ("g", corner, corner - [0, 0.9], corner + np.array([0.2, -0.5]), _FORCE),
     ):
-        _arrow(axes, start, end, _FORCE)
-        _letter(axes, letter, place, _FORCE)
+        style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.4}
+        axes.annotate("", tuple(end), tuple(start), arrowprops=style)
+        _letter(axes, letter, place, colour)
 
 
-def _arrow(axes: Axes, start: np.ndarray, end: np.ndarray, colour: str) -> None:
-    style = {"arrowstyle": "-|>", "color": colour, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.4}
-    axes.annotate("", tuple(end), tuple(start), arrowprops=style)
+def _towards(angle: float) -> np.ndarray:
+    return np.array([math.cos(angle), math.sin(angle)])
 
 
 def _letter(axes: Axes, letter: str, place: np.ndarray, colour: str = _LETTER) -> None:
