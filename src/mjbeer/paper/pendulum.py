@@ -36,19 +36,16 @@ def _bob(ratio: float, heavy: bool = False) -> tuple[Scene, float]:
     return scene, frequency(scene, scene.equilibrium() + amplitude, 120 / scene.frequency())
 
 
-def _as_if_pivot_accelerated(found: tuple[Scene, float]) -> Terms:
-    """Return the terms of: omega [rad/s] is that of a pendulum whose pivot accelerates at (g/2) sin(alpha), as an
-    empty wheel does."""
-    scene, omega = found
+def light_bob(scene: Scene) -> float:
+    """Return omega [rad/s] of a pendulum whose pivot accelerates at (g/2) sin(alpha), as an empty wheel does."""
     across, along = math.cos(scene.incline), math.sin(scene.incline) / 2
-    return math.sqrt(scene.gravity * math.hypot(across, along) / scene.load.offset), -omega
+    return math.sqrt(scene.gravity * math.hypot(across, along) / scene.load.offset)
 
 
-def _as_if_bob_stood(found: tuple[Scene, float]) -> Terms:
-    """Return the terms of: omega [rad/s] is that of a light wheel under a bob that hardly moves."""
-    scene, omega = found
+def heavy_bob(scene: Scene) -> float:
+    """Return omega [rad/s] of a light wheel under a bob that hardly moves."""
     ratio = scene.load.mass / (2 * scene.can.mass)
-    return math.sqrt(scene.gravity * math.cos(scene.incline) * ratio / scene.load.offset), -omega
+    return math.sqrt(scene.gravity * math.cos(scene.incline) * ratio / scene.load.offset)
 
 
 _AS_IN_3 = "the considerations in sec. 3 above with m_can → M, I_can/a² → M and I_cm → 0"
@@ -86,10 +83,12 @@ ROWS = (
             + r"<|{}+Mgb\sin\alpha\,\cos\varphi>", CONSEQUENCE, "(49)"),
         quote=_AS_IN_3),
     Row("appendix B", "m << M: a pendulum in a frame at (g/2) sin(alpha): beyond, m = M; within, m = 1e-6 M",
-        Witness(REDUCED, lambda: _bob(1e-6)), Bound(2e-6, "m/M = 1e-6"), _as_if_pivot_accelerated,
+        Witness(REDUCED, lambda: _bob(1e-6)), Bound(2e-6, "m/M = 1e-6"),
+        lambda found: (light_bob(found[0]), -found[1]),
         limit=Limit(0.182, lambda: _bob(1.0)), quote=_LIMITS),
     Row("appendix B", "m >> M: omega^2 = g cos(alpha) m/(2 M b), without bound: beyond, m = M; within, 1e4 M",
-        Witness(REDUCED, lambda: _bob(1e4, True)), Bound(2e-4, "M/m = 1e-4"), _as_if_bob_stood,
+        Witness(REDUCED, lambda: _bob(1e4, True)), Bound(2e-4, "M/m = 1e-4"),
+        lambda found: (heavy_bob(found[0]), -found[1]),
         limit=Limit(0.42, lambda: _bob(1.0, True)), quote=_LIMITS),
 )
 # fmt: on

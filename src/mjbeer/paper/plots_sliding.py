@@ -26,6 +26,7 @@ from mjbeer.output.plots import (
 )
 from mjbeer.paper import oscillation, segment
 from mjbeer.paper.oscillation import SLOW
+from mjbeer.paper.pendulum import heavy_bob, light_bob
 from mjbeer.paper.row import Letters
 from mjbeer.paper.witness import DECADE, loop
 from mjbeer.simulation.simulate import simulate
@@ -286,11 +287,9 @@ def _small_swing_frequency(scene: Scene) -> float:
 
 def _draw_frequencies(axes: Axes, scene: Scene) -> None:
     """Draw the frequency of small swings over the mass of the bob in masses of the wheel, and its two limits."""
-    wheel, b, g = scene.can.mass, scene.load.offset, scene.gravity
-    ratios = np.geomspace(1e-3, 1e3, 61)
-    scenes = [pendulum(scene.incline, wheel, wheel * float(ratio), b) for ratio in ratios]
-    light = math.sqrt(g * math.hypot(math.cos(scene.incline), math.sin(scene.incline) / 2) / b)
-    heavy = np.sqrt(g * math.cos(scene.incline) * ratios / (2 * b))
+    ratios, wheel = np.geomspace(1e-3, 1e3, 61), scene.can.mass
+    scenes = [pendulum(scene.incline, wheel, wheel * float(ratio), scene.load.offset) for ratio in ratios]
+    light, heavy = light_bob(scene), np.array([heavy_bob(each) for each in scenes])
     high = heavy > light / 2
     axes.plot(ratios, [each.frequency() for each in scenes], **THEORY)
     measured = [_small_swing_frequency(each) for each in scenes[::6]]
