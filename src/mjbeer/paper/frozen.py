@@ -226,7 +226,7 @@ ROWS = (
         Witness(EQUALITY, partial(_mean_acceleration, 0.01)),
         Bound(1e-3, "the start, of whose waves 1e-4 is left between 8 s and 16 s"),
         lambda found: (found[1], -found[0].acceleration()), limit=Limit(0.0264, _mean_acceleration),
-        quote="Angle φ varies almost quadratically in time, with a small oscillation about this"),
+        quote="A solid cylinder that rolls without slipping would have acceleration (2/3)g sin α down the incline"),
     Row("sec. A.3", "the same by exact theory: that over (mean of sqrt(J))^2 / (3 m a^2/2)",
         Witness(EQUALITY, _mean_acceleration), Bound(1e-3, "the start, as above"),
         lambda found: (found[1], -long_run(found[0].oscillator) * found[0].can.radius),

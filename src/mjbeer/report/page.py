@@ -83,7 +83,7 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         groups=groups,
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
-        quoted=[row for row in paper.rows() if row.quote],
+        quoted=[row for row in paper.rows() if row.quote and not row.misprint],
         findings=len(validation.findings),
         stories=_stories(folder, quick, LIMIT - sum(_size(film) for film in films.values())),
         sentence=tables.sentence(validation),
