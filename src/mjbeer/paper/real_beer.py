@@ -9,6 +9,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, label, name_below, note, ticks
+from mjbeer.paper.segment import area_33
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.exact import exact
@@ -35,16 +36,11 @@ _ROSCH = 10.0
 """Volume [mL] near which Rosch (The College of Wooster, 2006) saw a can accelerate less."""
 
 
-def fill_of(volume: float, can: Can) -> float:
-    """Return the fill h/2a at which a can has a `volume` [m^3] of beer in it."""
-    area = volume / (can.radius**2 * can.length)  # eq. (33), over a^2
-    half_angle = float(brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15))
-    return math.sin(half_angle / 2) ** 2
-
-
 def water_in(volume: float, incline: float, friction: bool = True, drag: float = 0.0) -> Scene:
     """Return `CAN` with a `volume` [mL] of water in it on an `incline` [rad], with or without the water's friction."""
-    fill = fill_of(1e-6 * volume, CAN)
+    area = 1e-6 * volume / (CAN.radius**2 * CAN.length)
+    half_angle = float(brentq(lambda beta: area_33(beta) - area, 0, math.pi, xtol=1e-15))
+    fill = math.sin(half_angle / 2) ** 2
     damping = liquid_in("water", incline, fill, CAN).damping if friction else 0.0
     return sliding(incline, fill, CAN, LIQUIDS["water"].density, damping=damping, drag=drag)
 

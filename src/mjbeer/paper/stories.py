@@ -185,17 +185,13 @@ def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
                 story.draw(folder / story.name)
         if filmed and not missing:
             studio.produce(filmed, console)
-        summary.write_text(_summary(drawn, films, missing), encoding="utf-8")
+        lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
+        lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
+        for story in drawn:
+            lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
+            lines += [f"[Film]({story.name}.mp4)", ""] if films and story.film is not None and not missing else []
+        summary.write_text("\n".join(lines), encoding="utf-8")
     return missing
-
-
-def _summary(drawn: list[Story], films: bool, missing: list[str]) -> str:
-    lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
-    lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
-    for story in drawn:
-        lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
-        lines += [f"[Film]({story.name}.mp4)", ""] if films and story.film is not None and not missing else []
-    return "\n".join(lines)
 
 
 _INCLINE, _PHI = math.radians(18), math.radians(35)
