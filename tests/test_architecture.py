@@ -18,11 +18,11 @@ DOCUMENT = (pathlib.Path(__file__).parents[1] / "docs" / "architecture.md").read
 FOLDERS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and any(path.glob("*.py")))
 THEORY = [
     ".".join(("mjbeer", *path.relative_to(PACKAGE).with_suffix("").parts))
-    for folder in ("theory", "predictions", "paper/equations")
+    for folder in ("theory", "predictions")
     for path in sorted((PACKAGE / folder).glob("*.py"))
     if path.stem != "__init__"
 ]
-IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.letters", "mjbeer.paper.audit.claim"))
+IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.row"))
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 HEAVY = {"mujoco", "numba", "llvmlite", "matplotlib", "mediapy", "OpenGL"}
 """What takes most of the time to import: the simulator, the compiler, and what draws."""

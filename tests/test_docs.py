@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import pytest
 
+from mjbeer import paper
 from mjbeer.cli.app import main
-from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import CORRECTED, LIMIT
+from mjbeer.paper.row import CORRECTED, LIMIT
 from mjbeer.studies.validation.run import rows as validated
 from tests.support import stubs
 
@@ -119,10 +119,10 @@ def test_the_table_of_the_validation_is_that_of_the_program() -> None:
 
 def test_misprints_and_limits_of_the_physics_are_those_of_the_audit() -> None:
     """With what each misprint misses by; and the tests that are named exist."""
-    claims, told = chapters.claims(), rows("physics.md", "| equation | printed | right | misses by |")
+    claims, told = paper.rows(), rows("physics.md", "| equation | printed | right | misses by |")
     corrected = [each for each in claims if each.verdict == CORRECTED]
     assert sorted((row[0], float(row[3])) for row in told) == sorted(
-        (each.equation, float(each.misses_by or 0)) for each in corrected
+        (each.equation, each.misses_by) for each in corrected
     )
     named = {each for row in rows("physics.md", "| where | claim | holds |") for each in row[0].split(", ")}
     assert named == {each for claim in claims if claim.verdict == LIMIT for each in claim.equation.split(", ")}

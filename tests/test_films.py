@@ -1,12 +1,14 @@
 """All films of the report: no text covers what moves, nothing aliases, and what is shown can be trusted."""
 
+import pathlib
+
 import numpy as np
 import pytest
 
 from mjbeer import exact, frozen
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.race import Race
-from mjbeer.paper.stories import report
+from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.films import FILMS
 from mjbeer.theory.liquid import LIQUIDS, liquid_in
@@ -14,7 +16,7 @@ from tests.support.labels import faults
 
 ALL: dict[str, tuple[Film, float]] = {
     **{name: (film, 30.0) for name, film in FILMS.items()},
-    **{f"paper/{order.path.stem}": (order.film, order.fps) for order in report.orders(report.pathlib.Path())},
+    **{f"paper/{order.path.stem}": (order.film, order.fps) for order in stories.orders(pathlib.Path())},
 }
 TIMES = np.linspace(0.0, 2.3, 1151)
 TURN = 0.6

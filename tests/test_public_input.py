@@ -22,7 +22,7 @@ from mjbeer.drawing import encoder, frames, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, Softness
-from mjbeer.paper.looping import loop
+from mjbeer.paper.witness import loop
 from mjbeer.require import shown
 from mjbeer.theory.scene import ATTACHMENTS
 

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from mjbeer import Scene, simulate
+from mjbeer import Scene, paper, simulate
 from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
-from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, Finding
+from mjbeer.paper.row import CONFIRMED, CORRECTED, Finding
 from mjbeer.studies.rows import Result
 from mjbeer.studies.validation.run import Validation, rows
 from mjbeer.theory.trajectory import csv
@@ -78,7 +77,7 @@ def test_a_narrow_terminal_leaves_no_letter_out() -> None:
 def test_every_cell_of_the_rows_is_whole() -> None:
     """The library that prints takes some brackets for markup; none of the texts of the validation may be lost so."""
     texts = {text for row in rows() for text in (row.name, row.by, row.reason)}
-    texts |= {text for claim in chapters.claims() for text in (claim.equation, claim.quantity, claim.reason)}
+    texts |= {text for row in paper.rows() for text in (row.equation, row.quantity, row.bound.reason)}
     lines = [(text,) for text in sorted(texts)]
     assert Table("t", ("text",), lines).tabbed().splitlines()[1:] == sorted(texts)
 

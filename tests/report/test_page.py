@@ -10,12 +10,11 @@ from collections.abc import Generator
 
 import pytest
 
+from mjbeer import paper
 from mjbeer.cli.app import main
 from mjbeer.drawing.film import Take
-from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import CORRECTED
-from mjbeer.paper.misprints import FORMULAS
-from mjbeer.paper.stories import report as stories_report
+from mjbeer.paper import stories
+from mjbeer.paper.row import Misprint
 from mjbeer.report import films, formulas, page
 from mjbeer.report.embed import data_uri
 from mjbeer.studies.benchmark import points as measured
@@ -33,7 +32,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Generator[pathlib.Path]:
     """The files of a report with two stories and a race."""
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stories_report, "stories", pages.stories)
+        patch.setattr(stories, "stories", pages.stories)
         pages.fill(folder)
         yield folder
 
@@ -127,38 +126,27 @@ def test_the_misprints_have_the_numbers_of_the_findings(text: str) -> None:
     assert len(read.all("math")) >= 2 * len(found)
 
 
-@pytest.mark.slow
-def test_every_misprint_of_the_audit_has_its_formulas() -> None:
-    claims = [claim for claim in chapters.claims() if claim.verdict == CORRECTED]
-    assert {(claim.equation, claim.quantity) for claim in claims} == set(FORMULAS)
+MISPRINTS = [row.misprint for row in paper.rows() if row.misprint]
 
 
-@pytest.mark.parametrize("claim", FORMULAS)
-def test_what_is_not_marked_in_a_formula_is_the_same_in_both(claim: tuple[str, str]) -> None:
-    def unmarked(latex: str) -> str:
-        """The formula without what is marked as different; braces in it are balanced."""
-        while (start := latex.find(r"\textcolor{differs}{")) >= 0:
-            end = opened = start + len(r"\textcolor{differs}{")
-            depth = 1
-            while depth:
-                depth += {"{": 1, "}": -1}.get(latex[end], 0)
-                end += 1
-            assert end > opened + 1
-            latex = latex[:start] + latex[end:]
-        return re.sub(r"\\\\|\s|\{\}", "", latex)
-
-    printed, right = FORMULAS[claim].printed, FORMULAS[claim].right
-    assert printed != right
-    assert unmarked(printed) == unmarked(right)
-    assert 'class="differs"' in formulas.mathml(right)
+def test_each_thing_that_is_wrong_has_its_kind_and_the_paper_s_words(text: str) -> None:
+    read = Page.of(text)
+    kinds = [element.text for element in read.all("span") if element.attributes.get("class") == "kind"]
+    assert kinds == [f"{each.kind} of {each.of}" if each.of else each.kind for each in MISPRINTS]
+    assert "consequence of (39)" in kinds
+    quotes = [row.quote for row in paper.rows() if row.misprint and row.quote]
+    assert [element.text for element in read.all("blockquote")] == [f"“{quote}”" for quote in quotes]
+    assert "18 misprints,\n  4 consequences of another misprint, and 3 approximations" in text
 
 
-def test_formulas_are_mathml_in_which_nothing_is_left_of_latex() -> None:
-    for formula in FORMULAS.values():
-        for latex in (formula.printed, formula.right):
-            text = re.sub("<[^>]*>", "", formulas.mathml(latex))
-            assert "\\" not in text
-            assert not re.search("[{}_^]", text)
+@pytest.mark.parametrize("misprint", MISPRINTS, ids=lambda misprint: misprint.about)
+def test_formulas_are_mathml_with_what_differs_marked_and_nothing_left_of_latex(misprint: Misprint) -> None:
+    assert misprint.printed != misprint.right
+    for latex in (misprint.printed, misprint.right):
+        assert not re.search("[<|>]", latex)
+        shown = re.sub("<[^>]*>", "", formulas.mathml(latex))
+        assert not re.search(r"[\\{}_^]", shown)
+    assert 'class="differs"' in formulas.mathml(misprint.right)
 
 
 def test_letters_of_the_audit() -> None:
@@ -174,7 +162,7 @@ def test_numbers() -> None:
 def test_the_verdict_has_its_tables_and_what_failed(text: str) -> None:
     read = Page.of(text)
     (verdict,) = (element for element in read.all("p") if element.attributes.get("class", "").startswith("verdict"))
-    assert verdict.text.startswith("1 of 2 checks and 26 of 26 rows of the audit passed")
+    assert verdict.text.startswith("1 of 2 checks and 25 of 25 rows of the audit passed")
     assert verdict.attributes["class"] == "verdict failed"
     cells = [element.text for element in read.all("td")]
     assert {"fine", "a <stub>", "φ₀²"} <= set(cells)

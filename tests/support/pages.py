@@ -8,13 +8,12 @@ from functools import partial
 import numpy as np
 from PIL import Image
 
-from mjbeer import exact, frozen
+from mjbeer import exact, frozen, paper
 from mjbeer.drawing import encoder
 from mjbeer.drawing.film import Take
-from mjbeer.paper.audit.claim import CORRECTED, Finding
-from mjbeer.paper.misprints import FORMULAS
-from mjbeer.paper.stories import report as stories_report
-from mjbeer.paper.stories.story import Story
+from mjbeer.paper import stories as paper_stories
+from mjbeer.paper.row import CORRECTED, Finding
+from mjbeer.paper.stories import Story
 from mjbeer.report import films
 from mjbeer.studies.rows import Result
 from mjbeer.studies.validation.run import Validation
@@ -30,10 +29,10 @@ def validation(misprints: slice = slice(None)) -> Validation:
     checks = [Result("stubs", name, "a <stub>", 1e-3, "rad", "phi_0^2", error) for name, error in errors.items()]
     findings = [
         Finding(
-            equation, quantity, CORRECTED, "a witness", printed=0.0127 * (place + 1), right=1.7e-9 * (place + 1),
+            row.equation, row.quantity, CORRECTED, "a witness", 0.0127 * (place + 1), right=1.7e-9 * (place + 1),
             bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
         )
-        for place, (equation, quantity) in enumerate(FORMULAS)
+        for place, row in enumerate(row for row in paper.rows() if row.misprint)
     ]  # fmt: skip
     return Validation(checks, findings[misprints])
 
@@ -50,9 +49,9 @@ def stories() -> list[Story]:
 def fill(folder: pathlib.Path, encoded: bool = False) -> None:
     """Write the files that a page shows into a folder: films are `encoded`, or else a few letters."""
     (folder / "paper").mkdir()
-    for name in ("letters", *(story.name for story in stories_report.stories())):
+    for name in ("letters", *(story.name for story in paper_stories.stories())):
         (folder / "paper" / f"{name}.svg").write_text(PLOT)
-    for name in (*films.FILMS, *(f"paper/{story.name}" for story in stories_report.stories() if story.film)):
+    for name in (*films.FILMS, *(f"paper/{story.name}" for story in paper_stories.stories() if story.film)):
         if encoded:
             width, height, fps = SIZE
             shades = np.linspace(0, 255, fps).astype(np.uint8)

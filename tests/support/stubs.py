@@ -10,15 +10,14 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from mjbeer import exact, sliding
+from mjbeer import exact, paper, sliding
 from mjbeer.drawing import encoder, opengl, studio, video, viewer
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
-from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import confirmed
-from mjbeer.paper.stories import report
-from mjbeer.paper.stories.story import Story
+from mjbeer.paper import stories
+from mjbeer.paper.row import Bound, Witness
+from mjbeer.paper.stories import Story
 from mjbeer.studies.benchmark import measure, peers, sweeps
 from mjbeer.studies.benchmark.points import Curve
 from mjbeer.studies.rows import Row
@@ -70,15 +69,16 @@ def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
     made = [Row("stubs", name, lambda e=error: e, "a stub", 1e-3, "rad", "none") for name, error in errors.items()]
     monkeypatch.setattr(validation, "rows", lambda: made)
-    monkeypatch.setattr(chapters, "claims", list)
+    monkeypatch.setattr(paper, "rows", list)
 
 
 def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     """Make the audit one of confirmed equations with an error each, and the bound 1e-3."""
-    claims = [
-        confirmed(name, "a stub", "none", lambda e=error: (1.0 + e, -1.0), 1e-3, "") for name, error in errors.items()
+    rows = [
+        Claim(name, "a stub", Witness("none", lambda error=error: error), Bound(1e-3, ""), lambda e: (1.0 + e, -1.0))
+        for name, error in errors.items()
     ]
-    monkeypatch.setattr(chapters, "claims", lambda: claims)
+    monkeypatch.setattr(paper, "rows", lambda: rows)
 
 
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:
@@ -118,7 +118,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
     monkeypatch.setattr(studio, "produce", produce)
     monkeypatch.setattr(opengl, "problem", lambda: None)
     monkeypatch.setattr(encoder, "problem", lambda: None)
-    monkeypatch.setattr(report, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
+    monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     monkeypatch.setattr(viewer, "require_window", lambda: None)
     monkeypatch.setattr(viewer, "_play", lambda player: None)
     for name in ("render", "save_frame"):

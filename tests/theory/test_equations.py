@@ -5,19 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from mjbeer import Scene, frozen, hoop
-from mjbeer.paper.audit.claim import miss
-from mjbeer.paper.equations import massive_can
-from mjbeer.paper.equations.frozen import eq_52
-from mjbeer.paper.equations.pendulum import eq_57, eq_58, eq_60, eq_61, printed_61
-from mjbeer.paper.equations.sliding import eq_16
-from mjbeer.paper.letters import Quantities
+from mjbeer import Scene, frozen, hoop, paper
+from mjbeer.paper.row import Motion, miss
 from mjbeer.theory.equations import accelerations, rolling_forces
 from tests.support import lagrange
 from tests.support.scenes import SCENES
 
 # Sums of a few terms, compared with the largest of them.
 ROUNDING = 5e-15
+ROWS = {row.equation: row for row in paper.rows() if "equation of motion" in row.quantity}
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
@@ -27,7 +23,7 @@ def test_motion_obeys_the_corrected_equations(scene: Scene, phi: float, rate: fl
     u2, phi2 = (float(each) for each in accelerations(scene, phi, rate, 0.0))
     a, b, sin, cos = scene.can.radius, scene.load.offset, math.sin(phi), math.cos(phi)
     theta = scene.incline + phi
-    q = Quantities.of(
+    q = Motion.of(
         scene, s=0, s_dot=0, s_ddot=u2 - b * (cos * phi2 - sin * rate**2), u=0, u_dot=0, u_ddot=u2, phi=phi,
         phi_dot=rate, phi_ddot=phi2, sin_phi=sin, cos_phi=cos, sin_theta=math.sin(theta), cos_theta=math.cos(theta),
     )  # fmt: skip
@@ -39,19 +35,19 @@ def test_motion_obeys_the_corrected_equations(scene: Scene, phi: float, rate: fl
         lever = q.m * a * b
         assert miss((resists * phi2, -2 * lever * cos * phi2, lever * sin * rate**2, *pull)) < ROUNDING
         if scene.can.mass == 0:  # then it is (52)
-            assert miss(eq_52(q)) < ROUNDING
+            assert miss(ROWS["(52)"].terms(q)) < ROUNDING
         return
-    for equation in (massive_can.eq_46, massive_can.eq_47, massive_can.eq_48, massive_can.eq_49):
-        assert miss(equation(q)) < ROUNDING
-    assert miss(massive_can.printed_47(q)) > 0.01
+    for equation in ("(46)", "(47)", "(48)", "(49)"):
+        assert miss(ROWS[equation].terms(q)) < ROUNDING
+    assert miss(ROWS["(47)"].printed(q)) > 0.01
     if scene.can.mass == 0:
-        assert miss(eq_16(q)) < ROUNDING
+        assert miss(ROWS["(16)"].terms(q)) < ROUNDING
     else:
-        assert miss(massive_can.printed_49(q)) > 1e-3
+        assert miss(ROWS["(49)"].printed(q)) > 1e-3
     if scene.load.inertia == 0:
-        for equation in (eq_57, eq_58, eq_60, eq_61):
-            assert miss(equation(q)) < ROUNDING
-        assert miss(printed_61(q)) > 1e-3
+        for equation in ("(57)", "(58)", "(60)", "(61)"):
+            assert miss(ROWS[equation].terms(q)) < ROUNDING
+        assert miss(ROWS["(61)"].printed(q)) > 1e-3
 
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), frozen(-0.1), hoop(0.1)])

@@ -148,9 +148,9 @@ class Paper:
     def run(self) -> int:
         """Run the command and return its exit status, 0."""
         from mjbeer.drawing import opengl
-        from mjbeer.paper.stories import report
+        from mjbeer.paper import stories
 
-        missing = report.write(self.output, self.films, STDERR)
+        missing = stories.write(self.output, self.films, STDERR)
         say(f"the stories are in {self.output / 'stories.md'}")
         if missing:
             say(opengl.missing(missing), "yellow")

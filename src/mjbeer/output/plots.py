@@ -91,6 +91,11 @@ def chart(
                     temporary.write_text(_lighter(temporary.read_text(encoding="utf-8")), encoding="utf-8")
 
 
+def label(axes: Axes, x: str, y: str, title: str = "", **settings: Any) -> None:
+    """Name both axes and the panel, and make other settings of `Axes.set`."""
+    axes.set(xlabel=x, ylabel=y, title=title, **settings)
+
+
 def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **style: Any) -> None:
     """Write a note or the name of a line, `offset` [points] to the right of and above a `place` in the data."""
     style = {"color": GREY, "fontsize": 9.5, "va": "center"} | style

@@ -1,1 +1,14 @@
-"""K. T. McDonald's paper on a can of beer: its equations, an audit of them, and its scenarios as plots and films."""
+"""K. T. McDonald's paper: equations and statements as rows that are measured, its scenarios as plots and films."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mjbeer.paper.row import Row
+
+
+def rows() -> "list[Row]":
+    """Return all rows of the audit in the order of the paper's sections; nothing is simulated before they measure."""
+    from mjbeer.paper import frozen, hopping, massive_can, oscillation, pendulum, segment, sliding
+
+    chapters = (sliding, oscillation, segment, massive_can, frozen, hopping, pendulum)
+    return [row for chapter in chapters for row in chapter.ROWS]

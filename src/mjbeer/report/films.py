@@ -9,7 +9,7 @@ from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.overlay.look import Look
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Order
-from mjbeer.paper.stories import report as stories_report
+from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
@@ -86,7 +86,7 @@ def orders(folder: pathlib.Path, quick: bool) -> list[Order]:
     """Return the films to be drawn into a folder: those of the scenes and, unless it must be quick, of the stories."""
     size = _SMALL if quick else _LARGE
     scenes = [Order(film, folder / f"{name}.mp4", *size) for name, film in FILMS.items()]
-    return scenes if quick else scenes + stories_report.orders(folder / "paper")
+    return scenes if quick else scenes + stories.orders(folder / "paper")
 
 
 def not_drawn(names: Sequence[str]) -> str:

@@ -4,15 +4,16 @@ import json
 import math
 import pathlib
 import re
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from mjbeer.paper.audit.claim import CORRECTED, Finding
-from mjbeer.paper.misprints import FORMULAS
-from mjbeer.paper.stories import report as stories_report
+from mjbeer import paper
+from mjbeer.paper import stories
+from mjbeer.paper.row import Finding, Row
 from mjbeer.report import precision, stability
 from mjbeer.report.embed import data_uri, plotting
 from mjbeer.report.films import COMMANDS, FILMS, RACES
@@ -78,7 +79,9 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         benchmark=benchmark,
         maps=maps,
         groups=groups,
-        misprints=[(finding, FORMULAS[finding.equation, finding.quantity]) for finding in _misprints(validation)],
+        misprints=(misprints := _misprints(validation)),
+        kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
+        quoted=[row for row in paper.rows() if row.quote and not row.misprint],
         findings=len(validation.findings),
         stories=_stories(folder, quick, LIMIT - sum(_size(film) for film in films.values())),
         sentence=validation.sentence,
@@ -126,7 +129,7 @@ def _stories(folder: pathlib.Path, quick: bool, room: float) -> list[Shown]:
     """
     command = "mjbeer paper" if quick else "mjbeer paper --films"
     shown = []
-    for story in stories_report.stories():
+    for story in stories.stories():
         plot, video = (folder / "paper" / f"{story.name}.{kind}" for kind in ("svg", "mp4"))
         picture = data_uri(plot)
         room -= len(picture)
@@ -153,11 +156,11 @@ def _size(film: Shown) -> int:
     return len(film.video) + len(film.picture)
 
 
-def _misprints(validation: Validation) -> list[Finding]:
-    """Return the findings on misprints, in the order of the formulas, which is the paper's."""
-    order = list(FORMULAS)
-    found = [finding for finding in validation.findings if finding.verdict == CORRECTED]
-    return sorted(found, key=lambda finding: order.index((finding.equation, finding.quantity)))
+def _misprints(validation: Validation) -> list[tuple[Finding, Row]]:
+    """Return the findings of what is wrong in the paper, each with its row."""
+    rows = {(row.equation, row.quantity): row for row in paper.rows() if row.misprint}
+    named = [((finding.equation, finding.quantity), finding) for finding in validation.findings]
+    return [(finding, rows[name]) for name, finding in named if name in rows]
 
 
 def _marked(cell: str) -> Markup:

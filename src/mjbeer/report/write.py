@@ -6,7 +6,7 @@ from rich.console import Console
 
 from mjbeer.drawing import studio
 from mjbeer.output import files
-from mjbeer.paper.stories import report as stories_report
+from mjbeer.paper import stories
 from mjbeer.report import films, page
 from mjbeer.studies.validation.run import Validation, validate
 
@@ -30,7 +30,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         validation = validate(console)
         files.write(folder / "validation.json", validation.json())
         not_drawn = films.not_drawn([str(order.path.relative_to(folder)) for order in orders])
-        stories_report.write(folder / "paper", False, console)
+        stories.write(folder / "paper", False, console)
         console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
         if not_drawn:
             for order in orders:  # those of an earlier report are not of this one

@@ -12,8 +12,8 @@ from scipy.interpolate import CubicHermiteSpline
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, Rolling
 from mjbeer.model.state import read, write
-from mjbeer.paper.equations.frozen import frequency_55
-from mjbeer.paper.equations.sliding import frequency_10
+from mjbeer.paper.frozen import frequency_55
+from mjbeer.paper.sliding import frequency_10
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.rows import Row

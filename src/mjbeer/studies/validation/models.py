@@ -12,7 +12,7 @@ from mjbeer.model import looks
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, supported
 from mjbeer.model.state import start
-from mjbeer.paper.scenarios import TOP, fall_from_top
+from mjbeer.paper.witness import TOP, fall_from_top
 from mjbeer.simulation.simulate import simulate
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.convergence import observed_order

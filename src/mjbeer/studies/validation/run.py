@@ -9,9 +9,9 @@ from typing import Any
 
 from rich.console import Console
 
+from mjbeer import paper
 from mjbeer.output.terminal import Table, progress_bar
-from mjbeer.paper.audit import chapters
-from mjbeer.paper.audit.claim import CONFIRMED, CORRECTED, LIMIT, Finding
+from mjbeer.paper.row import CONFIRMED, CORRECTED, LIMIT, Finding
 from mjbeer.studies.rows import FAILED, PASSED, Result, Row, table, told
 from mjbeer.studies.validation import damped, models, motions
 
@@ -97,7 +97,7 @@ def rows() -> list[Row]:
 
 def validate(console: Console) -> Validation:
     """Measure every row and every claim, and return the results; `console` shows a progress bar."""
-    listed, claims = rows(), chapters.claims()
+    listed, claims = rows(), paper.rows()
     results, findings = [], []
     with progress_bar(console, len(listed) + len(claims)) as begin:
         for row in listed:

@@ -1,17 +1,15 @@
-"""Stories of real liquids, which neither slide freely nor are frozen: what footnote 4 of the paper leaves open."""
+"""Real liquids, which neither slide freely nor are frozen: what footnote 4 of the paper leaves open."""
 
 import functools
 import math
 import pathlib
-from collections.abc import Iterator
 
 import numpy as np
-from matplotlib.axes import Axes
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
-from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_below, note, ticks
-from mjbeer.paper.stories.story import Story
+from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, label, name_below, note, ticks
+from mjbeer.paper.segment import area_33
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.exact import exact
@@ -39,37 +37,11 @@ _ROSCH = 10.0
 """Volume [mL] near which Rosch (The College of Wooster, 2006) saw a can accelerate less."""
 
 
-def stories() -> Iterator[Story]:
-    """Yield the stories of this chapter."""
-    yield Story(
-        "real-beer",
-        "What footnote 4 leaves open. Without friction a nearly empty can has a little more than half of g sin α (wide "
-        "line), but in Jackson's experiment it was slower. The friction of water on the wall, with no parameter "
-        "fitted, makes it slower, most of all about 1 mL of it on a gentle incline. A nearly full can still comes near "
-        "g sin α. Right: the air takes a few hundredths more from a nearly empty can, and little from a full one. "
-        "Grey: all of the water could go round with the wall as a film, so that the lines are estimates there.",
-        draw=_draw_real_beer,
-    )
-    yield Story(
-        "liquids",
-        "From frictionless to frozen. A half-full can without friction goes ever faster. With a real liquid it comes "
-        "to a terminal speed (dashed), the lower the thicker the liquid: 4.2 m/s for water, 4 cm/s for honey. With ice "
-        "it rocks about its equilibrium and does not go anywhere. Glycerol and honey coat the can, so that their "
-        "speeds are no better than an order of magnitude.",
-        draw=_draw_liquids,
-    )
-
-
-def fill_of(volume: float, can: Can) -> float:
-    """Return the fill h/2a at which a can has a `volume` [m^3] of beer in it."""
-    area = volume / (can.radius**2 * can.length)  # eq. (33), over a^2
-    half_angle = float(brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15))
-    return math.sin(half_angle / 2) ** 2
-
-
 def water_in(volume: float, incline: float, friction: bool = True, drag: float = 0.0) -> Scene:
     """Return `CAN` with a `volume` [mL] of water in it on an `incline` [rad], with or without the water's friction."""
-    fill = fill_of(1e-6 * volume, CAN)
+    area = 1e-6 * volume / (CAN.radius**2 * CAN.length)
+    half_angle = float(brentq(lambda beta: area_33(beta) - area, 0, math.pi, xtol=1e-15))
+    fill = math.sin(half_angle / 2) ** 2
     damping = liquid_in("water", incline, fill, CAN).damping if friction else 0.0
     return sliding(incline, fill, CAN, LIQUIDS["water"].density, damping=damping, drag=drag)
 
@@ -105,12 +77,6 @@ def _simulated(incline: float, friction: bool = True, drag: float = 0.0) -> list
     return [over_first_metre(let_go(scene, times_of(scene))) for scene in scenes]
 
 
-def _exact(incline: float, friction: bool = True, drag: float = 0.0) -> list[float]:
-    """Return those of a few volumes by exact theory."""
-    scenes = [water_in(volume, incline, friction, drag) for volume in _FEW]
-    return [over_first_metre(exact(scene, times_of(scene), -incline)) for scene in scenes]
-
-
 def film_holds(incline: float) -> float:
     """Return the volume [mL] of water that a film on the wall can hold at the end of the first metre.
 
@@ -121,56 +87,48 @@ def film_holds(incline: float) -> float:
     return 1e6 * FILM_LOAD * math.sqrt(water.viscosity * speed / gravity) * CAN.radius * CAN.length
 
 
-def _draw_real_beer(path: pathlib.Path) -> None:
+def draw_first_metre(path: pathlib.Path) -> None:
+    """Draw the mean acceleration over the first metre over the water in the can, on three inclines and with air."""
     title = "The friction of a little water makes a can slower than an empty one"
     subtitle = f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; nothing is fitted"
     with chart(path, 1, 2, width=13, height=6, title=title, subtitle=subtitle) as (inclines, air):
         steepest = math.radians(_INCLINES[-1])
         free = [water_in(float(volume), steepest, friction=False) for volume in _VOLUMES]
-        full = free[0].gravity * math.sin(steepest)
-        footnote = [scene.acceleration() / full for scene in free]
+        footnote = [scene.acceleration() / (scene.gravity * math.sin(steepest)) for scene in free]
         for axes in (inclines, air):
             axes.axvspan(_VOLUMES[0], film_holds(steepest), color="#EFEFEF", zorder=0)
             axes.axhline(0.5, **REFERENCE)
             axes.axhline(1.0, **REFERENCE)
             axes.plot(_VOLUMES, footnote, label="without friction, beer that does not swing: footnote 4", **THEORY)
-            axes.set(
-                xscale="log",
-                xlim=(_VOLUMES[0], 400),
-                ylim=(0.31, 1.08),
-                xlabel="water in the can [mL]",
-                ylabel="mean acceleration over the first metre / g sin α",
-            )
+            axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.31, 1.08))
             ticks(axes.xaxis, (0.3, 1, 3, 10, 30, 100, 350))
         for degrees, colour in zip(_INCLINES, (COLOURS[0], COLOURS[2], COLOURS[1]), strict=True):
-            incline = math.radians(degrees)
-            inclines.plot(
-                _VOLUMES, _simulated(incline, True, 0.0), color=colour, label=f"MuJoCo: friction of water, {degrees:g}°"
-            )
-            inclines.plot(_FEW, _exact(incline), ".", color="black", label="exact theory of the same")
-        inclines.set(title="On three inclines, without air")
-        _mark(inclines)
+            incline, name = math.radians(degrees), f"MuJoCo: friction of water, {degrees:g}°"
+            inclines.plot(_VOLUMES, _simulated(incline, True, 0.0), color=colour, label=name)
+            theory = [water_in(volume, incline) for volume in _FEW]
+            exactly = [over_first_metre(exact(scene, times_of(scene), -incline)) for scene in theory]
+            inclines.plot(_FEW, exactly, ".", color="black", label="exact theory of the same")
         for name, friction, drag, line, colour in (
             ("MuJoCo: air alone, 10°", False, DRAG, ":", COLOURS[3]),
             ("MuJoCo: friction of water, 10°", True, 0.0, "-", COLOURS[1]),
             ("MuJoCo: friction of water, and air, 10°", True, DRAG, "--", COLOURS[6]),
         ):
             air.plot(_VOLUMES, _simulated(steepest, friction, drag), line, color=colour, label=name)
-        air.set(title=f"What the air adds, at {in_degrees(steepest)}")
+        ylabel = "mean acceleration over the first metre / g sin α"
+        label(inclines, "water in the can [mL]", ylabel, "On three inclines, without air")
+        label(air, "water in the can [mL]", ylabel, f"What the air adds, at {in_degrees(steepest)}")
+        inclines.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
+        note(inclines, "Rosch: slower near 10 mL", (_ROSCH, 0.42), (6, 0))
+        note(inclines, "Jackson et al.: a nearly full can comes near g sin α", (400, 1.035), (0, 0), ha="right")
+        note(inclines, "Jackson et al.: a nearly empty can\nis slower than ½ g sin α", (0.33, 0.35), (0, 0))
+        note(inclines, "hoop: ½", (400, 0.5), (0, 7), ha="right")
+        film = "the wall could carry all of\nthe water round as a film:\nan estimate only"
+        note(inclines, film, (0.33, 0.72), (0, 0))
         name_below([inclines, air], 3)
 
 
-def _mark(axes: Axes) -> None:
-    """Write what was measured, and where the theory of a lump ends, beside the lines."""
-    axes.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
-    note(axes, "Rosch: slower near 10 mL", (_ROSCH, 0.42), (6, 0))
-    note(axes, "Jackson et al.: a nearly full can comes near g sin α", (400, 1.035), (0, 0), ha="right")
-    note(axes, "Jackson et al.: a nearly empty can\nis slower than ½ g sin α", (0.33, 0.35), (0, 0))
-    note(axes, "hoop: ½", (400, 0.5), (0, 7), ha="right")
-    note(axes, "the wall could carry all of\nthe water round as a film:\nan estimate only", (0.33, 0.72), (0, 0))
-
-
-def _draw_liquids(path: pathlib.Path) -> None:
+def draw_liquids(path: pathlib.Path) -> None:
+    """Draw the speed of half-full cans with real liquids over time, with their terminal speeds."""
     times = np.linspace(0, 6, 601)
     scenes = {"no friction": sliding()} | {
         name: sliding(density=LIQUIDS[name].density, damping=liquid_in(name).damping) for name in NAMES
@@ -187,10 +145,9 @@ def _draw_liquids(path: pathlib.Path) -> None:
                 if scene.dissipates:
                     axes.axhline(scene.terminal_speed(), color=colour, linestyle="--", linewidth=1)
         fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
-        fast.set(xlim=(0, 6), ylim=(-0.3, 5), title="All of them")
-        slow.set(xlim=(0, 2), ylim=(-0.2, 0.6), title="Glycerol, honey and ice, seen closer")
-        for axes in (fast, slow):
-            axes.set(xlabel="time t [s]", ylabel="speed of the can down the incline [m/s]")
+        ylabel, closer = "speed of the can down the incline [m/s]", "Glycerol, honey and ice, seen closer"
+        label(fast, "time t [s]", ylabel, "All of them", xlim=(0, 6), ylim=(-0.3, 5))
+        label(slow, "time t [s]", ylabel, closer, xlim=(0, 2), ylim=(-0.2, 0.6))
         name_below([fast, slow], 5)
 
 

@@ -1,0 +1,142 @@
+"""Appendix A.4 of the paper: a hoop of mass M with a point mass m on its rim, which falls from the top and may hop.
+
+The paper has no equations for it. The ones here hold while the hoop rolls without slipping on level ground. `ratio` is
+M/m, and phi [rad] is 0 where the point mass is at the bottom.
+"""
+
+import itertools
+import math
+from functools import cache, partial
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+
+from mjbeer.model.setting import Rolling
+from mjbeer.paper.row import Bound, Limit, Row, Witness
+from mjbeer.paper.witness import CONTACT, GRIP, TOP
+from mjbeer.simulation.simulate import simulate
+from mjbeer.theory.named import hoop
+from mjbeer.theory.scene import Scene
+
+RATIO = 1 / 20
+"""M/m of the hoop that hops."""
+MU = 0.8
+"""Friction coefficient of the hoop that skids: the kinetic one in the paper's last figure."""
+
+
+def rate(ratio: float, phi: float) -> float:
+    """Return phi_dot^2 a/g of a hoop that fell from rest at the top, phi = pi.
+
+    Energy is conserved: (2 M + 4 m sin^2(phi/2)) a^2 phi_dot^2/2 = m g a (1 + cos(phi)).
+    """
+    return 2 * math.cos(phi / 2) ** 2 / (ratio + 2 * math.sin(phi / 2) ** 2)
+
+
+def acceleration(ratio: float, phi: float) -> float:
+    """Return phi_ddot a/g, which is half the derivative of `rate` by phi."""
+    return -math.sin(phi) * (1 + ratio / 2) / (ratio + 2 * math.sin(phi / 2) ** 2) ** 2
+
+
+def normal(ratio: float, phi: float) -> float:
+    """Return N/(m g) = 1 + M/m + (sin(phi) phi_ddot + cos(phi) phi_dot^2) a/g."""
+    return 1 + ratio + math.sin(phi) * acceleration(ratio, phi) + math.cos(phi) * rate(ratio, phi)
+
+
+def friction(ratio: float, phi: float) -> float:
+    """Return F/(m g), positive uphill or, on level ground, against the rolling.
+
+    F/(m g) = -((1 + M/m) phi_ddot - cos(phi) phi_ddot + sin(phi) phi_dot^2) a/g.
+    """
+    turning = acceleration(ratio, phi)
+    return -((1 + ratio) * turning - math.cos(phi) * turning + math.sin(phi) * rate(ratio, phi))
+
+
+def _least_normal(ratio: float) -> tuple[float, float]:
+    """Return the least N/(m g) during the fall, and the phi [rad] of it."""
+    least = minimize_scalar(lambda phi: normal(ratio, phi), bounds=(0.3, 3.1), options={"xatol": 1e-9})
+    return float(least.fun), float(least.x)
+
+
+def lift_off(ratio: float) -> float:
+    """Return the angle from the top [rad] at which N = 0; NaN if N stays positive."""
+    least, place = _least_normal(ratio)
+    if least >= 0:
+        return math.nan
+    return math.pi - float(brentq(lambda phi: normal(ratio, phi), place, math.pi, xtol=1e-14))
+
+
+def slip(ratio: float, mu: float) -> float:
+    """Return the angle from the top [rad] at which |F| first reaches mu N; NaN if it never does."""
+
+    def margin(phi: float) -> float:
+        return mu * normal(ratio, phi) - abs(friction(ratio, phi))
+
+    for before, after in itertools.pairwise(math.pi * (1 - i / 2000) for i in range(1, 2000)):
+        if margin(after) < 0:
+            return math.pi - float(brentq(margin, after, before, xtol=1e-14))
+    return math.nan
+
+
+@cache
+def _threshold() -> float:
+    """Return the M/m below which the least N is negative."""
+    return float(brentq(lambda ratio: _least_normal(ratio)[0], 0.05, 0.1, xtol=1e-14))
+
+
+def _light_hoop() -> Scene:
+    return hoop(hoop_mass=0.2 * RATIO, load_mass=0.2)
+
+
+@cache
+def _event(friction: float) -> float:
+    """Return the angle from the top [rad] at which a falling hoop lifts off if it cannot slip, or else skids.
+
+    It skids where the rim slides faster than 1e-5 of the axis's top speed.
+    """
+    run = simulate(_light_hoop(), 0.5, TOP, rolling="contact", timestep=2e-5, friction=friction)
+    if friction == GRIP:
+        angle = run.takeoff()
+        return math.nan if angle is None else angle
+    rim = np.abs(run.u_dot - run.scene.can.radius * run.roll_dot)
+    return math.pi - float(run.phi[np.argmax(rim > 1e-5 * np.abs(run.u_dot).max())])
+
+
+@cache
+def _height(rolling: Rolling) -> np.ndarray:
+    """Return how high the axis of a hoop that starts with a push is, in radii."""
+    run = simulate(_light_hoop(), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)
+    return 1 + np.maximum(run.lift / run.scene.can.radius, 0.0)
+
+
+def _friction_at_lift_off(ratio: float) -> float:
+    return abs(friction(ratio, math.pi - lift_off(ratio)))
+
+
+_THEORY = "exact theory"
+
+# fmt: off
+ROWS = (
+    Row("sec. A.4", "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
+        Witness(_THEORY, partial(lift_off, 1e-9)), Bound(1e-8, "M/m"), lambda angle: (math.pi / 2, -angle),
+        limit=Limit(0.091, partial(lift_off, RATIO)),
+        quote="The hoop lifts off the ground when the radius vector to the weight becomes horizontal."),
+    Row("sec. A.4", "angle of lift-off at M/m = 1/20, by theory 99.0 degrees", Witness(CONTACT, partial(_event, GRIP)),
+        Bound(5e-3, "penetration of the contact, which unloads late"), lambda angle: (angle, -lift_off(RATIO)),
+        quote="the can leaves the surface briefly"),
+    Row("sec. A.4", "Pritchett: hops from rest below M/m = 1/13",
+        Witness(_THEORY, _threshold), Bound(1e-9, "the search for the least N"), lambda ratio: (1 / 13, -ratio),
+        quote="valid only if the mass of the unloaded hoop is nonzero"),
+    Row("sec. A.4", "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
+        Witness(CONTACT, partial(_event, MU)), Bound(5e-3, "what counts as skidding, and the push that starts it"),
+        lambda angle: (angle, -slip(RATIO, MU)), quote="In actual practice the hoop skids first."),
+    Row("sec. A.4", "rolling without slipping cannot hop: beyond, held by friction alone; within, by a constraint",
+        Witness(CONTACT, partial(_height, "equality")), Bound(0.0, "it hops or not"),
+        lambda height: (height, -np.ones_like(height)), limit=Limit(0.58, partial(_height, "contact")),
+        quote="A rigid can that is somehow constrained to roll without slipping cannot hop."),
+    Row("footnote 10", "nothing pushes at 90 degrees: beyond, the friction at lift-off for M/m = 1/20; within, 1e-9",
+        Witness(_THEORY, partial(_friction_at_lift_off, 1e-9)), Bound(1e-8, "M/m"),
+        lambda force: (1.0, force, -1.0),  # the error is a share of m g
+        limit=Limit(0.146, partial(_friction_at_lift_off, RATIO)),
+        quote="valid only if the mass of the unloaded hoop is nonzero, in contrast to Littlewood's idealization"),
+)
+# fmt: on

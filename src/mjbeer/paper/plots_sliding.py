@@ -1,0 +1,303 @@
+"""Plots of loads that slide in their cans: sections 2 and 3 of the paper, and appendix B."""
+
+import math
+import pathlib
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from matplotlib.axes import Axes
+from scipy.optimize import brentq
+
+from mjbeer.model.setting import DOP853
+from mjbeer.output.plots import (
+    COLOURS,
+    GREY,
+    PRINTED,
+    REFERENCE,
+    SIMULATED,
+    THEORY,
+    UNPHYSICAL,
+    chart,
+    label,
+    name_below,
+    note,
+    ticks,
+)
+from mjbeer.paper import oscillation, segment
+from mjbeer.paper.oscillation import SLOW
+from mjbeer.paper.pendulum import heavy_bob, light_bob
+from mjbeer.paper.row import Letters
+from mjbeer.paper.witness import DECADE, loop
+from mjbeer.simulation.simulate import simulate
+from mjbeer.theory.can import Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.trajectory import Trajectory, mean_acceleration
+
+_SWING = math.radians(30)
+"""Amplitude [rad] of the swing that shows the hesitation: wide enough to be seen in the can's way."""
+HESITATION = partial(simulate, sliding(), 1.0, _SWING, integrator=DOP853, times=np.linspace(0, 1, 501))
+LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
+WIDE_PENDULUM = partial(simulate, pendulum(), 1.5, 1.0, integrator=DOP853)
+"""The motions of films: beer loops so slowly here that its can stays on the incline."""
+_FILL = "fill: height of the beer / can's diameter"
+_METAL, _HOOP = Can.sheet_metal(), Can.hoop(mass=0.05)
+_CANS = {
+    "massless can": Can.massless(),
+    f"aluminium can of {1e3 * _METAL.mass:.2g} g": _METAL,
+    f"hoop of {1e3 * _HOOP.mass:g} g": _HOOP,
+}
+"""Cans that the plots compare, by the name in their legends."""
+
+
+def let_go(degrees: float) -> Trajectory:
+    """Return one second of beer let go at an angle to the incline."""
+    return simulate(sliding(), 1.0, math.radians(degrees), integrator=DOP853, timestep=1e-3)
+
+
+def draw_trivial(path: pathlib.Path) -> None:
+    """Draw φ, u and s of beer that is let go along the incline, and at 60 degrees to it."""
+    runs = {degrees: let_go(degrees) for degrees in (0.0, 60.0)}
+    scene, times = runs[0.0].scene, runs[0.0].time
+    title = "However the beer swings, its centre of mass moves down the incline evenly"
+    with chart(path, 1, 3, width=12, height=4.6, title=title, subtitle=in_words(scene)) as (angle, axis, centre):
+        for panel in (axis, centre):
+            panel.plot(times, scene.acceleration() * times**2 / 2, label="exact theory: ½ g sin α t²", **THEORY)
+        for (degrees, run), line, colour in zip(runs.items(), ("-", "--"), COLOURS[::2], strict=False):
+            name = f"MuJoCo, beer let go at φ = {degrees:g}°"
+            angle.plot(run.time, np.degrees(run.phi), line, color=colour, label=name)
+            axis.plot(run.time, run.u - run.u[0], line, color=colour)
+            centre.plot(run.time, run.u - scene.load.offset * np.sin(run.phi), line, color=colour)
+        label(angle, "time t [s]", "φ, beer's surface to the incline [°]", "The beer's tilt")
+        label(axis, "time t [s]", "u, distance down the incline [m]", "The can's axis")
+        label(centre, "time t [s]", "s, distance down the incline [m]", "The beer's centre of mass")
+        name_below((angle, axis), 3)
+
+
+def draw_hesitation(path: pathlib.Path) -> None:
+    """Draw how far a can is ahead of one that accelerates evenly, and eq. (25) as printed."""
+    run = HESITATION()
+    scene, times, b = run.scene, run.time, run.scene.load.offset
+    even = scene.acceleration() * times**2 / 2
+    # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2 omega t) is -1.
+    printed = b * (-(_SWING**2) / 4 - _SWING**2 * np.cos(2 * scene.frequency() * times) / 2)
+    title, start = "The can hesitates once in every swing of its beer", f"beer let go at φ₀ = {in_degrees(_SWING)}"
+    with chart(path, width=9, height=5, title=title, subtitle=f"{in_words(scene)}; {start}") as (axes,):
+        axes.plot(times, 1e3 * (exact(scene, times, _SWING).u - even), label="exact theory: b sin φ", **THEORY)
+        axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
+        axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice a swing", **PRINTED)
+        axes.axhline(0, **REFERENCE)
+        label(axes, "time t [s]", "lead of the can, u − ½ g sin α t² [mm]")
+        name_below([axes], 3)
+
+
+def level_start(degrees: float, periods: float = 3.0) -> Trajectory:
+    """Return the swing of beer that starts level, over a number of periods of a small oscillation."""
+    scene = sliding(math.radians(degrees))
+    return simulate(scene, periods * 2 * math.pi / scene.frequency(), -scene.incline, integrator=DOP853)
+
+
+def draw_release(path: pathlib.Path) -> None:
+    """Draw the swings of beer that is let go level, on four inclines."""
+    runs = [level_start(degrees) for degrees in (5.0, 20.0, 40.0, 70.0)]
+    subtitle = f"{in_words(runs[0].scene, {'incline'})}; beer let go with a level surface, φ = −α"
+    title = "The steeper the incline, the slower the beer swings for its can"
+    with chart(path, width=9, height=5, title=title, subtitle=subtitle) as (axes,):
+        small = np.linspace(0, 3, 601)
+        axes.plot(small, -np.cos(2 * math.pi * small), label="theory of small swings, eq. (24)", **THEORY)
+        for run in runs:
+            swings = run.time * run.scene.frequency() / (2 * math.pi)
+            axes.plot(swings, run.phi / run.scene.incline, label=f"MuJoCo, α = {in_degrees(run.scene.incline)}")
+        label(axes, "time / period of small swings", "beer's tilt / incline, φ / α", xlim=(0, 3))
+        name_below([axes], 3)
+
+
+def least_push(rate: float) -> float:
+    """Return the least normal force of a turn that begins at the bottom at a `rate` [rad/s], over the weight."""
+    scene = sliding()
+    turn = exact(scene, np.linspace(0, 4 * math.pi / SLOW, 2001), 0.0, rate)
+    return float(turn.forces.normal.min()) / (scene.mass * scene.gravity)
+
+
+def draw_looping(path: pathlib.Path) -> None:
+    """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
+    scene = sliding()
+    c = Letters.of(scene)
+    phase = np.linspace(0, 2 * math.pi, 201)
+    x = np.degrees(phase)
+    title = "Beer that loops in its can does not turn evenly"
+    subtitle = f"{in_words(scene)};  ε of eq. (28), δ = ½ m b² / (½ m b² + I) = {c.spread:.2f}"
+    with chart(path, 1, 2, width=11, height=5.2, title=title, subtitle=subtitle) as both:
+        for axes, start in zip(both, (SLOW, 400.0), strict=True):
+            turn = loop(scene, start)
+            phi = sum(turn.phi[k] * np.sin(k * phase) for k in range(1, 40))
+            printed = oscillation.epsilon_28(c, turn.rate) * np.sin(phase)
+            right = oscillation.corrected_28(c, turn.rate) * np.sin(phase) + c.spread / 4 * np.sin(2 * phase)
+            name = "(1 − ⅜ δ) ε sin Ωt + ¼ δ sin 2Ωt: right to first order in δ"
+            axes.plot(x[::5], np.degrees(right[::5]), "k.", label=name)
+            axes.plot(x, np.degrees(printed), label="ε sin Ωt, eqs. (26) and (28)", **PRINTED)
+            free, held = "MuJoCo, a free can", "MuJoCo, a can that is held down: a free one would lift off"
+            name, style = (free, SIMULATED) if least_push(start) > 0 else (held, UNPHYSICAL)
+            axes.plot(x, np.degrees(phi), label=name, **style)
+            about = f"{start:g} rad/s at the bottom, Ω = {turn.rate:.0f} rad/s in the mean"
+            ylabel = "beer ahead of even turning, φ − Ωt [°]"
+            label(axes, "even turning, Ωt [°]", ylabel, about, xticks=range(0, 361, 90))
+        name_below(both, 2)
+
+
+def draw_ripples(path: pathlib.Path) -> None:
+    """Draw both ripples of looping beer over the mean rate."""
+    scene = sliding()
+    c = Letters.of(scene)
+    turns = [loop(scene, start) for start in np.geomspace(SLOW, DECADE[-1], 10)]
+    rates = np.array([turn.rate for turn in turns])
+    line = np.geomspace(rates[0], rates[-1], 50)
+    lifts = loop(scene, float(brentq(least_push, SLOW, 2 * SLOW, xtol=1e-3))).rate
+    title = "Looping beer turns unevenly: a ripple that dies with Ω, and one that stays"
+    with chart(path, width=9.5, height=5.6, title=title, subtitle=in_words(scene)) as (axes,):
+        axes.axvspan(lifts, 1.1 * rates[-1], color="#EFEFEF", zorder=0)
+        axes.plot(line, np.degrees(oscillation.epsilon_28(c, line)), label="ε, eq. (28)", **PRINTED)
+        axes.plot(line, np.degrees(oscillation.corrected_28(c, line)), label="(1 − ⅜ δ) ε", color=COLOURS[0])
+        stays = np.full_like(line, math.degrees(c.spread / 4))
+        axes.plot(line, stays, label="¼ δ, not in the paper", color=COLOURS[2])
+        for harmonic, name, marker, colour in ((1, "Ω", "o", COLOURS[0]), (2, "2Ω", "s", COLOURS[2])):
+            amplitudes = [math.degrees(turn.phi[harmonic]) for turn in turns]
+            axes.plot(rates, amplitudes, marker, label=f"MuJoCo, at {name}", color=colour)
+        letters = f"ε = m g b cos α / (Ω² (½ m b² + I))\nδ = ½ m b² / (½ m b² + I) = {c.spread:.2f}"
+        note(axes, letters, (110, 12), (0, 0), color="black")
+        held = f"from Ω = {lifts:.0f} rad/s on only in a can that is held down:\na free one would lift off the incline"
+        note(axes, held, (lifts, 0.17), (8, 0))
+        axes.set(xscale="log", yscale="log")
+        limits = (rates[0] / 1.1, 1.1 * rates[-1])
+        label(axes, "mean rate Ω [rad/s]", "amplitude of the ripple of φ [°]", xlim=limits)
+        ticks(axes.xaxis, (30, 50, 100, 200, 300))
+        ticks(axes.yaxis, (0.1, 0.3, 1, 3, 10, 30))
+        name_below([axes], 3)
+
+
+def _beer(fills: Sequence[float] | np.ndarray, can: Can) -> list[Scene]:
+    return [sliding(fill=float(fill), can=can) for fill in fills]
+
+
+def draw_accelerations(path: pathlib.Path) -> None:
+    """Draw the acceleration of cans whose beer does not swing over their fill."""
+    # Near 0 and near 1 the curves are steep, so that the points are denser there.
+    fills = (1 - np.cos(np.linspace(0.02, math.pi, 121))) / 2
+    few = (0.001, 0.05, *np.arange(0.1, 0.95, 0.1))
+    full = sliding().gravity * math.sin(sliding().incline)
+    title = "The fuller the can, the faster it runs down, unless its beer is frozen"
+    subtitle = "beer that does not swing; the same on every incline"
+    with chart(path, width=9, height=5.4, title=title, subtitle=subtitle) as (axes,):
+        levels = ((1.0, "mass that slides", 7), (2 / 3, "solid cylinder: 2/3", -8), (0.5, "hoop: 1/2", 7))
+        for level, name, offset in levels:
+            axes.axhline(level, **REFERENCE)
+            note(axes, name, (1.0, level), (0, offset), ha="right")
+        for name, can in _CANS.items():
+            theory = [scene.acceleration() / full for scene in _beer(fills, can)]
+            (line,) = axes.plot(fills, theory, label=f"beer sliding, {name}: exact theory")
+            runs = [simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853) for scene in _beer(few, can)]
+            axes.plot(few, [mean_acceleration(run) / full for run in runs], "o", color=line.get_color())
+        ice = [frozen(fill=float(fill)).acceleration() / full for fill in fills]
+        axes.plot([], [], "o", color=GREY, label="MuJoCo")
+        axes.plot(fills, ice, "--", label="beer frozen, massless can: theory as if it were balanced")
+        label(axes, _FILL, "acceleration / g sin α", ylim=(0.45, 1.08))
+        name_below([axes], 2)
+
+
+_BETA = np.linspace(0.02, math.pi, 181)
+
+
+def _draw_inertia(path: pathlib.Path, title: str, lines: dict[str, np.ndarray], notes: tuple) -> None:
+    """Draw inertia over half angles: the right line and misprints, by name.
+
+    `notes` have an angle [degrees], a value, a text and its offset [points] each.
+    """
+    with chart(path, width=8, height=5, title=title, subtitle="beer of mass m in a can of radius a") as (axes,):
+        for (name, values), line, colour in zip(lines.items(), ("-", "--"), COLOURS, strict=False):
+            axes.plot(np.degrees(_BETA), values, line, color=colour, label=name)
+        for angle, value, text, offset in notes:
+            axes.plot(angle, value, "k.")
+            note(axes, text, (angle, value), offset, color="black")
+        xlabel = "β, half the angle under which the beer is seen from the axis [°]"
+        highest = max(values.max() for values in lines.values())
+        label(axes, xlabel, "moment of inertia / m a²", xticks=range(0, 181, 30), ylim=(0, 1.05 * highest))
+        above = axes.secondary_xaxis("top")
+        above.set_xticks([0, 60, 90, 120, 180], ["0", "¼", "½", "¾", "1"])
+        above.set_xlabel(_FILL)
+        name_below([axes], 2)
+
+
+def draw_axial(path: pathlib.Path) -> None:
+    """Draw the figure of eq. (36)."""
+    right = segment.eq_36(_BETA)
+    least = int(right.argmin())
+    lowest = (math.degrees(_BETA[least]), right[least], f"least: {right[least]:.3f}", (4, -12))
+    printed = "eq. (36), third line as printed, …/8"
+    lines = {"eq. (36), first and last line": right, printed: segment.middle_36(_BETA, 8)}
+    notes = (90, 0.5, "half full: 1/2", (6, 10)), lowest
+    _draw_inertia(path, "Moment of inertia of the beer about the can's axis", lines, notes)
+
+
+def draw_own(path: pathlib.Path) -> None:
+    """Draw the figure of eq. (37)."""
+    notes = ((90, segment.eq_37(math.pi / 2), "half full: 0.32", (10, -8)),)
+    title = "Moment of inertia of the beer about its own centre of mass"
+    _draw_inertia(path, title, {"eq. (37)": segment.eq_37(_BETA)}, notes)
+
+
+def draw_tilt(path: pathlib.Path) -> None:
+    """Draw the tilt of beer at rest in its can, its frequency, and the steepest incline, over the fill."""
+    fills = (1 - np.cos(np.linspace(0.03, 0.98 * math.pi, 181))) / 2
+    title = "What the mass of the can does to its beer"
+    subtitle = f"beer sliding on an incline of {in_degrees(INCLINE)} (left and middle), beer frozen (right)"
+    with chart(path, 1, 3, width=13, height=4.8, title=title, subtitle=subtitle) as (angle, rate, limit):
+        for name, can in _CANS.items():
+            beer, ice = _beer(fills, can), [frozen(fill=float(fill), can=can) for fill in fills]
+            angle.plot(fills, [math.degrees(scene.equilibrium()) for scene in beer], label=name)
+            rate.plot(fills, [scene.frequency() for scene in beer])
+            limit.plot(fills, [math.degrees(scene.largest_incline()) for scene in ice])
+        rest = "φ at rest, beer's surface to the incline [°]"
+        label(angle, _FILL, rest, "Tilt of beer that does not swing")
+        label(rate, _FILL, "ω [rad/s]", "Frequency of its small swings", ylim=(0, 80))
+        label(limit, _FILL, "α [°]", "Steepest incline on which it stays")
+        name_below([angle], 3)
+
+
+def draw_pendulum(path: pathlib.Path) -> None:
+    """Draw a wide swing of the pendulum, and the frequency of small ones over the mass of its bob."""
+    run = WIDE_PENDULUM()
+    scene, ratio = run.scene, run.scene.load.mass / run.scene.can.mass
+    title = "A wheel with a pendulum: a wide swing, and how the bob's mass changes small ones"
+    with chart(path, 1, 2, width=12, height=5.4, title=title, subtitle=in_words(scene, {"load"})) as (swing, rate):
+        truth = exact(scene, run.time, run.phi0)
+        swing.plot(run.time, np.degrees(truth.phi), label="exact theory", **THEORY)
+        swing.plot(run.time, np.degrees(run.phi), label="MuJoCo", **SIMULATED)
+        about = f"Let go at φ = {in_degrees(run.phi0)}, bob of {ratio:g} wheel masses"
+        label(swing, "time t [s]", "φ, pendulum to the incline's normal [°]", about)
+        _draw_frequencies(rate, scene)
+        name_below([swing, rate], 3)
+
+
+def _small_swing_frequency(scene: Scene) -> float:
+    """Return omega [rad/s], measured over some six swings of 0.001 rad."""
+    omega, start = scene.frequency(), scene.equilibrium() + 1e-3
+    return simulate(scene, 40 / omega, start, integrator=DOP853, timestep=0.02 / omega).frequency()
+
+
+def _draw_frequencies(axes: Axes, scene: Scene) -> None:
+    """Draw the frequency of small swings over the mass of the bob in masses of the wheel, and its two limits."""
+    ratios, wheel = np.geomspace(1e-3, 1e3, 61), scene.can.mass
+    scenes = [pendulum(scene.incline, wheel, wheel * float(ratio), scene.load.offset) for ratio in ratios]
+    light, heavy = light_bob(scene), np.array([heavy_bob(each) for each in scenes])
+    high = heavy > light / 2
+    axes.plot(ratios, [each.frequency() for each in scenes], **THEORY)
+    measured = [_small_swing_frequency(each) for each in scenes[::6]]
+    axes.plot(ratios[::6], measured, "o", label="MuJoCo, swings of 0.06°", **SIMULATED)
+    axes.axhline(light, color="black", linewidth=1, linestyle="--", label="light bob: ω² = g √(cos² α + ¼ sin² α) / b")
+    axes.plot(ratios[high], heavy[high], ":", color="black", label="heavy bob: ω² = ½ (m/M) g cos α / b")
+    axes.set(xscale="log", yscale="log")
+    label(axes, "mass of the bob / mass of the wheel, m / M", "ω of small swings [rad/s]", "Small swings")
+    ticks(axes.xaxis, (0.001, 0.01, 0.1, 1, 10, 100, 1000))
+    ticks(axes.yaxis, (10, 20, 50, 100, 200, 400))
