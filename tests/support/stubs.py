@@ -17,6 +17,7 @@ from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.paper.row import Bound, Witness
+from mjbeer.paper.row import Row as Claim
 from mjbeer.paper.stories import Story
 from mjbeer.studies.benchmark import measure, peers, sweeps
 from mjbeer.studies.benchmark.points import Curve
