@@ -11,7 +11,15 @@ import re
 import time
 import warnings
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import closing, nullcontext
 from importlib.metadata import version
 from typing import Any
@@ -309,6 +317,14 @@ def _carried_out(
     A piece is a share of what is left, and what is left of it after a second is handed out again. What is measured on a
     scene does not depend on that. If the generator is closed, pieces that have not begun are cancelled.
     """
+    if isinstance(executor, ProcessPoolExecutor):  # which may hang at its end if it cannot send what it was given
+        try:
+            pickle.dumps(work)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            raise ParameterError(
+                "what makes the scenes, and functions of their runs, must be defined at the top of a module to be sent "
+                f"to processes: {' '.join(str(error).split())}"
+            ) from error
     workers = getattr(executor, "_max_workers", None) or _UNKNOWN_WORKERS
     waiting, left, out = [scenes], len(scenes), dict[Future[Any], np.ndarray]()
     try:
@@ -321,13 +337,7 @@ def _carried_out(
                 out[executor.submit(measure.measure, work, plan.rows(piece))] = piece
             for future in wait(out, return_when=FIRST_COMPLETED).done:
                 piece = out.pop(future)
-                try:
-                    found, reasons = future.result()
-                except (pickle.PicklingError, AttributeError, TypeError) as error:  # none of a scene's gets here
-                    raise ParameterError(
-                        "what makes the scenes, and functions of their runs, must be defined at the top of a module to "
-                        f"be sent to processes: {' '.join(str(error).split())}"
-                    ) from error
+                found, reasons = future.result()
                 piece, rest = np.split(piece, [len(found)])
                 waiting += [rest] * bool(len(rest))
                 left += len(rest)
