@@ -11,7 +11,6 @@ from mjbeer import Can, Scene, build, frozen, hoop, liquid, pendulum, render, si
 from mjbeer.cli.app import COMMANDS, main, parse
 from mjbeer.cli.arguments import SCENES, defaults, scene, start, steps
 from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS
 
 UNITS = {
     "phi0": "degrees", "phi-dot0": "degrees/s", "incline": "degrees", "duration": "s", "timestep": "s",
@@ -105,12 +104,6 @@ def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
         if hasattr(given, name) and name not in ("scene", "phi0", "output"):
             # An integrator that is not given is left to Python's default, and to the tolerance.
             assert getattr(given, name) == parameter.default or (name == "integrator" and not given.integrator), name
-
-
-def test_all_ways_of_rolling_and_integrators_can_be_asked_for() -> None:
-    for option, names in (("rolling", ROLLINGS), ("integrator", (*INTEGRATORS, *OWN))):
-        for name in names:
-            assert getattr(parse(["simulate", "frozen", f"--{option}", name])[1], option) == name
 
 
 def test_a_range_a_list_or_a_number() -> None:

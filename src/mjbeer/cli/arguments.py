@@ -51,14 +51,6 @@ _TURNS = np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2]) * mat
 REQUIRED = "required"
 
 
-def number(text: str) -> float:
-    """Read a number."""
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number") from None
-
-
 def several(text: str) -> float | np.ndarray:
     """Read a number as "3", or several as "1,2,5" or as "1:20:39", which is 39 numbers from 1 to 20."""
     try:
@@ -87,7 +79,7 @@ class Option(NamedTuple):
     name: str
     told: str
     default: Any = None
-    kind: Any = number
+    kind: Any = float
     """A function that reads a word, or the names that are allowed; bool, if the option takes no value."""
     otherwise: str = ""
 
@@ -121,7 +113,7 @@ class Parser(argparse.ArgumentParser):
 
     def add(self, options: Iterable[Option]) -> None:
         """Add options."""
-        metavars = {number: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
+        metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
         for name, told, default, kind, otherwise in options:
             if isinstance(default, tuple):
                 shown = ", ".join(default)
@@ -180,24 +172,24 @@ _TIMESTEP = Option("timestep", "timestep; with a tolerance, interval between sam
 _FRICTION = Option("friction", "coefficient of friction: a contact slips beyond it", FRICTION)
 
 
-def start_options(numbers: Callable[[str], Any] = number) -> tuple[Option, ...]:
-    """Return the options of the initial state."""
+def _start(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
     rate = Option("phi_dot0", "initial rate of change of phi [degrees/s]", 0.0, numbers)
     return Option("phi0", _PHI0, round(math.degrees(PHI0), 9), numbers), rate
 
 
 def model_options(rolling: str | None = "reduced") -> tuple[Option, ...]:
-    """Return the options of a model with one of MuJoCo's integrators."""
-    otherwise = "" if rolling else "equality, or reduced where only that exists"
-    integrator = Option("integrator", "integrator, by its name in MJCF", "RK4", INTEGRATORS)
-    return Option("rolling", _ROLLING, rolling, ROLLINGS, otherwise), integrator, _TIMESTEP, _FRICTION
+    """Return the options of a model at its start with one of MuJoCo's integrators."""
+    way = Option(
+        "rolling", _ROLLING, rolling, ROLLINGS, "" if rolling else "equality, or reduced where only that exists"
+    )
+    return *_start(), way, Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP, _FRICTION
 
 
-def run_options(numbers: Callable[[str], Any] = number) -> tuple[Option, ...]:
+def run_options(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
     """Return the options of a simulation with any integrator."""
-    told = "MuJoCo's by its name in MJCF, or one of mjbeer's two"
+    told = "one of MuJoCo's, by its name in MJCF, or of mjbeer's: DOP853, GaussJackson"
     return (
-        *start_options(numbers),
+        *_start(numbers),
         Option("duration", "duration of the motion [s]", DURATION),
         Option("rolling", _ROLLING, "reduced", ROLLINGS),
         Option("integrator", told, None, (*INTEGRATORS, *OWN), "RK4, or what keeps a tolerance"),

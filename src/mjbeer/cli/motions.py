@@ -8,18 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mjbeer.cli.arguments import (
-    REQUIRED,
-    Option,
-    command,
-    model_options,
-    number,
-    run_options,
-    scene,
-    start,
-    start_options,
-    steps,
-)
+from mjbeer.cli.arguments import REQUIRED, Option, command, model_options, run_options, scene, start, steps
 from mjbeer.drawing.world.cameras import CAMERAS
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
@@ -55,7 +44,7 @@ def trajectory_of(given: Namespace) -> "Trajectory":
     *run_options(),
     Option("output", 'CSV file to write; "-" is standard output', None, pathlib.Path, "no CSV"),
     Option("json", "print the key figures and the warnings as JSON", kind=bool),
-    numbers=number,
+    numbers=float,
 )
 def simulate(given: Namespace) -> int:
     """Simulate a scene and print its key figures, with an estimate of the error."""
@@ -87,7 +76,7 @@ def simulate(given: Namespace) -> int:
     Option("camera", _CAMERA, "auto", CAMERAS),
     Option("width", "width of the video [pixels]", 1280, int),
     Option("height", "height of the video [pixels]", 720, int),
-    numbers=number,
+    numbers=float,
 )
 def render(given: Namespace) -> int:
     """Simulate a scene and draw it as a video (MP4)."""
@@ -106,7 +95,7 @@ def render(given: Namespace) -> int:
     return 0
 
 
-@command(*start_options(), *model_options(rolling=None), _SPEED, numbers=number)
+@command(*model_options(rolling=None), _SPEED, numbers=float)
 def view(given: Namespace) -> int:
     """Open a scene in MuJoCo's viewer, paused at its start.
 
@@ -120,11 +109,10 @@ def view(given: Namespace) -> int:
 
 
 @command(
-    *start_options(),
     *model_options(),
     Option("output", 'MJCF file to write (.xml); its keyframe "start" is the start', None, pathlib.Path, REQUIRED),
     Option("portable", _PORTABLE, kind=bool),
-    numbers=number,
+    numbers=float,
 )
 def export(given: Namespace) -> int:
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""

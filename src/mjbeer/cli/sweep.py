@@ -46,7 +46,7 @@ def sweep(given: Namespace) -> int:
     NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
     1e-6 rad.
     """
-    from mjbeer.studies.sweep.result import checked
+    from mjbeer.studies.sweep.result import checked, shown
     from mjbeer.studies.sweep.run import sweep
 
     checked(given.output, ENDINGS)
@@ -74,17 +74,9 @@ def sweep(given: Namespace) -> int:
     for failure in result.failed:  # reasons that differ in nothing but numbers are one
         alike.setdefault(re.sub(r"\d[\d.e+-]*", "", failure.reason), []).append(failure)
     for first, *others in sorted(alike.values(), key=len, reverse=True):
-        place = _in_degrees(result, first.index)
+        named = zip(result.dims, first.index, strict=True)
+        place = ", ".join(f"{name} = {shown(name, result[name])[index]:.6g}" for name, index in named)
         say(f"failed: {1 + len(others)} scene{'s' * bool(others)}, the first at {place}: {first.reason}", "yellow")
     say(f"wrote {given.output}")
     terminal.write(f"{result.counts}\n")
     return 0
-
-
-def _in_degrees(result: Any, index: tuple[int, ...]) -> str:
-    """Return the parameters of a scene in words, with its angles as they were given."""
-    from mjbeer.studies.sweep.result import shown
-
-    return ", ".join(
-        f"{name} = {shown(name, result[name])[place]:.6g}" for name, place in zip(result.dims, index, strict=True)
-    )
