@@ -83,6 +83,7 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("simulate sliding --tol 1e-6", "option must be one of '--incline', '--fill', "),
         ("simulate pendulum --fill=0.5", "option must be one of '--incline', '--radius', "),
         ("simulate frozen --damping 1", "option must be one of '--incline', '--fill', "),
+        ("simulate sliding -- --json", ""),
         ("simulate sliding more", "option must be one of '--incline', '--fill', "),
         ("simulate sliding --phi0 1,2", "argument --phi0: invalid float value: '1,2'"),
         ("simulate sliding --phi0", "argument --phi0: expected one argument"),

@@ -107,7 +107,7 @@ def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
 
 
 def test_a_range_a_list_or_a_number() -> None:
-    _, given = parse(["sweep", "frozen", "--incline", "-1:1:5", "--fill", "0.1,0.2", "--phi0", "-3"])
+    _, given = parse(["sweep", "frozen", "--incline", "-1:1:5", "--fill", "0.1,0.2", "--phi0", "-.3e1"])
     assert np.array_equal(given.incline, [-1.0, -0.5, 0.0, 0.5, 1.0])
     assert np.array_equal(given.fill, [0.1, 0.2])
     assert given.phi0 == -3.0
@@ -117,3 +117,8 @@ def test_a_range_a_list_or_a_number() -> None:
 def test_what_is_none_of_these_is_refused(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "frozen", "--fill", text]) == 2
     assert "is no number, no list as 1,2,5, and no range as 1:20:39" in capsys.readouterr().err
+
+
+def test_names_stand_before_or_after_options() -> None:
+    for words in ("frozen hoop --quick", "--quick frozen hoop", "frozen --quick hoop"):
+        assert parse(["benchmark", *words.split()])[1].scenes == ["frozen", "hoop"]

@@ -136,18 +136,19 @@ class Parser(argparse.ArgumentParser):
 
     def read(self, words: Iterable[str]) -> Namespace:
         """Return what the words of a command line say, by the names of the options."""
-        # argparse takes -1e-3 and -1:1:5 for options, but nothing that begins with a space.
-        given, others = self.parse_known_args([re.sub(r"^(?=-[\d.])", " ", word) for word in words])
+        # argparse takes -1e-3 and -1:1:5 for options, unless they are joined to theirs.
+        joined = re.sub(r"\0(?=-[\d.])", "=", "\0".join(["", *words])).split("\0")[1:]
+        given, others = self.parse_known_intermixed_args(joined)
         if others:
             require.choice("option", others[0].partition("=")[0], self.names)
+            self.error(f"{others[0]} cannot stand here")
         return given
 
 
 def scenes_told() -> dict[str, str]:
     """Return what each scene is."""
-    return {
-        name: str(make.__doc__).split("\n")[0].removeprefix("Return the scene of ") for name, make in SCENES.items()
-    }
+    first_lines = {name: str(make.__doc__).split("\n")[0] for name, make in SCENES.items()}
+    return {name: line.removeprefix("Return the scene of ") for name, line in first_lines.items()}
 
 
 def defaults(scene: str) -> dict[str, Any]:
@@ -179,9 +180,7 @@ def _start(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
 
 def model_options(rolling: str | None = "reduced") -> tuple[Option, ...]:
     """Return the options of a model at its start with one of MuJoCo's integrators."""
-    way = Option(
-        "rolling", _ROLLING, rolling, ROLLINGS, "" if rolling else "equality, or reduced where only that exists"
-    )
+    way = Option("rolling", _ROLLING, rolling, ROLLINGS, "" if rolling else "equality, or reduced if only that exists")
     return *_start(), way, Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP, _FRICTION
 
 
