@@ -1,40 +1,41 @@
-"""The entry point of `mjbeer`: parse the command line, run the command, and turn errors into exit statuses."""
+"""The entry point of `mjbeer`: read the command line, run the command, and turn errors into exit statuses."""
 
-import contextlib
 import functools
-import io
-import re
 import signal
 import sys
 import warnings
+from argparse import Namespace
 from collections.abc import Callable, Sequence
 from types import FrameType
 from typing import Any, NoReturn, cast
 
-import tyro
-from rich.text import Text
-
 import mjbeer
-from mjbeer.cli.motions import Export, Render, Simulate
-from mjbeer.cli.scenes import Scenes
-from mjbeer.cli.studies import Benchmark, Paper, Report, Stability, Validate
-from mjbeer.cli.sweep import Sweep
-from mjbeer.cli.view import View
+from mjbeer import require
+from mjbeer.cli import motions, studies, sweep
+from mjbeer.cli.arguments import SCENES, Command, Parser, scene_options, scenes_told
 from mjbeer.drawing import opengl
-from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
+from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _ERROR = 2
-Command = Simulate | Render | View | Export | Scenes | Sweep | Validate | Benchmark | Stability | Report | Paper
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
-`mjbeer COMMAND --help` shows the options, `mjbeer --version` the version."""
-_STYLE = (
-    tyro.conf.OmitSubcommandPrefixes,
-    tyro.conf.OmitArgPrefixes,
-    tyro.conf.CascadeSubcommandArgs,
-    tyro.conf.FlagCreatePairsOff,
-)
+`mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
+_HELP = ("-h", "--help")
+
+
+COMMANDS: dict[str, Command] = {
+    "simulate": motions.simulate,
+    "render": motions.render,
+    "view": motions.view,
+    "export": motions.export,
+    "sweep": sweep.sweep,
+    "validate": studies.validate,
+    "benchmark": studies.benchmark,
+    "stability": studies.stability,
+    "paper": studies.paper,
+    "report": studies.report,
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -46,30 +47,60 @@ def main(arguments: Sequence[str] | None = None) -> int:
       SystemExit: after --help.
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
-    for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) == signal.SIG_DFL:  # a signal that is ignored, as under nohup, stays ignored
-            signal.signal(number, _interrupt)
+    for signum in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(signum) == signal.SIG_DFL:  # a signal that is ignored, as under nohup, stays ignored
+            signal.signal(signum, _interrupt)
     try:
         if words[:1] == ["--version"]:
             terminal.write(f"mjbeer {mjbeer.__version__}\n")
             return 0
         with terminal.printing():
-            command = parse(words)
+            command, given = parse(words)
         opengl.keep_out()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
             warnings.simplefilter("ignore", AngleWarning)  # angles are in degrees here
             # A study goes where a liquid is no lump on purpose, and its documents say so.
-            warnings.simplefilter("always" if hasattr(command, "scene") else "ignore", LiquidWarning)
+            warnings.simplefilter("always" if command.numbers else "ignore", LiquidWarning)
             cast("Any", warnings).showwarning = functools.partial(_show, warnings.showwarning)
-            return command.run()
+            return command.run(given)
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")
         return _ERROR
     except KeyboardInterrupt as error:
         say("mjbeer: interrupted; what was written is whole", "red")
-        (number,) = error.args or (signal.SIGINT,)
-        return 128 + number
+        (signum,) = error.args or (signal.SIGINT,)
+        return 128 + signum
+
+
+def parse(words: Sequence[str]) -> tuple[Command, Namespace]:
+    """Return the command that the words of a command line ask for, and its options.
+
+    Raises:
+      ParameterError: if the words are not understood.
+      SystemExit: after --help.
+    """
+    first, *rest = words or [""]
+    if first in _HELP:
+        parser = Parser("mjbeer", _DESCRIPTION, "COMMAND [options]")
+        told = {name: str(command.run.__doc__).split("\n\n")[0] for name, command in COMMANDS.items()}
+        parser.words("commands", told)
+        parser.parse_args([first])
+    command = COMMANDS[require.choice("command", first, COMMANDS)]
+    told = str(command.run.__doc__)
+    parser = Parser(f"mjbeer {first}", told)
+    if command.numbers:
+        scene, *rest = rest or [""]
+        if scene in _HELP:
+            parser, rest = Parser(f"mjbeer {first}", told, "SCENE [options]"), [scene]
+            parser.words(f"scenes (`mjbeer {first} SCENE --help` shows the options of each)", scenes_told())
+        else:
+            require.choice(f"the scene after {first}", scene, SCENES)
+            parser = Parser(f"mjbeer {first} {scene}", f"{told} The scene: {scenes_told()[scene]}")
+            parser.set_defaults(scene=scene)
+            parser.add(scene_options(scene, command.numbers))
+    parser.add(command.options)
+    return command, parser.read(rest)
 
 
 def _show(otherwise: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:
@@ -80,46 +111,10 @@ def _show(otherwise: Callable[..., None], message: Warning | str, category: type
         otherwise(message, category, *place)
 
 
-def _interrupt(number: int, _: FrameType | None) -> NoReturn:
+def _interrupt(signum: int, _: FrameType | None) -> NoReturn:
     """Treat a signal as Ctrl-C, so that files are cleaned up as after Ctrl-C.
 
     Raises:
       KeyboardInterrupt: always, with the number of the signal.
     """
-    raise KeyboardInterrupt(number)
-
-
-def parse(words: Sequence[str]) -> Command:
-    """Return the command that the words of a command line ask for.
-
-    Raises:
-      ParameterError: if the words are not understood.
-      SystemExit: after --help.
-    """
-    told = io.StringIO()
-    try:
-        with contextlib.redirect_stderr(told):
-            return tyro.cli(Command, prog="mjbeer", description=_DESCRIPTION, args=words, config=_STYLE)
-    except SystemExit as ended:
-        if ended.code:
-            raise ParameterError(_sentence(told.getvalue())) from None
-        raise
-    except ImportError:  # tyro completes for any other shell with a package that is not there
-        raise ParameterError("words are completed in bash, zsh and fish") from None
-
-
-def _sentence(box: str) -> str:
-    """Return in one line an error that tyro drew: a title, and parts between ruled lines.
-
-    The first part says what is wrong. The second may have what was meant: commands, or options with where they are.
-    """
-    _, *rows = (row.strip("│ ") for row in Text.from_ansi(box).plain.splitlines())
-    what, meant, *_ = [*filter(None, map(str.strip, re.split(r"(?m)^[─╰╯-]+$", "\n".join(rows)))), ""]
-    told, meant_in_line = " ".join(what.split("\n\n")[0].split()), " ".join(meant.split())
-    options = dict.fromkeys(re.findall(r"(?m)^--(?!help)\S+", meant))
-    if meant.startswith("Available"):
-        return f"{told}; {meant_in_line.lower()}"
-    if options and next(iter(options)) not in told.replace("=", " ").split():
-        return f"{told}; did you mean {' or '.join(options)}?"
-    owners = dict.fromkeys(re.findall(r" in (mjbeer[ \w]+?)(?: \(other subcommands\))? --help", meant_in_line))
-    return f"{told}; it belongs to {' or '.join(owners)}" if options else told
+    raise KeyboardInterrupt(signum)

@@ -1,299 +1,252 @@
-"""The options for scenes and simulations: angles in degrees, everything else in SI units."""
+"""How a command line is read: options of scenes, starts and runs, in degrees for angles and in SI units otherwise.
 
+A scene has the options that its function in Python has, with the same defaults; only their meanings are told here.
+"""
+
+import argparse
+import functools
+import inspect
 import math
-from collections.abc import Iterable
-from dataclasses import KW_ONLY, Field, dataclass
-from typing import TYPE_CHECKING, Annotated, Any, Literal, cast, get_args
+import pathlib
+import re
+from argparse import Namespace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple, NoReturn
 
-import tyro
+import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import Integrator, Rolling
+from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, ROLLINGS
 from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
-from mjbeer.theory.liquid import NAMES, Name, liquid, liquid_in
-from mjbeer.theory.load import BEER
+from mjbeer.theory.liquid import NAMES, liquid, liquid_in
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
-from mjbeer.theory.scene import DURATION, GRAVITY, PHI0, Scene
+from mjbeer.theory.scene import DURATION, PHI0, Scene
 
-if TYPE_CHECKING:
-    from mjbeer.theory.trajectory import Trajectory
+SCENES: dict[str, Callable[..., Scene]] = {each.__name__: each for each in (sliding, liquid, frozen, pendulum, hoop)}
+_CANS = {"massless": Can.massless, "metal": Can.sheet_metal}
+_CHOICES = {"can": tuple(_CANS), "liquid": NAMES}
+_MEANINGS = {
+    "incline": "angle of the incline to the horizontal [degrees]; if positive, u grows downhill",
+    "fill": "height of the load as a fraction of the can's diameter, in (0, 1]",
+    "can": "massless (section 2 of the paper), or metal, of aluminium sheet 0.1 mm thick (section 3)",
+    "radius": "radius of the can [m]",
+    "length": "length of the can [m]",
+    "liquid": "the liquid, at 20 degrees Celsius",
+    "density": "density of beer or liquid [kg/m^3]",
+    "viscosity": "kinematic viscosity [m^2/s]; water has 1e-6",
+    "gravity": "acceleration of gravity [m/s^2]",
+    "damping": "torque between can and beer over the rate at which the can turns faster than the beer [N m s]",
+    "drag": "force of the air against the motion over the square of the speed [kg/m]",
+    "wheel_mass": "mass of the wheel [kg]",
+    "hoop_mass": "mass of the hoop [kg]",
+    "load_mass": "mass of the load: a pendulum's bob, or a weight on a rim [kg]",
+    "offset": "length of the pendulum, from the axle to the bob [m]",
+}
+"""What the options of scenes mean; their order is that of the help."""
+_TURNS = np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2]) * math.pi
+"""Angles that look like radians."""
+REQUIRED = "required"
 
-CaseName = Literal["sliding", "sliding-metal", "frozen", "pendulum", "hoop", "stiff", "stiffer"]
+
+def several(text: str) -> float | np.ndarray:
+    """Read a number as "3", or several as "1,2,5" or as "1:20:39", which is 39 numbers from 1 to 20."""
+    try:
+        if ":" in text:
+            first, last, count = text.split(":")
+            if not 1 <= int(count) <= 10**8:  # they take a gigabyte
+                raise ValueError
+            numbers = np.linspace(require.number("", float(first)), require.number("", float(last)), int(count))
+        else:
+            numbers = np.array([float(each) for each in text.split(",")])
+        if not np.isfinite(numbers).all():
+            raise ValueError
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
+        ) from None
+    return numbers if numbers.size > 1 else float(numbers[0])
 
 
-def if_given(kind: Any, otherwise: str) -> object:
-    """Return how tyro reads an option that may be left out: as a value of some kind, with a word for what is then."""
-    return tyro.conf.arg(constructor=kind, help_behavior_hint=f"(default: {otherwise})")
+class Option(NamedTuple):
+    """An option; or words without one, if its default is several.
+
+    Where the default is no value, `otherwise` says in words what is taken, or is REQUIRED.
+    """
+
+    name: str
+    told: str
+    default: Any = None
+    kind: Any = float
+    """A function that reads a word, or the names that are allowed; bool, if the option takes no value."""
+    otherwise: str = ""
 
 
-def otherwise(field: Field[Any]) -> str:
-    """Return what is taken where an option is left out that has no default: the word of its `if_given`."""
-    (how,) = cast("Any", field.type).__metadata__
-    return how.help_behavior_hint.removeprefix("(default: ").removesuffix(")")
+@dataclass(frozen=True)
+class Command:
+    """A command: the function that runs it, whose docstring says what it does, and its options."""
+
+    run: Callable[[Namespace], int]
+    options: tuple[Option, ...]
+    numbers: Callable[[str], Any] | None
+    """How the numbers of its scene are read, which is its first argument; None if it has no scene."""
 
 
-def one_of(name: str, allowed: Iterable[str]) -> object:
-    """Return how tyro reads an option that takes one of some names; an error asks after one that is spelled alike."""
-    return tyro.constructors.PrimitiveConstructorSpec(
-        nargs=1,
-        metavar="NAME",
-        instance_from_str=lambda words: require.choice(name, words[0], allowed),
-        is_instance=lambda value: isinstance(value, str),
-        str_from_instance=lambda value: [value],
+def command(*options: Option, numbers: Any = None) -> Callable[[Callable[[Namespace], int]], Command]:
+    """Make a function the command of its name."""
+    return lambda run: Command(run, options, numbers)
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line each."""
+
+    def __init__(self, name: str, told: str, usage: str = "[options]") -> None:
+        lines = functools.partial(argparse.HelpFormatter, max_help_position=28)
+        told = " ".join(told.split())
+        super().__init__(name, f"{name} {usage}", told, formatter_class=lines, allow_abbrev=False)
+        self.names: list[str] = []
+
+    def error(self, message: str) -> NoReturn:
+        raise ParameterError(message)
+
+    def add(self, options: Iterable[Option]) -> None:
+        """Add options."""
+        metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
+        for name, told, default, kind, otherwise in options:
+            if isinstance(default, tuple):
+                shown = ", ".join(default)
+                self.add_argument(name, nargs="*", metavar="NAME", help=f"{told} (default: {shown})")
+                continue
+            shown = otherwise or (f"{default:g}" if isinstance(default, float) else default)
+            how: dict[str, Any] = {"help": told, "action": "store_true"}
+            if kind is not bool:
+                how = {"help": f"{told} ({shown})" if shown == REQUIRED else f"{told} (default: {shown})"}
+                how |= {"type": kind, "metavar": metavars[kind]} if callable(kind) else {"choices": kind}
+                how |= {"default": default, "required": shown == REQUIRED}
+            self.names.append("--" + name.replace("_", "-"))
+            self.add_argument(self.names[-1], **how)
+
+    def words(self, title: str, told: dict[str, str]) -> None:
+        """Add words to the help: names of commands or scenes, with what they mean."""
+        group = self.add_argument_group(title)
+        for name, text in told.items():
+            group.add_argument(name, help=text)
+
+    def read(self, words: Iterable[str]) -> Namespace:
+        """Return what the words of a command line say, by the names of the options."""
+        # argparse takes -1e-3 and -1:1:5 for options, unless they are joined to theirs.
+        joined = re.sub(r"\0(?=-[\d.])", "=", "\0".join(["", *words])).split("\0")[1:]
+        given, others = self.parse_known_intermixed_args(joined)
+        if others:
+            require.choice("option", others[0].partition("=")[0], self.names)
+            self.error(f"{others[0]} cannot stand here")
+        return given
+
+
+def scenes_told() -> dict[str, str]:
+    """Return what each scene is."""
+    first_lines = {name: str(make.__doc__).split("\n")[0] for name, make in SCENES.items()}
+    return {name: line.removeprefix("Return the scene of ") for name, line in first_lines.items()}
+
+
+def defaults(scene: str) -> dict[str, Any]:
+    """Return the options of a scene with their defaults; the incline is in degrees."""
+    given = {name: each.default for name, each in inspect.signature(SCENES[scene]).parameters.items()}
+    if "can" in given:
+        given |= {"can": "massless", "radius": RADIUS, "length": LENGTH}
+    given |= {"liquid": given["name"]} if "name" in given else {}
+    given["incline"] = round(math.degrees(given["incline"]), 9)
+    return {name: given[name] for name in _MEANINGS if name in given}
+
+
+def scene_options(scene: str, numbers: Callable[[str], Any]) -> Iterable[Option]:
+    """Return the options of a scene; `numbers` reads those that are numbers."""
+    for name, default in defaults(scene).items():
+        yield Option(name, _MEANINGS[name], default, _CHOICES.get(name, numbers), "the liquid's" * (default is None))
+
+
+_PHI0 = "initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline"
+_ROLLING = "what makes the can roll: reduced coordinates, a joint equality, or contact with friction"
+_TIMESTEP = Option("timestep", "timestep; with a tolerance, interval between samples [s]", 1e-3)
+_FRICTION = Option("friction", "coefficient of friction: a contact slips beyond it", FRICTION)
+
+
+def _start(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
+    rate = Option("phi_dot0", "initial rate of change of phi [degrees/s]", 0.0, numbers)
+    return Option("phi0", _PHI0, round(math.degrees(PHI0), 9), numbers), rate
+
+
+def model_options(rolling: str | None = "reduced") -> tuple[Option, ...]:
+    """Return the options of a model at its start with one of MuJoCo's integrators."""
+    way = Option("rolling", _ROLLING, rolling, ROLLINGS, "" if rolling else "equality, or reduced if only that exists")
+    return *_start(), way, Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP, _FRICTION
+
+
+def run_options(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
+    """Return the options of a simulation with any integrator."""
+    told = "one of MuJoCo's, by its name in MJCF, or of mjbeer's: DOP853, GaussJackson"
+    return (
+        *_start(numbers),
+        Option("duration", "duration of the motion [s]", DURATION),
+        Option("rolling", _ROLLING, "reduced", ROLLINGS),
+        Option("integrator", told, None, (*INTEGRATORS, *OWN), "RK4, or what keeps a tolerance"),
+        _TIMESTEP,
+        Option("tolerance", "largest error allowed in phi and u/radius [rad]", otherwise="none"),
+        _FRICTION,
     )
 
 
-_SHARES = (1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2)
-"""Shares of pi at which an angle looks like radians."""
+def steps(given: Namespace) -> dict[str, Any]:
+    """Return how a scene is modelled and stepped."""
+    names = ("rolling", "integrator", "timestep", "tolerance", "friction")
+    return {name: value for name, value in vars(given).items() if name in names}
 
 
-def degrees(name: str, value: float) -> float:
-    """Convert an angle from degrees to radians as `radians` does, and say so if it looks like radians, as 3.14159."""
-    _, _, decimals = str(abs(value)).partition(".")
-    if len(decimals) >= 3 and any(abs(abs(value) - share * math.pi) < 1e-3 for share in _SHARES):
-        say(
-            f"note: {name} = {value:g} is taken as degrees; in degrees, that many radians are {math.degrees(value):.6g}"
-        )
-    return radians(name, value)
-
-
-def radians(name: str, value: float, unit: str = "degrees") -> float:
-    """Convert an angle from degrees to radians, or a rate from degrees/s to radians/s, and return it.
+def radians(name: str, value: Any, unit: str = "degrees") -> Any:
+    """Convert an angle from degrees to radians, or a rate from degrees/s to radians/s: a number, or an array.
 
     Raises:
-      ParameterError: if it is not finite; the message has the `name` of the option and the `unit` of its value.
+      ParameterError: if one is not finite; the message has the `name` of the option and the `unit` of its value.
     """
-    return math.radians(require.number(name, value, unit))
+    for each in np.atleast_1d(value).tolist():
+        require.number(name, each, unit)
+    return math.radians(value) if np.ndim(value) == 0 else np.radians(value)
 
 
-@dataclass(frozen=True)
-class Common:
-    """The options of every scene."""
-
-    incline: float = 10.0
-    """Angle of the incline to the horizontal [degrees]; if positive, u grows downhill."""
-    radius: float = RADIUS
-    """Radius of the can [m]."""
-    length: float = LENGTH
-    """Length of the can [m]."""
-    gravity: float = GRAVITY
-    """Acceleration of gravity [m/s^2]."""
-
-    @property
-    def alpha(self) -> float:
-        """The angle of the incline [rad].
-
-        Raises:
-          ParameterError: if it is not between -90 and 90 degrees.
-        """
-        if not abs(self.incline) < 90:
-            raise ParameterError(f"incline must be between -90 and 90 [degrees], got {self.incline!r}")
-        return math.radians(self.incline)
-
-    def scene(self) -> Scene:
-        """Return the scene of these options."""
-        return self.at(self.alpha)
-
-    def told_scene(self) -> Scene:
-        """Return the scene of these options, and say what it takes that was not given."""
-        if told := self.told(self.alpha):
-            say(told)
-        return self.scene()
-
-    def at(self, alpha: float) -> Scene:
-        """Return the scene of these options on an incline of `alpha` [rad], whatever their own incline is."""
-        raise NotImplementedError
-
-    def told(self, alpha: float) -> str:
-        """Return what the scene takes that was not given, in one line; empty if there is nothing of that kind."""
-        return ""
+def start(given: Namespace) -> dict[str, Any]:
+    """Return the initial phi0 [rad] and phi_dot0 [rad/s], and say so if phi0 looks like radians, as 3.14159."""
+    phi0 = given.phi0
+    if np.ndim(phi0) == 0 and round(phi0, 2) != phi0 and (np.abs(_TURNS - abs(phi0)) < 1e-3).any():
+        meant = f"in degrees, that many radians are {math.degrees(phi0):.6g}"
+        say(f"note: phi0 = {phi0:g} is taken as degrees; {meant}")
+    return {"phi0": radians("phi0", phi0), "phi_dot0": radians("phi_dot0", given.phi_dot0, "degrees/s")}
 
 
-@dataclass(frozen=True)
-class Filled(Common):
-    """The further options of a scene with a load that fills a can."""
+def asked(given: Namespace) -> dict[str, Any]:
+    """Return the options of the scene, as `make` takes them: the incline in radians.
 
-    fill: float = 0.5
-    """Height of the load as a fraction of the can's diameter, in (0, 1]."""
-    can: Literal["massless", "metal"] = "massless"
-    """The can: massless (section 2 of the paper), or metal, of aluminium sheet 0.1 mm thick (section 3)."""
-
-    def build_can(self) -> Can:
-        """Return the can of these options."""
-        make = Can.massless if self.can == "massless" else Can.sheet_metal
-        return make(self.radius, self.length)
+    Raises:
+      ParameterError: if the incline is not between -90 and 90 degrees.
+    """
+    for each in np.atleast_1d(given.incline).tolist():
+        if not abs(each) < 90:
+            raise ParameterError(f"incline must be between -90 and 90 [degrees], got {each!r}")
+    options = {name: getattr(given, name) for name in defaults(given.scene)}
+    return options | {"incline": radians("incline", given.incline)}
 
 
-@dataclass(frozen=True)
-class Sliding(Filled):
-    """Beer that slides inside its can, without friction unless there is damping (sections 2 and 3 of the paper)."""
-
-    density: float = BEER
-    """Density of the beer [kg/m^3]."""
-    damping: float = 0.0
-    """Torque between can and beer over the rate at which the can turns faster than the beer [N m s]."""
-    drag: float = 0.0
-    """Force of the air against the motion over the square of the speed [kg/m]."""
-
-    def at(self, alpha: float) -> Scene:
-        return sliding(
-            incline=alpha,
-            fill=self.fill,
-            can=self.build_can(),
-            density=self.density,
-            gravity=self.gravity,
-            damping=self.damping,
-            drag=self.drag,
-        )
+def make(function: Callable[..., Any], **options: Any) -> Any:
+    """Call a function that makes a scene with the options of the command line, but with the incline in radians."""
+    if "can" in options:
+        options["can"] = _CANS[options["can"]](options.pop("radius"), options.pop("length"))
+    return function(**{"name" if name == "liquid" else name: value for name, value in options.items()})
 
 
-@dataclass(frozen=True)
-class Liquid(Filled):
-    """A real liquid, which is neither free nor frozen: its damping follows from its viscosity and the can."""
-
-    liquid: Annotated[Name, one_of("liquid", NAMES)] = "water"
-    """The liquid: water, beer, "olive oil", glycerol or honey, at 20 degrees Celsius."""
-    density: Annotated[float | None, if_given(float, "the liquid's own")] = None
-    """Density [kg/m^3]."""
-    viscosity: Annotated[float | None, if_given(float, "the liquid's own")] = None
-    """Kinematic viscosity [m^2/s]; water has 1e-6."""
-    drag: float = 0.0
-    """Force of the air against the motion over the square of the speed [kg/m]."""
-
-    def at(self, alpha: float) -> Scene:
-        return liquid(**self._given(alpha), drag=self.drag)
-
-    def told(self, alpha: float) -> str:
-        return str(liquid_in(**self._given(alpha)))
-
-    def _given(self, alpha: float) -> dict[str, Any]:
-        return {
-            "name": self.liquid,
-            "incline": alpha,
-            "fill": self.fill,
-            "can": self.build_can(),
-            "density": self.density,
-            "viscosity": self.viscosity,
-            "gravity": self.gravity,
-        }
-
-
-@dataclass(frozen=True)
-class Frozen(Filled):
-    """Beer frozen to its can (appendix A of the paper)."""
-
-    density: float = BEER
-    """Density of the beer [kg/m^3]."""
-
-    def at(self, alpha: float) -> Scene:
-        return frozen(incline=alpha, fill=self.fill, can=self.build_can(), density=self.density, gravity=self.gravity)
-
-
-@dataclass(frozen=True)
-class Pendulum(Common):
-    """A wheel with a pendulum on its axle (appendix B of the paper)."""
-
-    wheel_mass: float = 0.2
-    """Mass of the wheel [kg]."""
-    load_mass: float = 0.1
-    """Mass of the pendulum's bob [kg]."""
-    offset: float = 0.025
-    """Length of the pendulum, from the axle to the bob [m]."""
-
-    def at(self, alpha: float) -> Scene:
-        return pendulum(
-            incline=alpha,
-            wheel_mass=self.wheel_mass,
-            load_mass=self.load_mass,
-            offset=self.offset,
-            radius=self.radius,
-            length=self.length,
-            gravity=self.gravity,
-        )
-
-
-@dataclass(frozen=True)
-class Hoop(Common):
-    """A hoop with a point load on its rim, which can hop (appendix A.4 of the paper)."""
-
-    incline: float = 0.0
-    """Angle of the incline to the horizontal [degrees]; if positive, u grows downhill."""
-    hoop_mass: float = 0.01
-    """Mass of the hoop [kg]."""
-    load_mass: float = 0.2
-    """Mass of the load [kg]."""
-
-    def at(self, alpha: float) -> Scene:
-        return hoop(
-            incline=alpha,
-            hoop_mass=self.hoop_mass,
-            load_mass=self.load_mass,
-            radius=self.radius,
-            length=self.length,
-            gravity=self.gravity,
-        )
-
-
-AnyScene = Sliding | Liquid | Frozen | Pendulum | Hoop
-SCENES: dict[str, type[Common]] = {scene.__name__.lower(): scene for scene in get_args(AnyScene)}
-"""The classes of the scenes, by the names that they have on the command line."""
-
-
-@dataclass(frozen=True)
-class Start:
-    """The options of a motion's start: the scene and its initial state."""
-
-    scene: AnyScene
-    _: KW_ONLY
-    phi0: float = round(math.degrees(PHI0), 9)
-    """Initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline, 180 where it
-    is farthest, and growing as the load turns with a can that rolls downhill."""
-    phi_dot0: float = 0.0
-    """Initial rate of change of phi [degrees/s]."""
-
-    @property
-    def state(self) -> dict[str, Any]:
-        """The initial phi0 [rad] and phi_dot0 [rad/s]."""
-        return {
-            "phi0": degrees("phi0", self.phi0),
-            "phi_dot0": radians("phi_dot0", self.phi_dot0, "degrees/s"),
-        }
-
-
-@dataclass(frozen=True)
-class Motion(Start):
-    """The options of a simulation: the scene, the start of its motion, and how it is integrated."""
-
-    duration: float = DURATION
-    """Duration of the motion [s]."""
-    rolling: Rolling = "reduced"
-    """What makes the can roll: reduced coordinates, a joint equality, or contact with friction."""
-    integrator: Annotated[Integrator | None, if_given(Integrator, "RK4, or what keeps a tolerance")] = None
-    """Integrator: one of MuJoCo's, by its name in MJCF, DOP853 (Runge-Kutta, order 8) or GaussJackson (multistep)."""
-    timestep: float = 1e-3
-    """Timestep; if a tolerance is given, the interval between samples [s]."""
-    tolerance: Annotated[float | None, if_given(float, "none")] = None
-    """Largest error allowed in phi and u/radius [rad]. If given, the integrator and its timesteps are chosen for it."""
-    friction: float = 1.0
-    """Coefficient of friction. A contact slips beyond it; other ways of rolling only say when a real can would."""
-
-    def simulate(self) -> "Trajectory":
-        """Simulate the scene and return its trajectory.
-
-        Raises:
-          MjbeerError: if an option is not allowed, or the simulation fails.
-        """
-        from mjbeer.simulation.simulate import simulate
-
-        return simulate(
-            self.scene.told_scene(),
-            self.duration,
-            **self.state,
-            rolling=self.rolling,
-            integrator=self.integrator,
-            timestep=self.timestep,
-            tolerance=self.tolerance,
-            friction=self.friction,
-        )
+def scene(given: Namespace) -> Scene:
+    """Return the scene that was asked for, and say what a liquid takes that was not given."""
+    options = asked(given)
+    if given.scene == "liquid":
+        say(str(make(liquid_in, **{name: value for name, value in options.items() if name != "drag"})))
+    return make(SCENES[given.scene], **options)

@@ -1,17 +1,16 @@
-"""The commands about one motion: simulate, render and export."""
+"""The commands about one motion: simulate, render, view and export."""
 
 import math
 import pathlib
+from argparse import Namespace
 from contextlib import nullcontext
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mjbeer.cli.arguments import Motion, Start, if_given
-from mjbeer.drawing.world.cameras import Camera
+from mjbeer.cli.arguments import REQUIRED, Option, command, model_options, run_options, scene, start, steps
+from mjbeer.drawing.world.cameras import CAMERAS
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
 
@@ -23,129 +22,106 @@ _FPS = 30
 """Pictures per second of a video."""
 _TURN = 1.0
 """Largest turn from picture to picture [rad] that the eye can follow well: a sixth of a circle."""
+_SPEED = Option("speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0)
+_CAMERA = (
+    "fixed (stands still and shows the whole motion), pan (moves along with a constant acceleration), close (goes "
+    "with the can), or auto: fixed, unless the can would be too small"
+)
+_PORTABLE = (
+    "write MJCF that MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load too, with Euler, implicitfast or RK4 as "
+    "integrator; docs/portability.md has each tool's error"
+)
 
 
-@dataclass(frozen=True)
-class Simulate(Motion):
+def trajectory_of(given: Namespace) -> "Trajectory":
+    """Simulate the scene that was asked for and return its trajectory."""
+    from mjbeer.simulation.simulate import simulate
+
+    return simulate(scene(given), given.duration, **start(given), **steps(given))
+
+
+@command(
+    *run_options(),
+    Option("output", 'CSV file to write; "-" is standard output', None, pathlib.Path, "no CSV"),
+    Option("json", "print the key figures and the warnings as JSON", kind=bool),
+    numbers=float,
+)
+def simulate(given: Namespace) -> int:
     """Simulate a scene and print its key figures, with an estimate of the error."""
+    from mjbeer.cli.figures import Figures
+    from mjbeer.theory.trajectory import csv
 
-    output: Annotated[pathlib.Path | None, if_given(pathlib.Path, "no CSV")] = None
-    """CSV file to write; "-" is standard output."""
-    json: bool = False
-    """Print the key figures and the warnings as JSON."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status, 0."""
-        from mjbeer.cli.figures import Figures
-        from mjbeer.theory.trajectory import csv
-
-        to_output = str(self.output) == "-"
-        if to_output and self.json:
-            raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
-        with files.whole(self.output) if self.output and not to_output else nullcontext() as temporary:
-            figures = Figures(self.simulate(), self.friction)
-            if temporary:
-                temporary.write_text(csv(figures.trajectory), encoding="utf-8")
+    to_output = str(given.output) == "-"
+    if to_output and given.json:
+        raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
+    with files.whole(given.output) if given.output and not to_output else nullcontext() as temporary:
+        figures = Figures(trajectory_of(given), given.friction)
         if temporary:
-            say(f"wrote {self.output}")
-        if to_output:
-            terminal.write(csv(figures.trajectory))
-            say(figures.text().rstrip())
-        else:
-            terminal.write(figures.json() if self.json else figures.text())
-        _warn(figures)
-        return 0
+            temporary.write_text(csv(figures.trajectory), encoding="utf-8")
+    if temporary:
+        say(f"wrote {given.output}")
+    if to_output:
+        terminal.write(csv(figures.trajectory))
+        say(figures.text().rstrip())
+    else:
+        terminal.write(figures.json() if given.json else figures.text())
+    _warn(figures)
+    return 0
 
 
-@dataclass(frozen=True)
-class Render(Motion):
+@command(
+    *run_options(),
+    Option("output", "MP4 file to write", pathlib.Path("mjbeer.mp4"), pathlib.Path),
+    _SPEED,
+    Option("camera", _CAMERA, "auto", CAMERAS),
+    Option("width", "width of the video [pixels]", 1280, int),
+    Option("height", "height of the video [pixels]", 720, int),
+    numbers=float,
+)
+def render(given: Namespace) -> int:
     """Simulate a scene and draw it as a video (MP4)."""
+    from mjbeer.cli.figures import Figures
+    from mjbeer.drawing.video import render
 
-    output: pathlib.Path = pathlib.Path("mjbeer.mp4")
-    """MP4 file to write."""
-    speed: float = 1.0
-    """Playback speed: 1 is real time, 0.25 is four times slower."""
-    camera: Camera = "auto"
-    """Camera: fixed (it stands still and shows the whole motion), pan (it moves along with a constant acceleration),
-    close (it goes along with the can), or auto: fixed, unless the can would be too small."""
-    width: int = 1280
-    """Width of the video [pixels]."""
-    height: int = 720
-    """Height of the video [pixels]."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status, 0."""
-        from mjbeer.cli.figures import Figures
-        from mjbeer.drawing.video import render
-
-        trajectory = self.simulate()
-        _warn(Figures(trajectory, self.friction))
-        _warn_of_turns(trajectory, self.speed)
-        render(
-            trajectory,
-            self.output,
-            width=self.width,
-            height=self.height,
-            fps=_FPS,
-            speed=self.speed,
-            camera=self.camera,
-        )
-        say(f"wrote {self.output}")
-        return 0
-
-
-@dataclass(frozen=True)
-class Export(Start):
-    """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
-
-    output: pathlib.Path
-    """MJCF file to write, whose name ends in .xml; its keyframe "start" is the initial state."""
-    rolling: Rolling = "reduced"
-    """What makes the can roll: reduced coordinates, a joint equality, or contact with friction. The reduced model of a
-    frozen load has phi as its only coordinate, so MuJoCo shows it turning in place."""
-    integrator: MujocoIntegrator = "RK4"
-    """Integrator: one of MuJoCo's, by its name in MJCF."""
-    timestep: float = 1e-3
-    """Timestep [s]."""
-    friction: float = 1.0
-    """Coefficient of friction, used only with rolling by contact."""
-    portable: bool = False
-    """Write MJCF that MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load too. In double precision the paper's scenes
-    are within 1e-7 rad of exact theory after a second, as without it; with a contact within 2e-6 rad, not 3e-7.
-    docs/portability.md has each tool's error. The integrator must be Euler, implicitfast or RK4."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status, 0."""
-        from mjbeer.model.export import export
-
-        export(
-            self.scene.told_scene(),
-            self.output,
-            **self.state,
-            rolling=self.rolling,
-            integrator=self.integrator,
-            timestep=self.timestep,
-            friction=self.friction,
-            portable=self.portable,
-        )
-        start = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
-        say(f"wrote {self.output}; {start}")
-        return 0
-
-
-def _warn_of_turns(trajectory: "Trajectory", speed: float) -> None:
-    """Say how slowly a motion must be shown in which can or load turn too far from picture to picture."""
-    fastest = max(float(np.abs(rate).max()) for rate in (trajectory.roll_dot, trajectory.phi_dot))
-    turn = fastest * speed / _FPS
+    trajectory = trajectory_of(given)
+    _warn(Figures(trajectory, given.friction))
+    turn = given.speed / _FPS * max(float(np.abs(rate).max()) for rate in (trajectory.roll_dot, trajectory.phi_dot))
     if turn > _TURN:
-        slower = speed * _TURN / turn
-        digit = 10.0 ** math.floor(math.log10(slower))
-        advice = math.floor(slower / digit) * digit  # never rounded up to the speed itself
-        say(
-            f"note: can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture, which deceives "
-            f"the eye; --speed {advice:.1g} shows it better",
-            "yellow",
-        )
+        told = f"can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture"
+        say(f"note: {told}; a --speed below {given.speed * _TURN / turn:.2g} shows it better", "yellow")
+    picture = {name: getattr(given, name) for name in ("width", "height", "speed", "camera")}
+    render(trajectory, given.output, fps=_FPS, **picture)
+    say(f"wrote {given.output}")
+    return 0
+
+
+@command(*model_options(rolling=None), _SPEED, numbers=float)
+def view(given: Namespace) -> int:
+    """Open a scene in MuJoCo's viewer, paused at its start.
+
+    The space bar runs and pauses it, backspace goes back to the start, and F4 plots u, phi and the other sensors. The
+    reduced model of a frozen load has phi as its only coordinate, so it turns in place.
+    """
+    from mjbeer.drawing.viewer import view
+
+    view(scene(given), **start(given), **steps(given), speed=given.speed)
+    return 0
+
+
+@command(
+    *model_options(),
+    Option("output", 'MJCF file to write (.xml); its keyframe "start" is the start', None, pathlib.Path, REQUIRED),
+    Option("portable", _PORTABLE, kind=bool),
+    numbers=float,
+)
+def export(given: Namespace) -> int:
+    """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
+    from mjbeer.model.export import export
+
+    export(scene(given), given.output, **start(given), **steps(given), portable=given.portable)
+    keyframe = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
+    say(f"wrote {given.output}; {keyframe}")
+    return 0
 
 
 def _warn(figures: "Figures") -> None:

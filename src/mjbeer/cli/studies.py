@@ -1,160 +1,128 @@
-"""The commands that check and measure: validate, report, benchmark, stability and paper."""
+"""The commands that check and measure: validate, benchmark, stability, paper and report."""
 
 import pathlib
 import time
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated
+from argparse import Namespace
+from typing import TYPE_CHECKING
 
-import tyro
-
-from mjbeer.cli.arguments import CaseName
+from mjbeer import require
+from mjbeer.cli.arguments import Option, command
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
-from mjbeer.studies.cases import DEFAULT
-from mjbeer.studies.rows import told
+from mjbeer.studies.cases import DEFAULT, MEASURED
 
 if TYPE_CHECKING:
     from mjbeer.studies.validation.run import Validation
 
 _FAILED = 1
+_KEPT = "folder to write to; an interrupted study in it is continued"
 
 
-@dataclass(frozen=True)
-class Validate:
+def _folder(name: str, told: str = "folder to write to") -> Option:
+    return Option("output", told, pathlib.Path(name), pathlib.Path)
+
+
+def _flag(name: str, told: str) -> Option:
+    return Option(name, told, kind=bool)
+
+
+@command(_flag("table", "print every row, not only those that failed"), _flag("json", "print the results as JSON"))
+def validate(given: Namespace) -> int:
     """Check models and paper against exact theory; exit status 1 if a check fails."""
+    from mjbeer.studies.validation.run import validate
 
-    table: bool = False
-    """Print every row, not only those that failed."""
-    json: bool = False
-    """Print the results as JSON."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status: 0, or 1 if a check failed."""
-        from mjbeer.studies.validation.run import validate
-
-        began = time.perf_counter()
-        validation = validate(STDERR)
-        if self.json:
-            terminal.write(validation.json())
-        elif self.table and terminal.is_read_by_eye():
-            show(*validation.tables())
-        elif self.table:
-            show(validation.table())
-        return _conclude(validation, began)
+    began = time.perf_counter()
+    validation = validate(STDERR)
+    if given.json:
+        terminal.write(validation.json())
+    elif given.table and terminal.is_read_by_eye():
+        show(*validation.tables())
+    elif given.table:
+        show(validation.table())
+    return _conclude(validation, began)
 
 
-@dataclass(frozen=True)
-class Report:
+@command(
+    _folder("report"),
+    _flag("quick", "draw smaller videos with fewer frames, and no films for the paper's scenarios"),
+    _flag("table", "also print the tables of the validation, which are on the page"),
+)
+def report(given: Namespace) -> int:
     """Validate, draw the scenes and the paper's stories, and write a page that shows it all.
 
     The exit status is 1 if a check fails. Without OpenGL or ffmpeg there are no films.
     """
+    from mjbeer.report.write import write
 
-    output: pathlib.Path = pathlib.Path("report")
-    """Folder to write to."""
-    quick: bool = False
-    """Draw smaller videos with fewer frames, and no films for the paper's scenarios."""
-    table: bool = False
-    """Also print the tables of the validation, which are on the page."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status: 0, or 1 if a check failed."""
-        from mjbeer.report.write import write
-
-        began = time.perf_counter()
-        validation, not_drawn = write(self.output, self.quick, STDERR)
-        if self.table:
-            show(*validation.tables())
-        if not_drawn:
-            say(not_drawn, "yellow")
-        say(f"the report is in {self.output / 'index.html'}")
-        return _conclude(validation, began)
+    began = time.perf_counter()
+    validation, not_drawn = write(given.output, given.quick, STDERR)
+    if given.table:
+        show(*validation.tables())
+    if not_drawn:
+        say(not_drawn, "yellow")
+    say(f"the report is in {given.output / 'index.html'}")
+    return _conclude(validation, began)
 
 
-@dataclass(frozen=True)
-class Benchmark:
+@command(
+    Option("scenes", f"scenes to measure, of {', '.join(MEASURED)}", DEFAULT),
+    _folder("benchmark", _KEPT),
+    _flag("quick", "try fewer timesteps and tolerances; takes two minutes"),
+)
+def benchmark(given: Namespace) -> int:
     """Measure error against run time of integrators and other tools, in seven minutes."""
+    from mjbeer.studies.benchmark import measure, tables
 
-    scenes: Annotated[tuple[CaseName, ...], tyro.conf.Positional] = DEFAULT
-    """Scenes to measure."""
-    output: pathlib.Path = pathlib.Path("benchmark")
-    """Folder to write to; an interrupted study in it is continued."""
-    quick: bool = False
-    """Try fewer timesteps and tolerances; takes two minutes."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status, 0."""
-        from mjbeer.studies.benchmark import measure, tables
-
-        with files.locked(self.output):
-            study = measure.conduct(names=self.scenes, folder=self.output, quick=self.quick, console=STDERR)
-            tables.write(study, self.output)
-        show(*tables.tables(study))
-        say(f"the study is in {self.output / 'summary.md'}")
-        return 0
+    names = [require.choice("scene", name, MEASURED) for name in given.scenes] or DEFAULT
+    with files.locked(given.output):
+        study = measure.conduct(names=names, folder=given.output, quick=given.quick, console=STDERR)
+        tables.write(study, given.output)
+    show(*tables.tables(study))
+    say(f"the study is in {given.output / 'summary.md'}")
+    return 0
 
 
-@dataclass(frozen=True)
-class Stability:
+@command(
+    _folder("stability", _KEPT),
+    _flag("long", "run the whole study: all integrators, finer maps, 20000 random runs; takes forty minutes"),
+    _flag("quick", "make 250 random runs instead of 3000; takes two minutes"),
+    _flag("maps", "make only the maps of timestep and stiffness or damping, but all 58, and fine; takes five minutes"),
+    _flag("json", "print the results as JSON"),
+)
+def stability(given: Namespace) -> int:
     """Test stiff and extreme cases and the limits of stability, in five minutes; exit status 1 if theory disagrees."""
+    from mjbeer.studies.rows import told
+    from mjbeer.studies.stability import study as stability
 
-    output: pathlib.Path = pathlib.Path("stability")
-    """Folder to write to; an interrupted study in it is continued."""
-    long: bool = False
-    """Run the whole study: all integrators, finer maps, 20000 random runs; takes forty minutes."""
-    quick: bool = False
-    """Make 250 random runs instead of 3000; takes two minutes."""
-    maps: bool = False
-    """Make only the maps of timestep and stiffness or damping, but all 58 of them, and fine; takes five minutes."""
-    json: bool = False
-    """Print the results as JSON."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status: 0, or 1 if a check failed.
-
-        Raises:
-          ParameterError: if more than one of long, quick and maps is asked for.
-        """
-        from mjbeer.studies.stability import study as stability
-
-        asked = [extent for extent in ("long", "quick", "maps") if getattr(self, extent)]
-        if len(asked) > 1:
-            options = " and ".join(f"--{extent}" for extent in asked)
-            raise ParameterError(f"{options} exclude each other: take one of them, or neither")
-        extent = asked[0] if asked else "usual"
-        with files.locked(self.output):
-            study = stability.conduct(self.output, extent, STDERR)
-            stability.write(study, self.output)
-        if self.json:
-            terminal.write(stability.to_json(study))
-        else:
-            show(*stability.tables(study))
-        for result in study.failed:
-            say(f"not as theory expects: {result.group}: {told(result)}", "red")
-        say(f"the study is in {self.output / 'summary.md'}")
-        return _FAILED if study.failed else 0
+    asked = [f"--{each}" for each in ("long", "quick", "maps") if getattr(given, each)]
+    if len(asked) > 1:
+        raise ParameterError(f"{' and '.join(asked)} exclude each other: take one of them, or neither")
+    extent = asked[0].strip("-") if asked else "usual"
+    with files.locked(given.output):
+        study = stability.conduct(given.output, extent, STDERR)
+        stability.write(study, given.output)
+    if given.json:
+        terminal.write(stability.to_json(study))
+    else:
+        show(*stability.tables(study))
+    for result in study.failed:
+        say(f"not as theory expects: {result.group}: {told(result)}", "red")
+    say(f"the study is in {given.output / 'summary.md'}")
+    return _FAILED if study.failed else 0
 
 
-@dataclass(frozen=True)
-class Paper:
+@command(_folder("paper"), _flag("films", "also draw films of the motions"))
+def paper(given: Namespace) -> int:
     """Plot each of the paper's scenarios, and write a folder with a summary."""
+    from mjbeer.drawing import opengl
+    from mjbeer.paper import stories
 
-    output: pathlib.Path = pathlib.Path("paper")
-    """Folder to write to."""
-    films: bool = False
-    """Also draw films of the motions."""
-
-    def run(self) -> int:
-        """Run the command and return its exit status, 0."""
-        from mjbeer.drawing import opengl
-        from mjbeer.paper import stories
-
-        missing = stories.write(self.output, self.films, STDERR)
-        say(f"the stories are in {self.output / 'stories.md'}")
-        if missing:
-            say(opengl.missing(missing), "yellow")
-        return 0
+    missing = stories.write(given.output, given.films, STDERR)
+    say(f"the stories are in {given.output / 'stories.md'}")
+    if missing:
+        say(opengl.missing(missing), "yellow")
+    return 0
 
 
 def _conclude(validation: "Validation", began: float) -> int:
