@@ -157,10 +157,12 @@ def _lighter(svg: str) -> str:
 
     def telling(line: re.Match[str]) -> str:
         texts = iter(line[1].split("\n"))
-        return "<g>" + re.sub(
-            "(<use [^>]*)/>", lambda one: f"{one[1]}><title>{text}</title></use>" if (text := next(texts, "")) else one[0],
-            line[2],
-        )  # fmt: skip
+
+        def told(point: re.Match[str]) -> str:
+            text = next(texts, "")  # what follows the line's points are those of other lines
+            return f"{point[1]}><title>{text}</title></use>" if text else point[0]
+
+        return "<g>" + re.sub("(<use [^>]*)/>", told, line[2])
 
     used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', svg))
     svg = re.sub(r' id="([^"]*)"', lambda name: name[0] if name[1] in used or name[1].startswith(_TOLD) else "", svg)
