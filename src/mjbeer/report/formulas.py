@@ -55,7 +55,8 @@ def _line(latex: str) -> Markup:
         # At its beginning a sign would stand close to what follows, as that of a number does.
         terms[-1] += part.replace("<mo>", '<mo form="infix">', 1) if starts else part
         before = read[-1:] or before
-    return Markup(f'<span class="line">{" ".join(f"{text[:begin]}{term}</mrow></math>" for term in terms)}</span>')
+    elements = "\N{ZERO WIDTH SPACE}".join(f"{text[:begin]}{term}</mrow></math>" for term in terms)
+    return Markup(f'<span class="line">{elements}</span>')
 
 
 def _parts(mathml: str) -> list[str]:
