@@ -13,9 +13,12 @@ import pytest
 from mjbeer import paper
 from mjbeer.cli.app import main
 from mjbeer.drawing.film import Take
+from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.paper.row import Misprint
 from mjbeer.report import films, formulas, page
+from mjbeer.studies.benchmark import diagrams
+from mjbeer.studies.stability import stiff_maps
 from tests.support import pages, stubs
 from tests.support.pages import Page
 
@@ -94,6 +97,15 @@ def test_a_plot_has_its_title_as_heading_opens_large_and_its_points_tell_what_th
         "name", "title", '<svg viewBox="0 0 9 9"><g id="a"/><use href="#a" style="fill: url(#a)"/></svg>', 9
     )
     assert shown.inline.count("name-a") == 3
+
+
+def test_the_plots_of_a_page_are_those_that_are_drawn_for_it(
+    folder: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(diagrams, "draw", lambda study, path: files.write(path.with_name(f"{path.name}.svg"), ""))
+    monkeypatch.setattr(stiff_maps, "draw", lambda path, *_, **__: files.write(path.with_name(f"{path.name}.svg"), ""))
+    page.draw_plots(tmp_path)
+    assert {each.name for each in tmp_path.iterdir()} == {each.name for each in (folder / "plots").iterdir()}
 
 
 def test_a_plot_is_cut_below_its_title(tmp_path: pathlib.Path) -> None:

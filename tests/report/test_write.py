@@ -137,18 +137,6 @@ def test_what_was_written_before_a_failure_is_whole_and_has_no_page(
     assert json.loads((tmp_path / "validation.json").read_text())["passed"] is True
 
 
-def test_a_folder_that_cannot_be_written_is_told_before_the_work(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    stubs.validate(monkeypatch, first=1e-5)
-    calls = stubs.draw(monkeypatch)
-    (tmp_path / "file").write_text("")
-    folder = tmp_path / "file" / "report"
-    assert main(["report", "--output", str(folder)]) == 2
-    assert capsys.readouterr().err == f"mjbeer: cannot write {folder / 'index.html'}: Not a directory\n"
-    assert not calls
-
-
 def test_a_check_that_cannot_be_measured_ends_the_report(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
