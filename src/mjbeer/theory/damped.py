@@ -12,7 +12,7 @@ the step, whose last one is its end: the Radau IIA method of order 2s - 1. It is
 fast, takes no small steps once it is gone. Polynomials are kept as sums of Legendre polynomials over the step, x = -1
 to 1. (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, IV.5.)
 
-Where w or roll_dot passes zero, its absolute value has a corner, of which the last terms tell: steps get short there.
+Where w or roll_dot passes zero, its absolute value has a corner: a step that would pass one is taken again up to there.
 """
 
 import math
@@ -23,7 +23,7 @@ from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Start
-from mjbeer.theory.oscillator import reduced
+from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 
 _STAGES = 19
@@ -38,6 +38,8 @@ _TAIL = 1e-14
 """Size of the terms of a step's polynomials that may be missing, relative to the rates."""
 _GROWTH = 10.0
 """Largest ratio of a step to the one before."""
+_BESIDE = 1e-6
+"""Share of a step that a corner may be from its ends. The torque beside the corner is the square of that, or less."""
 
 
 def _points() -> np.ndarray:
@@ -58,6 +60,9 @@ _MATRIX = legendre.legvander(_POINTS, _STAGES) @ _INTEGRALS
 _TO_SERIES = np.linalg.inv(legendre.legvander(np.append(-1.0, _POINTS), _STAGES))
 """The coefficients P_0 to P_s of the polynomial through values at the start and the stages."""
 _EYE = np.eye(_STAGES)
+_ENDS = np.stack([np.append(-1.0, _POINTS[:-1]), _POINTS], axis=1)
+"""Each stage and the one before it, between which a corner is looked for."""
+_VALUES = legendre.legvander(np.append(-1.0, _POINTS), _STAGES)
 
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -109,14 +114,17 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
     order = np.argsort(time)
     pace = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
     start = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
-    turned, rolled, phi_dot, slip = _follow(_equations(scene), time[order], start, pace)[:, np.argsort(order)]
+    kinks = np.array([[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)).reshape(-1, 2)
+    followed = _follow(_equations(scene), time[order], start, pace, kinks)
+    turned, rolled, phi_dot, slip = followed[:, np.argsort(order)]
     return phi0 + turned, phi_dot, u0 + radius * rolled, radius * (phi_dot + slip)
 
 
-def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float) -> np.ndarray:
+def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kinks: np.ndarray) -> np.ndarray:
     """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times, of shape (4, times).
 
-    The `state` is phi, phi_dot and w at time 0; `pace` is that of a swing [rad/s].
+    The `state` is phi, phi_dot and w at time 0, `pace` is that of a swing [rad/s], and `kinks` are the sums of phi_dot
+    and w, of shape (sums, 2), whose absolute values count.
     """
     now, latest, turned, farthest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
     done = int(np.searchsorted(time, 0.0, "right"))
@@ -136,6 +144,9 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float) -> n
             continue
         stages, slopes, matrix = solved
         series = _TO_SERIES @ np.vstack([state[1:], stages.T])
+        if (corner := _corner(series @ kinks.T)) is not None:
+            length *= corner
+            continue
         sizes = (np.abs(series[:-1]) / np.maximum(scale, np.abs(stages).max(axis=1))).max(axis=1)
         needed = 1 + int(np.flatnonzero(sizes > _TAIL).max(initial=0))
         if needed == _STAGES:
@@ -165,6 +176,17 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float) -> n
         f"the motion takes more than {_STEPS} steps, which end at {now:.6g} s of {latest:.6g} s: it is too fast or "
         "too long to be followed"
     )
+
+
+def _corner(sums: np.ndarray) -> float | None:
+    """Return the share of a step at which the first of the `sums`, of shape (stages + 1, sums), passes zero inside."""
+    signs, found = np.sign(_VALUES @ sums), []
+    for which, place in zip(*np.nonzero(np.diff(signs, axis=0).T), strict=True):
+        zero = root(
+            lambda x, of=which, sign=signs[place, which]: -sign * legendre.legval(x, sums[:, of]), *_ENDS[place]
+        )
+        found.append((1 + zero) / 2)
+    return min((share for share in found if _BESIDE < share < 1 - _BESIDE), default=None)
 
 
 def _newton(
