@@ -38,7 +38,7 @@ portability: $(TOOLS)
 	$(BIN)/python -m tests.support.others
 
 renders: $(PACKAGE)
-	$(BIN)/python -m mjbeer.report.gallery renders
+	$(BIN)/python -m mjbeer.report.films renders
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .

@@ -44,7 +44,8 @@ def test_a_title_and_a_scene_stand_above_the_axes(tmp_path: pathlib.Path, monkey
         plots.name_below([axes], 1)
     assert not figures.faults(seen[0])
     svg = (tmp_path / "plot.svg").read_text()
-    assert "<title>What it shows: of which scene</title>" in svg
+    assert "<title>What it shows</title>" in svg
+    assert "<dc:description>of which scene</dc:description>" in svg
     assert {"What it shows", "of which scene", "a line", "time [s]"} <= set(
         re.findall(r"<text[^>]*>([^<]*)</text>", svg)
     )

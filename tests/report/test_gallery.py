@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from mjbeer.report import gallery
-from mjbeer.report.films import FILMS
+from mjbeer.report.films import FILMS, GALLERY
 
 pytestmark = pytest.mark.slow
 
@@ -27,13 +26,14 @@ def test_there_is_one_of_each_film() -> None:
 @pytest.mark.parametrize("name", FILMS)
 def test_it_is_of_today(name: str) -> None:
     """Two of its pictures, drawn anew, are the same but for the compression; after a change, `make renders` is due."""
+    width, height, fps = GALLERY
     reel = FILMS[name].reel()
-    times = reel.times(gallery.FPS)
+    times = reel.times(fps)
     with Image.open(RENDERS / f"{name}.webp") as image:
         assert getattr(image, "n_frames", 1) == len(times)
         for place in (len(times) // 3, len(times) - 1):
             image.seek(place)
             kept = np.asarray(image.convert("RGB")).astype(float)
-            (drawn,) = reel.draw(times[place : place + 1], gallery.WIDTH, gallery.HEIGHT)
-            blocks = (kept - drawn).reshape(gallery.HEIGHT // BLOCK, BLOCK, gallery.WIDTH // BLOCK, BLOCK, 3)
+            (drawn,) = reel.draw(times[place : place + 1], width, height)
+            blocks = (kept - drawn).reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3)
             assert np.abs(blocks.mean(axis=(1, 3))).max() < COMPRESSION

@@ -11,14 +11,21 @@ from PIL import Image
 from mjbeer import exact, frozen, paper
 from mjbeer.drawing import encoder
 from mjbeer.drawing.film import Take
+from mjbeer.output import files
 from mjbeer.paper import stories as paper_stories
 from mjbeer.paper.row import CORRECTED, Finding
 from mjbeer.paper.stories import Story
 from mjbeer.report import films
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.rows import Result
+from mjbeer.studies.stability import stiff_maps
 from mjbeer.studies.validation.run import Validation
 
-PLOT = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 30"><rect width="5" height="5"/></svg>'
+PLOT = (
+    '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 900 300"><title>A plot of {}</title>'
+    '<defs><path id="dot" d="M0 40h9v9z"/></defs><use href="#dot"><title>a setting</title></use></svg>'
+)
+"""A wide plot with a title, and a point that tells something."""
 SIZE = (64, 36, 10)
 """Width and height [pixels] and frames per second of the films, which last a second."""
 
@@ -46,11 +53,18 @@ def stories() -> list[Story]:
     ]
 
 
+def plots(folder: pathlib.Path) -> None:
+    """Write plots of the benchmark and of stability that are nearly empty into a folder."""
+    names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
+    for name in (*names, *(figure.name for figure in (*stiff_maps.FIGURES, stiff_maps.DAMPED_FIGURE))):
+        files.write(folder / f"{name}.svg", PLOT.format(name))
+
+
 def fill(folder: pathlib.Path, encoded: bool = False) -> None:
     """Write the files that a page shows into a folder: films are `encoded`, or else a few letters."""
-    (folder / "paper").mkdir()
+    plots(folder / "plots")
     for name in ("letters", *(story.name for story in paper_stories.stories())):
-        (folder / "paper" / f"{name}.svg").write_text(PLOT)
+        files.write(folder / "paper" / f"{name}.svg", PLOT.format(name))
     for name in (*films.FILMS, *(f"paper/{story.name}" for story in paper_stories.stories() if story.film)):
         if encoded:
             width, height, fps = SIZE

@@ -8,6 +8,7 @@ from functools import partial
 from typing import Any
 
 import pytest
+from PIL import Image
 from rich.console import Console
 
 from mjbeer import exact, paper, sliding
@@ -19,11 +20,13 @@ from mjbeer.paper import stories
 from mjbeer.paper.row import Bound, Witness
 from mjbeer.paper.row import Row as Claim
 from mjbeer.paper.stories import Story
+from mjbeer.report import page
 from mjbeer.studies.benchmark import measure, peers, sweeps
 from mjbeer.studies.benchmark.points import Curve
 from mjbeer.studies.rows import Row
 from mjbeer.studies.stability import search, stiff_maps, study
 from mjbeer.studies.validation import run as validation
+from tests.support import pages
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
@@ -105,14 +108,14 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
         return instead
 
     def tell(path: pathlib.Path) -> None:
-        files.write(path.with_name(f"{path.name}.svg"), "plot")
+        files.write(path.with_name(f"{path.name}.svg"), pages.PLOT)
 
     def produce(orders: Sequence[studio.Order], _: Console) -> None:
         for order in orders:
             if order.path.name == fail_at:
                 raise RenderingError(f"cannot draw {fail_at}")
             files.write(order.path, "film")
-            files.write(order.path.with_name(f"{order.path.stem}-still.png"), "still")
+            Image.new("RGB", pages.SIZE[:2]).save(order.path.with_name(f"{order.path.stem}-still.png"))
             calls.append({"function": "produce", "film": order.film, "path": order.path, "width": order.width})
 
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
@@ -120,6 +123,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
     monkeypatch.setattr(opengl, "problem", lambda: None)
     monkeypatch.setattr(encoder, "problem", lambda: None)
     monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
+    monkeypatch.setattr(page, "draw_plots", pages.plots)
     monkeypatch.setattr(viewer, "require_window", lambda: None)
     monkeypatch.setattr(viewer, "_play", lambda player: None)
     for name in ("render", "save_frame"):

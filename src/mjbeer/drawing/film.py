@@ -78,7 +78,7 @@ class Take:
     look: Look | None = None
     """What is drawn; None is the usual look of such a motion."""
     still: float = 0.0
-    """Time of the motion that the still picture of the film shows [s]."""
+    """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""
     """What is seen in it, in whole sentences, for the text beside the film."""
 

@@ -50,7 +50,8 @@ class Order:
         """Write film and still picture, each whole or not at all, and call `count` for each picture."""
         reel = self.film.reel()
         video.write(reel, self.path, self.width, self.height, self.fps, count)
-        picture = video.still(reel, self.film.still, self.width, self.height)
+        still = self.film.still or (2 * reel.start + reel.end) / 3  # at the start nothing has happened yet
+        picture = video.still(reel, still, self.width, self.height)
         with files.whole(self.path.with_name(f"{self.path.stem}-still.png")) as temporary:
             Image.fromarray(picture).save(temporary)
         count()

@@ -14,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatter, NullFormatter
 
 from mjbeer.output import files
@@ -53,6 +54,8 @@ STYLE: Any = {
 """Settings of matplotlib."""
 _TITLE, _SUBTITLE, _EDGE = 0.32, 0.24, 0.1
 """Heights of the title's and the subtitle's lines, and their distance from the edge [inches]."""
+_TOLD = "told "
+"""Begins the name of a line in an SVG whose points tell something."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -83,7 +86,7 @@ def chart(
         for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(_power))
-        named = {"Title": ": ".join(filter(None, (title, subtitle)))} if title else {}
+        named = {"Title": title, "Description": subtitle} if title else {}
         for kind, metadata in ((".svg", {"Date": None, **named}), (".png", {})):
             with files.whole(path.with_name(path.name + kind)) as temporary:
                 figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
@@ -107,6 +110,11 @@ def ticks(axis: Axis, values: Sequence[float]) -> None:
     axis.set_major_locator(FixedLocator(list(values)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", "\N{MINUS SIGN}")))
     axis.set_minor_formatter(NullFormatter())
+
+
+def tell(line: Line2D, texts: Sequence[str]) -> None:
+    """Let each point of a line with markers tell a text of one line where a pointer rests on it, in the SVG."""
+    line.set_gid(_TOLD + "\n".join(texts))
 
 
 def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = ()) -> None:
@@ -147,10 +155,20 @@ def _lighter(svg: str) -> str:
     def gathered(markers: re.Match[str]) -> str:
         return f"<g {markers[2]}>{markers[1].replace(' ' + markers[2], '')}</g>"
 
+    def telling(line: re.Match[str]) -> str:
+        texts = iter(line[1].split("\n"))
+
+        def told(point: re.Match[str]) -> str:
+            text = next(texts, "")  # what follows the line's points are those of other lines
+            return f"{point[1]}><title>{text}</title></use>" if text else point[0]
+
+        return "<g>" + re.sub("(<use [^>]*)/>", told, line[2])
+
     used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', svg))
-    svg = re.sub(r' id="([^"]*)"', lambda name: name[0] if name[1] in used else "", svg)
+    svg = re.sub(r' id="([^"]*)"', lambda name: name[0] if name[1] in used or name[1].startswith(_TOLD) else "", svg)
     svg = re.sub(r'\b(?:d|x|y)="[^"]*"', rounded, svg)
     svg = re.sub(r'((?:\s*<use [^>]*?(style="[^"]*")/>)(?:\s*<use [^>]*?\2/>)+)', gathered, svg)
     if fonts := re.search(r"font-family: [^;\"]*", svg):
         svg = svg.replace(f"{fonts[0]}; ", "").replace("<svg ", f'<svg style="{fonts[0]}" ', 1)
+    svg = re.sub(rf'(?s)<g id="{_TOLD}([^"]*)">(.*?)(?=<g id="{_TOLD}|$)', telling, svg)
     return re.sub(r"\n\s+", "\n", svg)

@@ -2,10 +2,11 @@
 
 import math
 import pathlib
+import sys
 from collections.abc import Sequence
 from functools import partial
 
-from mjbeer.drawing.film import Film, Take
+from mjbeer.drawing.film import Take
 from mjbeer.drawing.overlay.look import Look
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Order
@@ -14,7 +15,7 @@ from mjbeer.report import races
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 
-FILMS: dict[str, Film] = {
+FILMS: dict[str, Race | Take] = {
     "race": Race(
         "Which can wins?",
         races.of_beer,
@@ -80,6 +81,8 @@ COMMANDS = {
 """The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
 _SMALL, _LARGE = (640, 360, 30), (1280, 720, 30)
 """Width and height [pixels] and pictures per second of a film in a quick report, and in another one."""
+GALLERY = 720, 405, 20
+"""The same of an animated picture for the documents: each of the files then takes less than 1.5 MB."""
 
 
 def orders(folder: pathlib.Path, quick: bool) -> list[Order]:
@@ -96,3 +99,20 @@ def not_drawn(names: Sequence[str]) -> str:
     if opengl.problem():
         return opengl.missing(names)
     return encoder.missing(names) if encoder.problem() else ""
+
+
+def write_gallery(folder: pathlib.Path) -> None:
+    """Write each film as an animated WebP into a folder: the small gallery that the documents show.
+
+    Raises:
+      RenderingError: if OpenGL does not work; the message says what to do.
+      OutputError: if a file cannot be written.
+    """
+    from mjbeer.drawing import animation
+
+    for name, film in FILMS.items():
+        animation.write(film.reel(), folder / f"{name}.webp", *GALLERY)
+
+
+if __name__ == "__main__":
+    write_gallery(pathlib.Path(sys.argv[1]))

@@ -1,61 +1,114 @@
 """The page of the report: everything in one file that opens from the disk, and that fetches nothing."""
 
-import json
+import base64
+import io
 import math
 import pathlib
 import re
+import statistics
 from collections import Counter
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
+from PIL import Image
 
 from mjbeer import paper
+from mjbeer.drawing.race import Race
 from mjbeer.paper import stories
 from mjbeer.paper.row import Finding, Row
-from mjbeer.report import precision, stability
-from mjbeer.report.embed import data_uri, plotting
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
+from mjbeer.studies.benchmark import diagrams, tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.rows import machine
 from mjbeer.studies.stability import stiff_maps
 from mjbeer.studies.validation.run import Validation
 
-LIMIT = 25e6
-"""Largest size of the page [bytes]; films of the paper that would exceed it stay beside it as files."""
-_BASE64 = 4 / 3
-"""Size of a file in a page over that on the disk."""
+LIMIT = 8.5e6
+"""Largest size of films and plots in the page [bytes], which with its text is below 9 MB; films of the paper that would
+exceed it stay beside it as files."""
 _SMALL = 1e-3
 """A smaller share is a power of ten and not a percentage."""
-_WIDE = 2.0
-"""Width over height from which a plot takes the width of the page."""
-_BOX = re.compile(r'viewBox="\S+ \S+ (\S+) (\S+)"')
+_WIDE = 690.0
+"""Width [points] from which a plot takes the width of the page, so that its letters can be read."""
+_HEAD = 23.0
+"""Height of the title of a plot [points], which the page has as a heading: that of `output.plots`."""
+_KINDS = {".mp4": "video/mp4", ".svg": "image/svg+xml", ".webp": "image/webp"}
 _FAILED = re.compile(r"\*\*(.+?)\*\*")
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A film or a plot as the page shows it."""
+class Plot:
+    """A plot (SVG) as the page shows it: without its title, which is the heading above it."""
 
     name: str
+    title: str
+    svg: str
+    width: float
+    """Width [points]."""
+
+    @classmethod
+    def of(cls, path: pathlib.Path) -> "Plot":
+        """Read a plot and its title, which is its name if it has none."""
+        svg = path.read_text(encoding="utf-8")
+        svg = re.sub(r"(?s)<metadata>.*</metadata>", "", svg[svg.index("<svg") :])
+        title = re.search(r"<title>([^<]*)</title>", svg.partition("<g")[0])
+        corner, top, width, height = map(float, re.findall(r"[-\d.]+", svg.partition('viewBox="')[2])[:4])
+        if title:
+            top, height = top + _HEAD, height - _HEAD
+        size = f'viewBox="{corner:g} {top:g} {width:g} {height:g}"'
+        svg = re.sub(r'viewBox="[^"]*"', size, re.sub(r' (?:width|height)="[\d.]+pt"', "", svg, count=2), count=1)
+        return cls(path.stem, str(Markup(title[1]).unescape()) if title else path.stem, svg, width)
+
+    @property
+    def picture(self) -> str:
+        """The plot as a data: URI."""
+        return _uri(self.svg.encode(), ".svg")
+
+    @property
+    def inline(self) -> Markup:
+        """The plot as an element of the page, whose points then tell what they are; its names are its own."""
+        svg = re.sub(r'(id="|="#|url\(#)', rf"\1{self.name}-", self.svg)
+        return Markup(svg.replace("<svg ", f'<svg role="img" aria-label="{escape(self.title)}" ', 1))
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A film, a plot, or both, as the page shows them."""
+
+    name: str
+    title: str
     caption: str
     command: str
+    plot: Plot | None = None
     video: str = ""
     """The film as a data: URI; empty if there is none."""
-    picture: str = ""
-    """The poster of the film, or the plot, as a data: URI; empty if there is none."""
     poster: str = ""
-    """The poster of a story's film as a data: URI; empty if the film is not in the page."""
+    """A picture from the midst of the film as a data: URI; empty if the film is not in the page."""
     beside: str = ""
     """Where the film is, relative to the page, if it is too large for it."""
-    wide: bool = False
-    """Whether the plot has several panels side by side, and no film below: it needs the width of the page."""
+
+    @property
+    def wide(self) -> bool:
+        """Whether the plot has several panels side by side, and needs the width of the page."""
+        return self.plot is not None and self.plot.width > _WIDE
+
+
+def draw_plots(folder: pathlib.Path) -> None:
+    """Draw error against run time, scene by scene, and the stability maps that come with mjbeer, into a folder.
+
+    Raises:
+      OutputError: if a file cannot be written.
+    """
+    benchmark = Benchmark.load(SHIPPED)
+    for case in benchmark.cases:
+        diagrams.draw(replace(benchmark, points=benchmark.of(case)), folder / f"error-{case}")
+    stiff_maps.draw_all(stiff_maps.load(), folder)
 
 
 def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: str) -> str:
-    """Return the page on the films and stories in a folder; `not_drawn` says why films are missing, or is empty."""
+    """Return the page on the films, plots and stories in a folder; `not_drawn` says why films are missing, or is ""."""
     environment = Environment(
         loader=PackageLoader("mjbeer.report", "web"),
         autoescape=True,
@@ -66,32 +119,37 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
     environment.filters |= {"mathml": mathml, "power": power, "share": share, "marked": _marked}
     benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
     films = {name: _film(folder, name) for name in FILMS}
-    groups = stability.groups(maps["maps"])
-    plots = {"precision": precision.plot(benchmark)}
-    plots |= {f"{group['name']}-{place}": each["plot"] for group in groups for place, each in enumerate(group["plots"])}
+    errors = [Plot.of(folder / "plots" / f"error-{case}.svg") for case in benchmark.cases]
+    figures = [
+        Shown(plot.name, plot.title, figure.caption, maps["command"], plot)
+        for figure in (*stiff_maps.FIGURES, stiff_maps.DAMPED_FIGURE)
+        for plot in [Plot.of(folder / "plots" / f"{figure.name}.svg")]
+    ]
+    room = LIMIT - sum(len(film.video) + len(film.poster) for film in films.values())
+    room -= sum(len(plot.svg) for plot in errors) + sum(len(each.plot.picture) for each in figures if each.plot)
     return environment.get_template("page.html").render(
-        sketch=data_uri(folder / "paper" / "letters.svg"),
+        sketch=Plot.of(folder / "paper" / "letters.svg"),
         races=[films.pop(name) for name in RACES],
         films=list(films.values()),
         not_drawn=not_drawn,
-        tools=precision.TOOLS,
-        cases=precision.cases(benchmark),
+        errors=errors,
         benchmark=benchmark,
+        costs=[tables.others(benchmark), *(tables.cheapest(benchmark, case) for case in benchmark.cases)],
+        slower=_range(benchmark, "MuJoCo RK4"),
+        heyoka=_range(benchmark, "heyoka"),
         maps=maps,
-        groups=groups,
+        figures=figures,
+        runs=sum(len(cells) for each in maps["maps"] for cells in each["measured"]),
+        same=statistics.fmean(each["same"] for each in maps["maps"]),
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
         quoted=[row for row in paper.rows() if row.quote and not row.misprint],
         findings=len(validation.findings),
-        stories=_stories(folder, quick, LIMIT - sum(_size(film) for film in films.values())),
-        sentence=validation.sentence,
-        failures=validation.failures,
-        passed=validation.passed,
+        stories=_stories(folder, quick, room),
+        validation=validation,
         tables=validation.tables(document=True),
         machine=machine(),
         quick=quick,
-        plots=Markup(_json(plots)),
-        plotting=Markup(plotting()),
     )
 
 
@@ -115,11 +173,11 @@ def share(value: float) -> Markup:
 
 def _film(folder: pathlib.Path, name: str) -> Shown:
     """Return a film of the scenes with its poster, or without both if it was not drawn."""
-    video, poster = folder / f"{name}.mp4", folder / f"{name}-still.png"
+    film, video = FILMS[name], folder / f"{name}.mp4"
     command = f"{COMMANDS[name]} --output {name}.mp4" if name in COMMANDS else "mjbeer report"
-    if not video.exists():
-        return Shown(name, FILMS[name].caption, command)
-    return Shown(name, FILMS[name].caption, command, data_uri(video), data_uri(poster))
+    head = film if isinstance(film, Race) else film.look
+    shown = Shown(name, head.title if head else name, film.caption, command)
+    return replace(shown, video=_data(video), poster=_poster(video)) if video.exists() else shown
 
 
 def _stories(folder: pathlib.Path, quick: bool, room: float) -> list[Shown]:
@@ -127,33 +185,42 @@ def _stories(folder: pathlib.Path, quick: bool, room: float) -> list[Shown]:
 
     A `quick` report has no films of stories; an earlier one may have left some.
     """
-    command = "mjbeer paper" if quick else "mjbeer paper --films"
+    plots = [Plot.of(folder / "paper" / f"{story.name}.svg") for story in stories.stories()]
+    room -= sum(len(plot.picture) for plot in plots)
     shown = []
-    for story in stories.stories():
-        plot, video = (folder / "paper" / f"{story.name}.{kind}" for kind in ("svg", "mp4"))
-        picture = data_uri(plot)
-        room -= len(picture)
-        film, poster, beside = "", "", ""
+    for story, plot in zip(stories.stories(), plots, strict=True):
+        video = folder / "paper" / f"{story.name}.mp4"
+        each = Shown(story.name, plot.title, story.caption, "mjbeer paper" + " --films" * (not quick), plot)
         if story.film is not None and not quick and video.exists():
-            fits = _BASE64 * video.stat().st_size < room
-            if fits:
-                film, poster = data_uri(video), data_uri(video.with_name(f"{story.name}-still.png"))
-            else:
-                beside = f"paper/{story.name}.mp4"
-            room -= len(film) + len(poster)
-        wide = story.film is None and _aspect(plot) > _WIDE
-        shown.append(Shown(story.name, story.caption, command, film, picture, poster, beside, wide))
+            with_film = replace(each, video=_data(video), poster=_poster(video))
+            size = len(with_film.video) + len(with_film.poster)
+            each = with_film if size < room else replace(each, beside=f"paper/{story.name}.mp4")
+            room -= size if size < room else 0
+        shown.append(each)
     return shown
 
 
-def _aspect(plot: pathlib.Path) -> float:
-    """Return the width of a plot (SVG) over its height; 1 if it does not say."""
-    box = _BOX.search(plot.read_text(encoding="utf-8"))
-    return float(box[1]) / float(box[2]) if box else 1.0
+def _data(path: pathlib.Path) -> str:
+    return _uri(path.read_bytes(), path.suffix)
 
 
-def _size(film: Shown) -> int:
-    return len(film.video) + len(film.picture)
+def _poster(video: pathlib.Path) -> str:
+    """Return the still picture beside a film as a data: URI, a third as large as the file."""
+    file = io.BytesIO()
+    with Image.open(video.with_name(f"{video.stem}-still.png")) as still:
+        still.save(file, "WEBP", quality=80)
+    return _uri(file.getvalue(), ".webp")
+
+
+def _uri(content: bytes, kind: str) -> str:
+    return f"data:{_KINDS[kind]};base64,{base64.b64encode(content).decode()}"
+
+
+def _range(benchmark: Benchmark, name: str) -> str:
+    """Return the least and the largest run time of another tool over that of mjbeer's best setting, at equal error."""
+    table = tables.others(benchmark)
+    ratios = [cell for row in table.rows if (cell := row[table.columns.index(name)]) != "-"]
+    return f"{min(ratios, key=float)} to {max(ratios, key=float)}"
 
 
 def _misprints(validation: Validation) -> list[tuple[Finding, Row]]:
@@ -166,8 +233,3 @@ def _misprints(validation: Validation) -> list[tuple[Finding, Row]]:
 def _marked(cell: str) -> Markup:
     """Return a text of a table as HTML, with Greek letters; what stands between two pairs of asterisks is strong."""
     return Markup(_FAILED.sub(r"<strong>\1</strong>", str(escape(letters(cell)))))
-
-
-def _json(content: Any) -> str:
-    """Return JSON that may stand in a script element."""
-    return json.dumps(content, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")

@@ -12,7 +12,7 @@ from mjbeer.studies.validation.run import Validation, validate
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
-    """Write validation.json, a video and a picture of each scene, the paper's stories and index.html into a folder.
+    """Write validation.json, a video and a picture of each scene, stories, plots and index.html into a folder.
 
     Quickly, the videos are smaller and the stories have plots and no films. Where there is no OpenGL or no ffmpeg, all
     is written but videos, pictures and films. What comes back is the validation, and the line that says which are
@@ -32,6 +32,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         not_drawn = films.not_drawn([str(order.path.relative_to(folder)) for order in orders])
         stories.write(folder / "paper", False, console)
         console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
+        page.draw_plots(folder / "plots")
         if not_drawn:
             for order in orders:  # those of an earlier report are not of this one
                 order.path.unlink(missing_ok=True)

@@ -152,8 +152,7 @@ def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(
     assert "heyoka" not in {curve.way for curve in ladders(CASES["frozen"].scene, missing=["heyoka"])}
     stubs.benchmark(monkeypatch, stubs.FEW)
     reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
-    for name in ("draw", "draw_overview"):
-        monkeypatch.setattr(diagrams, name, lambda study, path: None)
+    monkeypatch.setattr(diagrams, "draw", lambda study, path: None)
     monkeypatch.setattr(peers, "absent", lambda: {"heyoka": reason})
     assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
     assert f"\nheyoka is absent: {reason}\n" in (tmp_path / "summary.md").read_text()
@@ -189,9 +188,8 @@ def test_the_command_writes_everything(
 ) -> None:
     stubs.benchmark(monkeypatch)
     assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
-    drawn = {f"{name}.{kind}" for name in ("work_precision", "overview") for kind in ("svg", "png")}
     names = {each.name for each in (tmp_path / "new").iterdir()}
-    assert names == {"study.jsonl", "points.csv", "summary.md", ".lock", *drawn}
+    assert names == {"study.jsonl", "points.csv", "summary.md", ".lock", "work_precision.svg", "work_precision.png"}
     summary = (tmp_path / "new" / "summary.md").read_text()
     for text in ("cheapest setting for an error", "SciPy odeint", "share of the force", "a sweep of stubs"):
         assert text in summary

@@ -1,4 +1,4 @@
-"""The tables of a benchmark, and the folder that it writes: points as CSV, two diagrams, and a summary."""
+"""The tables of a benchmark, and the folder that it writes: points as CSV, a diagram, and a summary."""
 
 import math
 import pathlib
@@ -23,14 +23,13 @@ Errors are against exact theory.
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
-    """Write points.csv, the diagrams work_precision and overview (.svg and .png) and, as the last, summary.md.
+    """Write points.csv, the diagram work_precision (.svg and .png) and, as the last, summary.md.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     files.write(folder / "points.csv", study.csv())
     diagrams.draw(study, folder / "work_precision")
-    diagrams.draw_overview(study, folder / "overview")
     machine = study.machine
     versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
     absent = [f"\n{name} is absent: {reason}" for name, reason in study.settings["absent"].items()]
