@@ -16,8 +16,7 @@ import pytest
 from PIL import Image
 
 from mjbeer import Trajectory, exact, frozen
-from mjbeer.drawing import encoder, video
-from mjbeer.drawing import frames as drawing
+from mjbeer.drawing import film, video
 from mjbeer.drawing.film import reel
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from mjbeer.output import terminal
@@ -55,7 +54,7 @@ def blank(alive: list[int], frames: int = 40, error: BaseException | None = None
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Let videos have blank frames, which take no time."""
     alive: list[int] = []
-    monkeypatch.setattr(drawing, "draw", lambda trajectory, times, **_: blank(alive, len(times)))
+    monkeypatch.setattr(film, "draw", lambda trajectory, look, speed, times, *_: blank(alive, len(times)))
     return alive
 
 
@@ -196,7 +195,7 @@ def test_what_ffmpeg_says_is_told_even_if_it_is_gone_at_the_end(ffmpeg, tmp_path
         (tmp_path / "pipe").read_bytes()  # which ends when ffmpeg does
 
     with pytest.raises(RenderingError, match="out of tune"):
-        encoder.encode(frames(), tmp_path / "can.mp4", 16, 16, 10)
+        video.encode(frames(), tmp_path / "can.mp4", 16, 16, 10)
     gc.collect()
 
 
@@ -222,7 +221,7 @@ def test_no_ffmpeg_says_so(undrawn: list[int], tmp_path: pathlib.Path, monkeypat
 def test_an_interrupted_video_leaves_what_was_there(
     error: BaseException, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(drawing, "draw", lambda *_, **__: blank([], 5, error))
+    monkeypatch.setattr(film, "draw", lambda *_, **__: blank([], 5, error))
     (tmp_path / "can.mp4").write_text("an older video")
     with pytest.raises(type(error)):
         video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)

@@ -9,8 +9,8 @@ from matplotlib import pyplot as plt
 
 import mjbeer
 from mjbeer import exact, frozen, simulate, sliding
-from mjbeer.drawing.overlay.charts import charts
-from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.strip import charts
 from mjbeer.exceptions import ParameterError
 
 

@@ -10,7 +10,7 @@ from types import ModuleType
 import pytest
 
 from mjbeer.cli.app import main
-from mjbeer.drawing import encoder, opengl
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import terminal
@@ -151,7 +151,7 @@ def test_the_films_are_of_the_four_scenes_and_can_be_trusted(
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-5, 0), (2e-3, 1)])
-@pytest.mark.parametrize("lacking", [opengl, encoder])
+@pytest.mark.parametrize("lacking", [opengl, video])
 def test_without_opengl_or_ffmpeg_a_report_has_all_but_films_and_says_so(
     lacking: ModuleType,
     error: float,
@@ -178,10 +178,10 @@ def test_without_opengl_or_ffmpeg_a_report_has_all_but_films_and_says_so(
 
 
 def test_an_ffmpeg_that_is_not_there_is_a_problem(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert encoder.problem() is None
+    assert video.problem() is None
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", "/nonexistent")
-    assert "/nonexistent" in str(encoder.problem())
-    assert encoder.missing(["a.mp4", "b.mp4"]) == (
+    assert "/nonexistent" in str(video.problem())
+    assert video.missing(["a.mp4", "b.mp4"]) == (
         "not drawn because ffmpeg does not start: a.mp4, b.mp4. Reinstall it (`pip install --force-reinstall "
         "imageio-ffmpeg`), or name another in IMAGEIO_FFMPEG_EXE"
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import numpy as np
 
 from mjbeer.cli.arguments import Motion, Start, if_given
-from mjbeer.drawing.world.cameras import Camera
+from mjbeer.drawing.camera import Camera
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import MujocoIntegrator, Rolling
 from mjbeer.output import files, terminal

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from mjbeer.drawing.film import Film, Take
-from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Order
 from mjbeer.paper import stories
@@ -91,8 +91,8 @@ def orders(folder: pathlib.Path, quick: bool) -> list[Order]:
 
 def not_drawn(names: Sequence[str]) -> str:
     """Return the line that says why films are missing and what brings them, or "" where they can be drawn."""
-    from mjbeer.drawing import encoder, opengl
+    from mjbeer.drawing import opengl, video
 
     if opengl.problem():
         return opengl.missing(names)
-    return encoder.missing(names) if encoder.problem() else ""
+    return video.missing(names) if video.problem() else ""

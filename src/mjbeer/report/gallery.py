@@ -3,7 +3,7 @@
 import pathlib
 import sys
 
-from mjbeer.drawing import animation
+from mjbeer.drawing import video
 from mjbeer.report.films import FILMS
 
 WIDTH, HEIGHT, FPS = 720, 405, 20
@@ -18,7 +18,7 @@ def write(folder: pathlib.Path) -> None:
       OutputError: if a file cannot be written.
     """
     for name, film in FILMS.items():
-        animation.write(film.reel(), folder / f"{name}.webp", WIDTH, HEIGHT, FPS)
+        video.write_webp(film.reel(), folder / f"{name}.webp", WIDTH, HEIGHT, FPS)
 
 
 if __name__ == "__main__":

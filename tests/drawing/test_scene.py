@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mjbeer import Can, Scene, exact, frozen, hoop, simulate, sliding
-from mjbeer.drawing.world.display import Display, on_incline, scale
+from mjbeer.drawing.camera import on_incline, scale
+from mjbeer.drawing.scene import Display
 from mjbeer.theory.can import RADIUS
 from tests.support.scenes import METAL, SCENES, scenes
 

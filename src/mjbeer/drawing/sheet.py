@@ -1,4 +1,4 @@
-"""Lines, arrows and texts drawn over a picture, with smooth edges."""
+"""A picture to draw on: its size, and lines, arrows and texts over it, with smooth edges."""
 
 import math
 import pathlib
@@ -13,17 +13,36 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 from PIL import Image, ImageDraw, ImageFont
 
+from mjbeer import require
+from mjbeer.exceptions import ParameterError
+
 Colour = str | tuple[float, float, float]
 """A colour as matplotlib takes it."""
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom [pixels]."""
 
+UNITS = 36
+"""Height of a picture in units."""
+_LARGEST = 4096
+"""Largest width and height [pixels] that H.264 encoders support."""
 INK = "#1f2933"
 """Colour of texts and of lines that explain."""
 _EDGE = 2
 """Width of the white edge around a text that may lie on anything [pixels]."""
 _HEAD = 3.2
 """Length of an arrow's head, in widths of its line."""
+
+
+def whole(name: str, pixels: float) -> int:
+    """Return a number of pixels as an integer.
+
+    Raises:
+      ParameterError: if it is not a whole number, not positive, or larger than encoders support.
+    """
+    number = require.positive(name, pixels)
+    if number % 1 != 0 or number > _LARGEST:
+        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.shown(pixels)}")
+    return int(number)
 
 
 class Sheet:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mjbeer.drawing.overlay.sheet import Sheet
+from mjbeer.drawing.sheet import Sheet
 
 
 def dark(sheet: Sheet) -> np.ndarray:
