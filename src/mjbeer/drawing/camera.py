@@ -21,8 +21,8 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
 _AROUND = 1.95
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
-_FORCES = 3.0
-"""What is seen below it where the arrows of forces are below the board."""
+_ROOM = 3.0
+"""What is seen below it where marks are below the board."""
 _LARGEST = 0.22
 """Largest radius of a can, in heights of the picture."""
 _SMALLEST = 0.11
@@ -150,15 +150,15 @@ class Shot:
     @classmethod
     def fit(
         cls, scene: Scene, camera: Camera, time: np.ndarray, u: np.ndarray, lift: np.ndarray, plane: float,
-        pixels: tuple[int, int], forces: bool = False,
+        pixels: tuple[int, int], room: bool = False,
     ) -> "Shot":  # fmt: skip
         """Return the shot that shows a can that is at `u` and `lift` [m] at some times [s].
 
-        With `forces`, there is room for arrows below the can.
+        With `room`, there is some for marks below the can.
         """
         along, height = u * scale(scene), lift * scale(scene)
         if camera == "auto":
-            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels, forces)
+            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels, room)
             camera = "fixed" if RADIUS / fixed.metres[1] >= _SMALLEST else "pan"
         if camera == "fixed" or len(time) < 3 or np.ptp(time) == 0:
             way = Polynomial([(along.min() + along.max()) / 2])
@@ -167,7 +167,7 @@ class Shot:
         else:
             way = partial(np.interp, xp=time, fp=along)
         places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([_AROUND, _FORCES if forces else _AROUND])
+        low = places.min(axis=0) - RADIUS * np.array([_AROUND, _ROOM if room else _AROUND])
         high = places.max(axis=0) + RADIUS * _AROUND
         shape = np.array(pixels) / pixels[1]
         tall = max(float(((high - low) / shape).max()), RADIUS / _LARGEST)

@@ -1,6 +1,7 @@
 """A film of a motion: its pictures one after the other, how fast it is shown, and its caption."""
 
 from collections.abc import Callable, Generator
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
@@ -125,7 +126,7 @@ def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
     stage = Stage.of(trajectory, look, speed, width, height)
-    with Canvas(stage.display.model, *stage.shot.pixels) as canvas:
+    with closing(Canvas(stage.display.model, *stage.shot.pixels)) as canvas:
         painter = Painter(canvas, stage.display, stage.shot.still)
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
             stage.sheet.boxes.clear()
@@ -162,7 +163,8 @@ class Stage:
         positions = coordinates(trajectory, fine)
         plane = -scene.can.length / scene.can.radius * RADIUS / 2
         u, lift, pixels = positions[:, 0], positions[:, 3], (width, height - top - below)
-        shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, forces="forces" in look.marks)
+        below_board = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
+        shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, room=below_board)
         display = Display.of([scene], float(u.min()) * scale(scene), float(u.max()) * scale(scene))
         marks = Marks(trajectory, look.marks, plane, fine, positions)
         strip = Strip(charts(trajectory, look.strips), width, below) if below else None

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -185,7 +186,7 @@ class Course:
         Raises:
           RenderingError: while the first picture is drawn, if OpenGL does not work.
         """
-        with Canvas(self.display.model, *self.view.pixels) as canvas:
+        with closing(Canvas(self.display.model, *self.view.pixels)) as canvas:
             painter = Painter(canvas, self.display, still=True)
             for time in times:
                 self.sheet.boxes.clear()

@@ -6,8 +6,7 @@ too small or too large for the graphics, which compute in single precision.
 
 import dataclasses
 from collections.abc import Sequence
-from types import TracebackType
-from typing import Self, TypeAlias
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
@@ -152,7 +151,7 @@ def _resize(scene: Scene) -> Scene:
 
 
 class Canvas:
-    """A context manager that draws a posed model into arrays, and frees the graphics memory at its end.
+    """Draws a posed model into arrays. It holds graphics memory until it is closed.
 
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
 
@@ -204,14 +203,6 @@ class Canvas:
         self._gl.make_current()
         self._context.free()
         self._gl.free()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
 
 
 @dataclasses.dataclass

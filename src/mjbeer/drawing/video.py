@@ -7,7 +7,6 @@ import pathlib
 import signal
 import subprocess
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from PIL import Image
@@ -20,9 +19,6 @@ from mjbeer.drawing.sheet import whole
 from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    import mediapy
 
 _CRF = 20
 """Constant rate factor of H.264: at 18 no loss is visible, 23 is ffmpeg's default."""
@@ -170,31 +166,13 @@ def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height:
       OSError: if the disk is full or broken.
     """
     # mediapy imports matplotlib and IPython: a second or two that only videos should take.
+    import imageio_ffmpeg
     import mediapy
 
     arguments = f"{_FASTER} {_COLOURS}"
     writer = mediapy.VideoWriter(path, (height, width), fps=fps, codec="h264", crf=_CRF, ffmpeg_args=arguments)
-    try:
-        _start(writer)
-        complete = _feed(writer, frames)
-        _, messages = writer._popen.communicate()
-    finally:
-        if writer._popen is not None:  # mediapy would wait for ffmpeg, which may never end by itself
-            writer._popen.kill()
-            writer._popen.communicate()
-    if writer._popen.returncode != 0 or not complete or path.stat().st_size == 0:
-        raise _error(writer._popen.returncode, messages.decode(errors="replace"))
-
-
-def _start(writer: "mediapy.VideoWriter") -> None:
-    """Start ffmpeg with signals blocked, so that only this process ends it.
-
-    A terminal sends Ctrl-C to all processes of a command. If ffmpeg ended first, the interruption would be reported as
-    a fault of ffmpeg.
-    """
-    import imageio_ffmpeg
-    import mediapy
-
+    # A terminal sends Ctrl-C to all processes of a command. If ffmpeg ended first, the interruption would be reported
+    # as a fault of ffmpeg: it is started with signals blocked, so that only this process ends it.
     before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
     try:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
@@ -203,25 +181,26 @@ def _start(writer: "mediapy.VideoWriter") -> None:
         raise _failure(str(error)) from error
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _feed(writer: "mediapy.VideoWriter", frames: Iterable[np.ndarray]) -> bool:
-    """Pass all frames to ffmpeg, and return False if ffmpeg ended before the last."""
-    for frame in frames:
+    complete = True
+    try:
         try:
-            writer.add_image(frame)
+            for frame in frames:
+                writer.add_image(frame)
         except BrokenPipeError:
-            return False
-    return True
-
-
-def _error(status: int, messages: str) -> Exception:
-    """Return the error to raise for an ffmpeg that failed, from its exit status and the text it wrote."""
+            complete = False
+        _, messages = writer._popen.communicate()
+    finally:  # mediapy would wait for ffmpeg, which may never end by itself
+        writer._popen.kill()
+        writer._popen.communicate()
+    status = writer._popen.returncode
+    if status == 0 and complete and path.stat().st_size > 0:
+        return
     ended = f"it was ended by {signal.Signals(-status).name}" if status < 0 else "it ended before the video did"
+    told = messages.decode(errors="replace").strip()
     for number in _DISK:
-        if os.strerror(number) in messages or (number == errno.EFBIG and "SIGXFSZ" in ended):
-            return OSError(number, os.strerror(number))
-    return _failure([ended, *messages.strip().splitlines()][-1])
+        if os.strerror(number) in told or (number == errno.EFBIG and "SIGXFSZ" in ended):
+            raise OSError(number, os.strerror(number))
+    raise _failure([ended, *told.splitlines()][-1])
 
 
 def _failure(reason: str) -> RenderingError:

@@ -43,11 +43,7 @@ class Player:
     """The motion of a model in real time: paused at its start, until the space bar is pressed."""
 
     def __init__(self, model: mujoco.MjModel, speed: float = 1.0) -> None:
-        self.model, self.data = model, mujoco.MjData(model)
-        self.paused = True
-        self._speed = speed
-        self._due = 0.0
-        self._reached = 0.0
+        self.model, self.data, self._speed = model, mujoco.MjData(model), speed
         self.restart()
 
     def restart(self) -> None:

@@ -85,14 +85,11 @@ def _values(trajectory: Trajectory, name: str) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Video:
-    """A video in memory, which a notebook shows."""
+    """A video in memory, MP4 with H.264, which a notebook shows."""
 
     data: bytes
-    """The video, MP4 with H.264."""
     width: int
-    """Width [pixels]."""
     height: int
-    """Height [pixels]."""
 
     def _repr_html_(self) -> str:
         """Return the video as HTML, with nothing that has to be fetched."""
