@@ -31,12 +31,6 @@ def test_an_arrow_ends_where_it_points() -> None:
     assert columns.max() - columns.min() == pytest.approx(12, abs=1)
 
 
-def test_an_arrow_of_no_length_is_not_drawn() -> None:
-    sheet = Sheet(20, 20)
-    sheet.arrow(np.array([10.0, 10.0]), np.array([10.0, 10.4]), 4, (0.0, 0.0, 0.0))
-    assert len(dark(sheet)[0]) == 0
-
-
 @pytest.mark.parametrize("anchor", [(0.0, 0.0), (1.0, 0.5), (0.5, 1.0)])
 def test_a_text_is_in_its_box(anchor: tuple[float, float]) -> None:
     sheet = Sheet(200, 100)

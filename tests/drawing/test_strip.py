@@ -121,11 +121,6 @@ def test_a_damped_can_is_behind_the_one_that_accelerates_evenly() -> None:
     assert even[-1] - motion.u[-1] > 0.2
 
 
-def test_even_acceleration_of_a_full_can_is_its_own() -> None:
-    motion = exact(frozen(fill=1.0), SECOND, 0.3)
-    assert QUANTITIES["ahead"][1](motion.scene, motion) == pytest.approx(np.zeros_like(SECOND), abs=1e-9)
-
-
 def test_angles_are_between_plus_and_minus_180_degrees() -> None:
     assert strip.wrapped(np.radians([0, 179, 181, -181, 540.5])) == pytest.approx([0, 179, -179, 179, -179.5])
 

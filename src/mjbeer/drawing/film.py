@@ -11,7 +11,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.drawing.camera import Shot, scale
 from mjbeer.drawing.overlay import Board, Look, Marks, guides, header, header_height
-from mjbeer.drawing.scene import Canvas, Display, Painter, coordinates
+from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import UNITS, Sheet, whole
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
@@ -61,21 +61,19 @@ class Reel:
 
 
 class Film(Protocol):
-    """A film. It can be pickled, so that another process can draw it."""
+    """A film. It can be pickled, so that another process can draw it.
+
+    Its caption says what is seen, in whole sentences, for the text beside the film. Its still picture shows a time [s].
+    `reel` computes the motion, and returns what is needed to draw it.
+    """
 
     @property
-    def caption(self) -> str:
-        """What is seen in it, in whole sentences, for the text beside the film."""
-        ...
+    def caption(self) -> str: ...
 
     @property
-    def still(self) -> float:
-        """Time of the motion that the still picture of the film shows [s]."""
-        ...
+    def still(self) -> float: ...
 
-    def reel(self) -> Reel:
-        """Compute the motion, and return what is needed to draw it."""
-        ...
+    def reel(self) -> Reel: ...
 
 
 @dataclass(frozen=True)
@@ -126,8 +124,7 @@ def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
     stage = Stage.of(trajectory, look, speed, width, height)
-    with closing(Canvas(stage.display.model, *stage.shot.pixels)) as canvas:
-        painter = Painter(canvas, stage.display, stage.shot.still)
+    with closing(Painter(stage.display, *stage.shot.pixels, stage.shot.still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
             stage.sheet.boxes.clear()
             painter.paint(stage.sheet, stage.shot.view(time), now[None], stage.top)

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from mjbeer.drawing.camera import View, circle, on_incline
 from mjbeer.drawing.film import Reel
 from mjbeer.drawing.overlay import HEIGHT, head
-from mjbeer.drawing.scene import Canvas, Display, Painter, coordinates
+from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import UNITS, Sheet, whole
 from mjbeer.drawing.strip import Chart, Line, Strip
 from mjbeer.exceptions import ParameterError
@@ -186,8 +186,7 @@ class Course:
         Raises:
           RenderingError: while the first picture is drawn, if OpenGL does not work.
         """
-        with closing(Canvas(self.display.model, *self.view.pixels)) as canvas:
-            painter = Painter(canvas, self.display, still=True)
+        with closing(Painter(self.display, *self.view.pixels, still=True)) as painter:
             for time in times:
                 self.sheet.boxes.clear()
                 painter.paint(self.sheet, self.view, self.positions(time), self.top)

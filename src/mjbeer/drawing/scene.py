@@ -150,17 +150,23 @@ def _resize(scene: Scene) -> Scene:
     return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)
 
 
-class Canvas:
-    """Draws a posed model into arrays. It holds graphics memory until it is closed.
+class Painter:
+    """Draws the cans of a display on their board. It holds graphics memory until it is closed.
+
+    Before a camera that stands still, only the parts with cans are drawn anew. Drawing takes as long as there are
+    pixels: a can that takes a tenth of the picture is drawn in a tenth of the time.
 
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
-
-    Raises:
-      RenderingError: if OpenGL cannot draw without a window; the message names what to install.
     """
 
-    def __init__(self, model: mujoco.MjModel, width: int, height: int) -> None:
-        self._model = model
+    def __init__(self, display: Display, width: int, height: int, still: bool) -> None:
+        """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
+
+        Raises:
+          RenderingError: if OpenGL cannot draw without a window; the message names what to install.
+        """
+        self._display, self._still, model = display, still, display.model
+        self._empty: np.ndarray | None = None
         self._scene = mujoco.MjvScene(model, model.ngeom)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the drawing time, and hidden by the wall
         self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
@@ -174,13 +180,27 @@ class Canvas:
             self._gl.free()
             raise RenderingError(f"no off-screen picture of {width} x {height} pixels: {error}") from error
 
-    def draw(self, data: mujoco.MjData, view: View) -> np.ndarray:
-        """Return what a view shows as an array of shape (height, width, 3), uint8.
+    def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
+        """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
+        if self._still and self._empty is None:
+            self._display.hide()
+            board = self._draw(view)
+            self._empty = np.dstack([board, np.full(board.shape[:2], 255, np.uint8)])
+        self._display.pose(positions)
+        if self._empty is None:
+            sheet.put(self._draw(view), 0, top)
+            return
+        sheet.put(self._empty, 0, top)
+        for number, position in enumerate(positions):
+            left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
+            if right > left and lower > upper:
+                sheet.put(self._draw(view.crop(left, upper, right, lower)), left, top + upper)
 
-        The view may be smaller than the canvas.
-        """
+    def _draw(self, view: View) -> np.ndarray:
+        """Return what a view shows as an array of shape (height, width, 3), uint8."""
         scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
-        mujoco.mjv_updateScene(self._model, data, self._option, None, self._anywhere, everything, scene)
+        model, data = self._display.model, self._display.data
+        mujoco.mjv_updateScene(model, data, self._option, None, self._anywhere, everything, scene)
         near = _NEAR_PLANE * view.distance
         for eye in scene.camera:  # two of them, for stereo; MuJoCo draws their mean
             eye.pos, eye.up, eye.forward = view.eye, view.axes[1], -view.axes[2]
@@ -203,35 +223,3 @@ class Canvas:
         self._gl.make_current()
         self._context.free()
         self._gl.free()
-
-
-@dataclasses.dataclass
-class Painter:
-    """Draws cans on their board. Before a camera that stands still, only the parts with cans are drawn anew.
-
-    Drawing takes as long as there are pixels: a can that takes a tenth of the picture is drawn in a tenth of the time.
-    """
-
-    canvas: Canvas
-    display: Display
-    still: bool
-    """Whether all views are the same."""
-    _empty: np.ndarray | None = None
-    """The board without cans."""
-
-    def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
-        """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
-        if self._empty is None and self.still:
-            self.display.hide()
-            board = self.canvas.draw(self.display.data, view)
-            self._empty = np.dstack([board, np.full(board.shape[:2], 255, np.uint8)])
-        self.display.pose(positions)
-        if self._empty is None:
-            sheet.put(self.canvas.draw(self.display.data, view), 0, top)
-            return
-        sheet.put(self._empty, 0, top)
-        for number, position in enumerate(positions):
-            left, upper, right, lower = view.box(self.display.outline(number, position), margin=3)
-            if right > left and lower > upper:
-                crop = view.crop(left, upper, right, lower)
-                sheet.put(self.canvas.draw(self.display.data, crop), left, top + upper)
