@@ -11,7 +11,7 @@ import numpy as np
 
 from mjbeer.drawing import strip
 from mjbeer.drawing.camera import Camera, View, circle, on_incline, scale
-from mjbeer.drawing.sheet import INK, Box, Colour, Sheet, overlap
+from mjbeer.drawing.sheet import INK, UNITS, Box, Colour, Sheet, overlap
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
@@ -116,6 +116,8 @@ _CLEAR = 0.4
 """Least distance of a force's letter from the foot of the can: no letter is to cover it."""
 _RARE = 90.0
 """Percentage of times at which no force is larger than the longest arrow shows."""
+_LETTER = 1.35
+"""Least height of a letter, in units of the sheet."""
 _FAINT = 0.05
 """Least length of an arrow that is drawn."""
 
@@ -192,7 +194,7 @@ class Marks:
         for direction in (start, start - angle):
             pen.line(centre + np.array([[1.07], [1.5]]) * _towards(direction), 0.045, INK)
         pen.line(centre + 1.32 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
-        pen.text(centre + 1.8 * _towards(start - angle / 2), "φ", INK)
+        pen.text(centre + 1.74 * _towards(start - angle / 2), "φ", INK)
 
 
 def _towards(angle: float | np.ndarray) -> np.ndarray:
@@ -230,7 +232,8 @@ class _Pen:
         self.sheet.disc(self.places(point), max(2.0, radius * self.radius), colour)
 
     def text(self, point: np.ndarray, words: str, colour: Colour) -> None:
-        self.sheet.text(self.places(point), words, max(12.0, 0.46 * self.radius), colour, (0.5, 0.5), halo=True)
+        size = max(_LETTER * self.sheet.height / UNITS, 0.46 * self.radius)
+        self.sheet.text(self.places(point), words, size, colour, (0.5, 0.5), halo=True)
 
 
 # What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
