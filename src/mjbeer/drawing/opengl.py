@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any
 
 from mjbeer.exceptions import RenderingError
 
@@ -33,15 +33,7 @@ _PATIENCE = 60
 """How long OpenGL may take to start [s]; it is a second or two."""
 
 
-class Context(Protocol):
-    """An OpenGL context of one of MuJoCo's backends."""
-
-    def make_current(self) -> None: ...
-
-    def free(self) -> None: ...
-
-
-def context(width: int, height: int) -> Context:
+def context(width: int, height: int) -> Any:
     """A new off-screen OpenGL context, not yet current, for pictures of up to `width` by `height` pixels.
 
     Raises:
