@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 import mjbeer
 from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, build, exact, frozen, require, simulate
-from mjbeer.drawing import encoder, frames, video
+from mjbeer.drawing import film, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, Softness
@@ -131,8 +131,8 @@ def named(value: object) -> set[str]:
 @pytest.fixture(autouse=True)
 def undrawn(monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path) -> None:
     """Draw and encode nothing, and write where nothing is."""
-    monkeypatch.setattr(frames, "_draw", lambda *_, **__: (np.zeros((2, 2, 3), np.uint8) for _ in range(1)))
-    monkeypatch.setattr(encoder, "encode", lambda *_, **__: None)
+    monkeypatch.setattr(film, "_pictures", lambda *_, **__: (np.zeros((2, 2, 3), np.uint8) for _ in range(1)))
+    monkeypatch.setattr(video, "encode", lambda *_, **__: None)
     monkeypatch.chdir(tmp_path)
 
 

@@ -48,7 +48,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
     suffix = {"simulate": ".csv", "export": ".xml", "render": ".mp4"}[words[0]]
     if words[0] == "simulate":
         monkeypatch.setattr("mjbeer.cli.motions.trajectory_of", lambda _: pytest.fail("it was simulated"))
-    monkeypatch.setattr("mjbeer.drawing.encoder.encode", lambda *_, **__: pytest.fail("it was drawn"))
+    monkeypatch.setattr("mjbeer.drawing.video.encode", lambda *_, **__: pytest.fail("it was drawn"))
     (tmp_path / f"folder{suffix}").mkdir()
     (tmp_path / f"file{suffix}").touch(mode=0o444)
     for name, reason in {

@@ -19,7 +19,7 @@ TOLD = "mjbeer: interrupted; what was written is whole\n"
 HALTING = """
 import sys, time
 from mjbeer.cli.app import main
-from mjbeer.drawing import encoder
+from mjbeer.drawing import video
 
 def halting(frames, *arguments, **named):
     def few():
@@ -30,7 +30,7 @@ def halting(frames, *arguments, **named):
             yield frame
     encode(few(), *arguments, **named)
 
-encode, encoder.encode = encoder.encode, halting
+encode, video.encode = video.encode, halting
 sys.exit(main())
 """
 """Code of a command that stops before it draws a picture, when ffmpeg has those before."""

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, exact, frozen, simulate, sliding
-from mjbeer.drawing.overlay.sheet import Sheet
-from mjbeer.drawing.race import Race
-from mjbeer.drawing.runner import Runner
+from mjbeer.drawing.race import Course, Race, Runner
+from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 
@@ -54,10 +53,10 @@ def test_a_can_that_does_not_finish_is_followed_until_the_others_have() -> None:
     race = Race("a race", lambda: [fast, slow], length=1.0, speed=1.0, told=str, still=0.0, after=0.1)
     end = fast.finish(1.0)
     assert race.reel().end == end + 0.1
-    results = race.course([fast, slow], 320, 180).results
+    results = Course(race, [fast, slow], 320, 180)
     (first, by_theory), (second, second_by_theory) = results.words
-    assert first == by_theory == f"{end:.4f} s"
-    assert second == second_by_theory == f"{slow.way_of_theory(end):.4f} m"
+    assert first == by_theory == f"{end:.2f} s"
+    assert second == second_by_theory == f"{slow.way_of_theory(end):.2f} m"
 
 
 def test_runs_that_are_too_short_are_errors() -> None:
@@ -74,7 +73,7 @@ def test_the_chart_of_a_race_does_not_tell_who_wins() -> None:
     """Theory's line is there at the end, and at the start only in the legend."""
     cans = [run(sliding(INCLINE, can=METAL))]
     race = Race("a race", lambda: cans, 1.0, 1.0, told=str, still=0.0)
-    course, counts = race.course(cans, 640, 360), []
+    course, counts = Course(race, cans, 640, 360), []
     for time in (0.0, cans[0].finish(1.0)):
         sheet = Sheet(640, 360)
         course.strip.draw(sheet, time, 0)
@@ -91,7 +90,7 @@ def test_a_race_is_drawn_with_its_cans_at_the_lines() -> None:
     race = Race("a race", lambda: cans, length=0.5, speed=1.0, told=str, still=0.0, after=0.1)
     reel = race.reel()
     assert reel.end == pytest.approx(max(can.finish(0.5) for can in cans) + 0.1)
-    course = race.course(cans, 320, 180)
+    course = Course(race, cans, 320, 180)
     first, last = reel.draw(np.array([0.0, reel.end]), 320, 180)
     assert first.shape == last.shape == (180, 320, 3)
     for time, picture, other in ((0.0, first, last), (reel.end, last, first)):

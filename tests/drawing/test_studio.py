@@ -18,7 +18,7 @@ from PIL import Image
 from rich.console import Console
 
 from mjbeer import exact, frozen
-from mjbeer.drawing import animation, studio
+from mjbeer.drawing import studio, video
 from mjbeer.drawing.film import Reel, Take, reel
 from mjbeer.drawing.studio import Order, produce
 from mjbeer.exceptions import RenderingError
@@ -150,7 +150,7 @@ def test_mesa_draws_in_the_thread_that_calls_it_unless_the_user_says_otherwise()
 
 @pytest.mark.draws
 def test_an_animation_has_all_pictures_and_runs_forever(tmp_path: pathlib.Path) -> None:
-    animation.write(reel(TAKE.trajectory()), tmp_path / "can.webp", 160, 90, 10)
+    video.write_webp(reel(TAKE.trajectory()), tmp_path / "can.webp", 160, 90, 10)
     with Image.open(tmp_path / "can.webp") as image:
         assert (getattr(image, "n_frames", 1), image.info["loop"], image.size) == (5, 0, (160, 90))
         image.seek(3)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Load, Scene, build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
-from mjbeer.drawing.world.display import Display
+from mjbeer.drawing.scene import Display
 from mjbeer.exceptions import TemplateError, UnsupportedError
 from mjbeer.model import looks, state
 from mjbeer.model.setting import ROLLINGS

@@ -10,7 +10,7 @@ from types import ModuleType
 import pytest
 
 from mjbeer.cli.app import main
-from mjbeer.drawing import encoder, opengl
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import MjbeerError
 from mjbeer.output import terminal
@@ -99,7 +99,7 @@ def test_a_report_has_the_table_and_the_films(
 
 
 @pytest.mark.parametrize(("error", "status"), [(1e-5, 0), (2e-3, 1)])
-@pytest.mark.parametrize("lacking", [opengl, encoder])
+@pytest.mark.parametrize("lacking", [opengl, video])
 def test_without_opengl_or_ffmpeg_a_report_has_all_but_films_and_says_so(
     lacking: ModuleType,
     error: float,

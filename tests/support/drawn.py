@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.drawing.overlay.sheet import Box, Sheet
+from mjbeer.drawing.sheet import Box, Sheet
 
 
 class Recorder(Sheet):

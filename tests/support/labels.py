@@ -4,13 +4,12 @@ from itertools import combinations
 
 import numpy as np
 
-from mjbeer.drawing.film import Film, Take
-from mjbeer.drawing.frames import Stage
-from mjbeer.drawing.overlay.sheet import Box, Sheet, overlap
-from mjbeer.drawing.painter import outline
-from mjbeer.drawing.race import Race
-from mjbeer.drawing.world.positions import coordinates
-from mjbeer.drawing.world.view import View
+from mjbeer.drawing.camera import View
+from mjbeer.drawing.film import Film, Stage, Take
+from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.race import Course, Race
+from mjbeer.drawing.scene import coordinates
+from mjbeer.drawing.sheet import Box, Sheet, overlap
 
 _SIZE = (960, 540)
 
@@ -25,14 +24,14 @@ def faults(film: Film, count: int = 40) -> list[str]:
 
 def _of_take(take: Take, count: int) -> list[str]:
     trajectory = take.trajectory()
-    look = take.chosen(trajectory)
+    look = take.look or Look.usual(trajectory)
     times = np.linspace(trajectory.time[0], trajectory.time[-1], count)
-    stage = Stage.of(trajectory, *_SIZE, look, take.speed)
-    display, found = stage.display(), []
+    stage = Stage.of(trajectory, look, take.speed, *_SIZE)
+    found = []
     for time, now in zip(times, coordinates(trajectory, times), strict=True):
         stage.sheet.boxes.clear()
-        stage.explain(display, time, now)
-        rim = _rim(stage.shot.view(time), outline(display, 0, now)[0], stage.top)
+        stage.explain(time, now)
+        rim = _rim(stage.shot.view(time), stage.display.outline(0, now)[0], stage.top)
         found += [f"{fault} at {time:.3f} s" for fault in _check(stage.sheet, [rim])]
     return found
 
@@ -40,14 +39,14 @@ def _of_take(take: Take, count: int) -> list[str]:
 def _of_race(race: Race, count: int) -> list[str]:
     runners = race.runners()
     reel, found = race.reel(), []
-    course = race.course(runners, *_SIZE)
+    course = Course(race, runners, *_SIZE)
     for time in np.linspace(reel.start, reel.end, count):
         course.sheet.boxes.clear()
         course.explain(time)
         rims = [
             _rim(course.view, ends, course.top)
             for number, position in enumerate(course.positions(time))
-            for ends in outline(course.display, number, position)
+            for ends in course.display.outline(number, position)
         ]
         found += [f"{fault} at {time:.3f} s" for fault in _check(course.sheet, rims)]
     return found

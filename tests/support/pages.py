@@ -9,7 +9,7 @@ import numpy as np
 from PIL import Image
 
 from mjbeer import exact, frozen, paper
-from mjbeer.drawing import encoder
+from mjbeer.drawing import video
 from mjbeer.drawing.film import Take
 from mjbeer.output import files
 from mjbeer.paper import stories as paper_stories
@@ -69,7 +69,7 @@ def fill(folder: pathlib.Path, encoded: bool = False) -> None:
         if encoded:
             width, height, fps = SIZE
             shades = np.linspace(0, 255, fps).astype(np.uint8)
-            encoder.encode((np.full((height, width, 3), one) for one in shades), folder / f"{name}.mp4", *SIZE)
+            video.encode((np.full((height, width, 3), one) for one in shades), folder / f"{name}.mp4", *SIZE)
         else:
             (folder / f"{name}.mp4").write_text(f"film {name}")
         Image.new("RGB", SIZE[:2], "navy").save(folder / f"{name}-still.png")

@@ -12,7 +12,7 @@ from PIL import Image
 from rich.console import Console
 
 from mjbeer import exact, paper, sliding
-from mjbeer.drawing import encoder, opengl, studio, video, viewer
+from mjbeer.drawing import opengl, studio, video, viewer
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
@@ -121,7 +121,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
     monkeypatch.setattr(studio, "produce", produce)
     monkeypatch.setattr(opengl, "problem", lambda: None)
-    monkeypatch.setattr(encoder, "problem", lambda: None)
+    monkeypatch.setattr(video, "problem", lambda: None)
     monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
     monkeypatch.setattr(page, "draw_plots", pages.plots)
     monkeypatch.setattr(viewer, "require_window", lambda: None)

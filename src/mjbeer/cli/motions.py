@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mjbeer.cli.arguments import REQUIRED, Option, command, model_options, run_options, scene, start, steps
-from mjbeer.drawing.world.cameras import CAMERAS
+from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say

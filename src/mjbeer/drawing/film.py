@@ -1,6 +1,7 @@
-"""A film: a motion or a race, how fast it is shown, and its caption."""
+"""A film of a motion: its pictures one after the other, how fast it is shown, and its caption."""
 
 from collections.abc import Callable, Generator
+from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
@@ -8,13 +9,23 @@ from typing import Protocol
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing import frames
-from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.camera import Shot, scale
+from mjbeer.drawing.overlay import Board, Look, Marks, guides, header, header_height
+from mjbeer.drawing.scene import Display, Painter, coordinates
+from mjbeer.drawing.sheet import UNITS, Sheet, whole
+from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
+from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
 _MOST_FRAMES = 1e6
 """Largest number of frames of a video: nine hours at 30 frames per second."""
+_STRIP = 10
+"""Height of the charts below a picture, in units."""
+_NARROW = 24
+"""Width up to which a picture has no charts below, in units."""
+_FINE = 2000
+"""Points of a path."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,21 +61,19 @@ class Reel:
 
 
 class Film(Protocol):
-    """A film. It can be pickled, so that another process can draw it."""
+    """A film. It can be pickled, so that another process can draw it.
+
+    Its caption says what is seen, in whole sentences, for the text beside the film. Its still picture shows a time [s].
+    `reel` computes the motion, and returns what is needed to draw it.
+    """
 
     @property
-    def caption(self) -> str:
-        """What is seen in it, in whole sentences, for the text beside the film."""
-        ...
+    def caption(self) -> str: ...
 
     @property
-    def still(self) -> float:
-        """Time of the motion that the still picture of the film shows [s]."""
-        ...
+    def still(self) -> float: ...
 
-    def reel(self) -> Reel:
-        """Compute the motion, and return what is needed to draw it."""
-        ...
+    def reel(self) -> Reel: ...
 
 
 @dataclass(frozen=True)
@@ -74,22 +83,15 @@ class Take:
     trajectory: Callable[[], Trajectory]
     """A function that computes the motion, and that can be pickled."""
     speed: float
-    """Playback speed: 1 is real time, 0.5 is half as fast."""
     look: Look | None = None
     """What is drawn; None is the usual look of such a motion."""
     still: float = 0.0
     """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""
-    """What is seen in it, in whole sentences, for the text beside the film."""
 
     def reel(self) -> Reel:
         """Compute the motion, and return what is needed to draw it."""
-        trajectory = self.trajectory()
-        return reel(trajectory, self.chosen(trajectory), self.speed)
-
-    def chosen(self, trajectory: Trajectory) -> Look:
-        """Return what is drawn of the motion."""
-        return self.look or Look.usual(trajectory)
+        return reel(self.trajectory(), self.look, self.speed)
 
 
 def reel(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -> Reel:
@@ -99,12 +101,78 @@ def reel(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -
       ParameterError: if `trajectory` is not one.
     """
     require.instance("trajectory", trajectory, Trajectory)
-    look = look or Look.usual(trajectory)
-    start, end = float(trajectory.time[0]), float(trajectory.time[-1])
-    return Reel(start, end, speed, partial(_draw, trajectory, look, speed))
+    drawn = partial(draw, trajectory, look or Look.usual(trajectory), speed)
+    return Reel(float(trajectory.time[0]), float(trajectory.time[-1]), speed, drawn)
 
 
-def _draw(
+def draw(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
-    return frames.draw(trajectory, times, width=width, height=height, look=look, speed=speed)
+    """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
+      RenderingError: while the first picture is drawn, if OpenGL does not work.
+    """
+    if (np.diff(trajectory.time) <= 0).any():
+        raise ParameterError(
+            f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
+        )
+    return _pictures(trajectory, look, speed, times, whole("width", width), whole("height", height))
+
+
+def _pictures(
+    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
+) -> Generator[np.ndarray]:
+    stage = Stage.of(trajectory, look, speed, width, height)
+    with closing(Painter(stage.display, *stage.shot.pixels, stage.shot.still)) as painter:
+        for time, now in zip(times, coordinates(trajectory, times), strict=True):
+            stage.sheet.boxes.clear()
+            painter.paint(stage.sheet, stage.shot.view(time), now[None], stage.top)
+            stage.explain(time, now)
+            yield stage.sheet.picture()
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """What the pictures of a trajectory are drawn with."""
+
+    trajectory: Trajectory
+    look: Look
+    speed: float
+    sheet: Sheet
+    shot: Shot
+    display: Display
+    marks: Marks
+    strip: Strip | None
+    top: int
+    """Row of the upper edge of the scene [pixels]."""
+    unit: float
+    """Unit of length of the sheet [pixels]."""
+
+    @classmethod
+    def of(cls, trajectory: Trajectory, look: Look, speed: float, width: int, height: int) -> "Stage":
+        """Return the stage for pictures of a trajectory of a width and a height [pixels]."""
+        scene, unit = trajectory.scene, height / UNITS
+        top = header_height(look, unit)
+        has_room = len(trajectory.time) > 1 and width > _NARROW * unit
+        below = round(_STRIP * unit) if has_room and look.strips else 0
+        fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
+        positions = coordinates(trajectory, fine)
+        plane = -scene.can.length / scene.can.radius * RADIUS / 2
+        u, lift, pixels = positions[:, 0], positions[:, 3], (width, height - top - below)
+        below_board = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
+        shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, room=below_board)
+        display = Display.of([scene], float(u.min()) * scale(scene), float(u.max()) * scale(scene))
+        marks = Marks(trajectory, look.marks, plane, fine, positions)
+        strip = Strip(charts(trajectory, look.strips), width, below) if below else None
+        return cls(trajectory, look, speed, Sheet(width, height), shot, display, marks, strip, top, unit)
+
+    def explain(self, time: float, now: np.ndarray) -> None:
+        """Draw title, guides, marks and charts at a `time` [s], with u, phi, roll and lift `now`."""
+        view, board = self.shot.view(time), Board.of(self.trajectory.scene, self.display.model)
+        self.marks.draw(self.sheet, view, self.top, time, now)
+        guides(self.sheet, board, view, self.top, self.unit)
+        header(self.sheet, self.look, self.trajectory, time, self.speed, self.unit)
+        if self.strip is not None:
+            self.strip.draw(self.sheet, time, self.top + self.shot.pixels[1])

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any
 
 from mjbeer.exceptions import RenderingError
 
@@ -18,9 +18,9 @@ With EGL, which runs on a graphics card or without one (Debian and Ubuntu):
     {INSTALL}
 or with OSMesa, where a release still has it:
     apt-get update && apt-get install -y libosmesa6"""
-# A backend that fails leaves PyOpenGL bound to it, and a bad driver may crash: hence another process.
+# Tried in another process, for a backend that fails leaves PyOpenGL bound to it.
 _PROBE = """
-import sys, mujoco
+import mujoco
 from mujoco.{0} import GLContext
 context = GLContext(16, 16)
 context.make_current()
@@ -30,18 +30,10 @@ context.free()
 _NONE = "disable"
 """The value of MUJOCO_GL with which MuJoCo loads no OpenGL when it is imported."""
 _PATIENCE = 60
-"""How long a backend may take to start [s]; it is a second or two."""
+"""How long OpenGL may take to start [s]; it is a second or two."""
 
 
-class Context(Protocol):
-    """An OpenGL context of one of MuJoCo's backends."""
-
-    def make_current(self) -> None: ...
-
-    def free(self) -> None: ...
-
-
-def context(width: int, height: int) -> Context:
+def context(width: int, height: int) -> Any:
     """A new off-screen OpenGL context, not yet current, for pictures of up to `width` by `height` pixels.
 
     Raises:
@@ -78,16 +70,13 @@ def backend() -> str:
       RenderingError: if neither does.
     """
     asked = os.environ.get("MUJOCO_GL", "").strip().lower()
-    tried = (asked,) if asked in BACKENDS else BACKENDS
-    reasons = []
+    tried, reasons = (asked,) if asked in BACKENDS else BACKENDS, []
     for name in tried:
-        reason = _why_not(name)
-        if reason is None:
+        if (reason := _why_not(name)) is None:
             return name
-        reasons.append(f"{name}: {reason}")
-    because = "\n  ".join(reasons)
+        reasons.append(f"\n  {name}: {reason}")
     only = f" (MUJOCO_GL={asked} rules out others)" if len(tried) == 1 else ""
-    raise RenderingError(f"no off-screen OpenGL{only}:\n  {because}\n{REMEDY}")
+    raise RenderingError(f"no off-screen OpenGL{only}:{''.join(reasons)}\n{REMEDY}")
 
 
 def problem() -> str | None:
@@ -123,14 +112,19 @@ def keep_out() -> None:
 
 
 def _why_not(name: str) -> str | None:
-    """None if a backend works, or the last line of what went wrong."""
-    command, environment = [sys.executable, "-c", _PROBE.format(name)], os.environ | {"MUJOCO_GL": _NONE}
+    return why_not(_PROBE.format(name))
+
+
+def why_not(program: str) -> str | None:
+    """Return why a program in Python that tries OpenGL fails, in one line, or None if it does not.
+
+    It runs in another process: a bad driver may crash, or wait for ever.
+    """
+    command, environment = [sys.executable, "-c", program], os.environ | {"MUJOCO_GL": _NONE}
     try:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=_PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         return f"did not start within {_PATIENCE} s"
-    if done.returncode == 0:
-        return None
     if done.returncode < 0:
         return f"crashed with signal {-done.returncode}"
-    return (done.stderr.strip().splitlines() or ["failed without a message"])[-1]
+    return (done.stderr.strip().splitlines() or ["failed without a message"])[-1] if done.returncode else None

@@ -36,11 +36,8 @@ class Order:
     path: pathlib.Path
     """Its file, whose name ends in .mp4. The still picture's ends in -still.png."""
     width: int
-    """Width [pixels]."""
     height: int
-    """Height [pixels]."""
     fps: float
-    """Pictures per second."""
 
     def pictures(self) -> int:
         """Return how many pictures the film has, and the still picture."""
@@ -130,16 +127,19 @@ class _Painter:
         try:
             while not self.done and self.pipe.poll():
                 self._heard = time.monotonic()
-                match self.pipe.recv():
-                    case BaseException() as error:
-                        raise error
-                    case "picture":
-                        pictures += 1
-                    case _:
-                        self.done = True
+                word = self.pipe.recv()
+                if isinstance(word, BaseException):
+                    raise word
+                self.done = word == "done"
+                pictures += not self.done
         except (EOFError, ConnectionResetError):
             self._process.join()
-            self.failure = _told(self._process.exitcode or 0)
+            status = self._process.exitcode or 0
+            memory = ": is memory short?" if -status == signal.SIGKILL else ""
+            ended = (
+                f"was ended by {signal.Signals(-status).name}{memory}" if status < 0 else f"ended with status {status}"
+            )
+            self.failure = f"its process {ended}"
         if not self.done and time.monotonic() - self._heard > _PATIENCE:
             self.failure = f"its process drew nothing for {_PATIENCE:g} s"
         return pictures
@@ -154,14 +154,6 @@ class _Painter:
         self.pipe.close()
         if not self.done:
             self.order.clear()
-
-
-def _told(status: int) -> str:
-    """Return what the exit status of a process says, which is negative if a signal ended it."""
-    if status >= 0:
-        return f"its process ended with status {status}"
-    memory = ": is memory short?" if -status == signal.SIGKILL else ""
-    return f"its process was ended by {signal.Signals(-status).name}{memory}"
 
 
 def _paint(pipe: Connection) -> None:

@@ -1,22 +1,36 @@
-"""Write a trajectory as a video, or one picture of it as a PNG or an array."""
+"""Films as files: MP4 by ffmpeg, an animated WebP, one picture as a PNG or an array. Whole, or not at all."""
 
 import contextlib
+import errno
 import os
 import pathlib
-from collections.abc import Callable, Iterator
+import signal
+import subprocess
+from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 from PIL import Image
 
 from mjbeer import require
-from mjbeer.drawing import encoder
+from mjbeer.drawing.camera import CAMERAS, Camera
 from mjbeer.drawing.film import Reel, reel
-from mjbeer.drawing.overlay.look import Look
-from mjbeer.drawing.size import whole
-from mjbeer.drawing.world.cameras import CAMERAS, Camera
-from mjbeer.exceptions import ParameterError
+from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.sheet import whole
+from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
+
+_CRF = 20
+"""Constant rate factor of H.264: at 18 no loss is visible, 23 is ffmpeg's default."""
+_FASTER = "-preset veryfast -movflags +faststart"
+"""With these, encoding takes less time than drawing, and a player can start before it has loaded the whole file."""
+_COLOURS = "-vf scale=out_color_matrix=bt709:out_range=tv"
+"""HD colours (BT.709), which players expect of a picture this size; the default is those of SD television."""
+_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+"""Errors of the disk. ffmpeg prints the system's message for them."""
+_REMEDY = "Reinstall it (`pip install --force-reinstall imageio-ffmpeg`), or name another in IMAGEIO_FFMPEG_EXE"
+_WEBP = {"quality": 60, "method": 4}
+"""At this quality letters of 13 pixels are still sharp; `method` is how long WebP looks for a smaller file, 0 to 6."""
 
 
 def render(
@@ -51,16 +65,9 @@ def render(
 def write(
     film: Reel, path: pathlib.Path, width: int, height: int, fps: float, count: Callable[[], None] = lambda: None
 ) -> None:
-    """Write a film as a video, as `render` does, and call `count` for each picture.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-      RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
-      OutputError: if the file cannot be written.
-    """
-    width, height = whole("width", width), whole("height", height)
+    """Write a film as a video, as `render` does, and call `count` for each picture."""
     for name, pixels in (("width", width), ("height", height)):
-        if pixels % 2 != 0:
+        if whole(name, pixels) % 2 != 0:
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
     pictures = film.draw(film.times(fps), width, height)
 
@@ -70,7 +77,15 @@ def write(
             yield picture
 
     with files.whole(path) as temporary, contextlib.closing(pictures):
-        encoder.encode(counted(), temporary, width=width, height=height, fps=fps)
+        encode(counted(), temporary, int(width), int(height), fps)
+
+
+def write_webp(film: Reel, path: pathlib.Path, width: int, height: int, fps: float) -> None:
+    """Write a film as an animated WebP that runs forever, which a page shows without a player."""
+    with contextlib.closing(film.draw(film.times(fps), width, height)) as pictures:
+        first, *others = (Image.fromarray(picture) for picture in pictures)
+    with files.whole(path) as temporary:
+        first.save(temporary, "WEBP", save_all=True, append_images=others, duration=round(1000 / fps), loop=0, **_WEBP)
 
 
 def save_frame(
@@ -81,13 +96,7 @@ def save_frame(
     height: int = 720,
     camera: Camera = "auto",
 ) -> None:
-    """Write the picture of a trajectory at a `time` [s] as a PNG, of `width` by `height` pixels.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-      RenderingError: if OpenGL does not work; the message names what to install.
-      OutputError: if the file cannot be written.
-    """
+    """Write the picture of a trajectory at a `time` [s] as a PNG of `width` by `height` pixels, as `frame` draws it."""
     target = _file(path, ".png")
     picture = frame(trajectory, time, width=width, height=height, camera=camera)
     with files.whole(target) as temporary:
@@ -130,3 +139,69 @@ def _file(path: str | os.PathLike[str], suffix: str) -> pathlib.Path:
     if target.suffix.lower() != suffix:
         raise ParameterError(f"the file's name must end in {suffix}, got {require.shown(str(path))}")
     return target
+
+
+def problem() -> str | None:
+    """Return why no video can be encoded here, or None if ffmpeg starts."""
+    import imageio_ffmpeg
+
+    try:
+        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-version"]
+        subprocess.run(command, capture_output=True, stdin=subprocess.DEVNULL, check=True)
+    except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
+        return str(error)
+    return None
+
+
+def missing(films: Sequence[str]) -> str:
+    """Return the line that names the films that are missing because there is no ffmpeg, and what brings it."""
+    return f"not drawn because ffmpeg does not start: {', '.join(films)}. {_REMEDY}"
+
+
+def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
+    """Write frames of shape (height, width, 3), uint8, one at a time, so that memory holds only one.
+
+    Raises:
+      RenderingError: if ffmpeg fails; the message has the last line that ffmpeg wrote.
+      OSError: if the disk is full or broken.
+    """
+    # mediapy imports matplotlib and IPython: a second or two that only videos should take.
+    import imageio_ffmpeg
+    import mediapy
+
+    arguments = f"{_FASTER} {_COLOURS}"
+    writer = mediapy.VideoWriter(path, (height, width), fps=fps, codec="h264", crf=_CRF, ffmpeg_args=arguments)
+    # A terminal sends Ctrl-C to all processes of a command. If ffmpeg ended first, the interruption would be reported
+    # as a fault of ffmpeg: it is started with signals blocked, so that only this process ends it.
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
+    try:
+        mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
+        writer.__enter__()
+    except (OSError, RuntimeError) as error:
+        raise _failure(str(error)) from error
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    complete = True
+    try:
+        try:
+            for frame in frames:
+                writer.add_image(frame)
+        except BrokenPipeError:
+            complete = False
+        _, messages = writer._popen.communicate()
+    finally:  # mediapy would wait for ffmpeg, which may never end by itself
+        writer._popen.kill()
+        writer._popen.communicate()
+    status = writer._popen.returncode
+    if status == 0 and complete and path.stat().st_size > 0:
+        return
+    ended = f"it was ended by {signal.Signals(-status).name}" if status < 0 else "it ended before the video did"
+    told = messages.decode(errors="replace").strip()
+    for number in _DISK:
+        if os.strerror(number) in told or (number == errno.EFBIG and "SIGXFSZ" in ended):
+            raise OSError(number, os.strerror(number))
+    raise _failure([ended, *told.splitlines()][-1])
+
+
+def _failure(reason: str) -> RenderingError:
+    return RenderingError(f"ffmpeg did not write the video: {reason}\n{_REMEDY}")

@@ -7,7 +7,6 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.drawing import opengl
-from mjbeer.drawing.window import require_window
 from mjbeer.exceptions import RenderingError, UnsupportedError
 from mjbeer.model.build import START, compile_spec
 from mjbeer.model.export import CAMERA, present
@@ -20,6 +19,22 @@ _FRAME = 1 / 60
 """Time between two pictures [s]."""
 _PATIENCE = 10
 """How long a window may take to close [s]."""
+# Where no window can be opened, MuJoCo's viewer would wait for it for ever.
+_PROBE = """
+import sys, glfw, mujoco
+glfw.ERROR_REPORTING = False
+window = None
+if glfw.init():
+    glfw.window_hint(glfw.VISIBLE, False)
+    window = glfw.create_window(16, 16, "", None, None)
+if not window:
+    sys.exit((glfw.get_error()[1] or b"").decode())
+glfw.make_context_current(window)
+mujoco.MjrContext(mujoco.MjModel.from_xml_string("<mujoco/>"), 100).free()
+"""
+_OTHER_WAYS = (
+    "`mjbeer render` draws a video without a window, and `mjbeer export` writes a file for MuJoCo's viewer elsewhere"
+)
 _HELP = "space\nbackspace\nF4", "run or pause\nstart anew\nplot the sensors"
 """The text in the window, in two columns."""
 
@@ -28,11 +43,7 @@ class Player:
     """The motion of a model in real time: paused at its start, until the space bar is pressed."""
 
     def __init__(self, model: mujoco.MjModel, speed: float = 1.0) -> None:
-        self.model, self.data = model, mujoco.MjData(model)
-        self.paused = True
-        self._speed = speed
-        self._due = 0.0
-        self._reached = 0.0
+        self.model, self.data, self._speed = model, mujoco.MjData(model), speed
         self.restart()
 
     def restart(self) -> None:
@@ -100,33 +111,38 @@ def view(
     _play(Player(model, speed))
 
 
+def require_window() -> None:
+    """Check that a window can be opened.
+
+    Raises:
+      RenderingError: if it cannot; the message has the reason, and the two ways on.
+    """
+    if reason := opengl.why_not(_PROBE):
+        raise RenderingError(f"no window can be opened: {reason}; {_OTHER_WAYS}")
+
+
 def _play(player: Player) -> None:
     """Show a player in a window until the window is closed."""
     import mujoco.viewer
 
     others = threading.enumerate()
     try:
-        opened = mujoco.viewer.launch_passive(player.model, player.data, key_callback=player.press)
+        window = mujoco.viewer.launch_passive(player.model, player.data, key_callback=player.press)
     except RuntimeError as error:  # on macOS, where a window needs MuJoCo's own launcher
         raise RenderingError(f"MuJoCo's viewer does not open: {error}") from error
     try:
-        _run(player, opened)
+        with window.lock():
+            window.cam.type, window.cam.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, player.model.camera(CAMERA).id
+        window.set_texts((None, None, *_HELP))
+        before = time.monotonic()
+        while window.is_running():
+            now = time.monotonic()
+            player.advance(now - before)
+            before = now
+            window.sync()
+            time.sleep(_FRAME)
     finally:
-        opened.close()
+        window.close()
         for thread in threading.enumerate():  # the window's thread would crash if the process ended before it
             if thread not in others:
                 thread.join(_PATIENCE)
-
-
-def _run(player: Player, window: "mujoco.viewer.Handle") -> None:
-    """Show a player in a window that is open, until it is closed."""
-    with window.lock():
-        window.cam.type, window.cam.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, player.model.camera(CAMERA).id
-    window.set_texts((None, None, *_HELP))
-    before = time.monotonic()
-    while window.is_running():
-        now = time.monotonic()
-        player.advance(now - before)
-        before = now
-        window.sync()
-        time.sleep(_FRAME)

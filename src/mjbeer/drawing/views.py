@@ -22,7 +22,7 @@ from mjbeer.theory.trajectory import Trajectory
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from mjbeer.drawing.world.cameras import Camera
+    from mjbeer.drawing.camera import Camera
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
@@ -58,8 +58,7 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> "tuple[Ax
         panels = tuple(figure.subplots(len(names), 1, sharex=True, squeeze=False).flat)
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
-            start = {"phi0": trajectory.phi0, "phi_dot0": trajectory.phi_dot0}
-            truth = solution(scene, dense, **start)
+            truth = solution(scene, dense, trajectory.phi0, trajectory.phi_dot0)
             for axes, name in zip(panels, names, strict=True):
                 axes.plot(dense, _values(truth, name), label="exact theory", **THEORY)
         source = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
@@ -86,14 +85,11 @@ def _values(trajectory: Trajectory, name: str) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Video:
-    """A video in memory, which a notebook shows."""
+    """A video in memory, MP4 with H.264, which a notebook shows."""
 
     data: bytes
-    """The video, MP4 with H.264."""
     width: int
-    """Width [pixels]."""
     height: int
-    """Height [pixels]."""
 
     def _repr_html_(self) -> str:
         """Return the video as HTML, with nothing that has to be fetched."""
@@ -112,13 +108,7 @@ def video(
     camera: "Camera",
     progress: bool,
 ) -> Video:
-    """Return a video of a trajectory, and write it to `path` if there is one, as `mjbeer.render` does.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-      RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
-      OutputError: if the file cannot be written.
-    """
+    """Return a video of a trajectory, and write it to `path` if there is one, as `mjbeer.render` does."""
     import tempfile
 
     from mjbeer.drawing.video import render

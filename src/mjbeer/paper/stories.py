@@ -13,7 +13,7 @@ from rich.console import Console
 
 from mjbeer.drawing import opengl, studio
 from mjbeer.drawing.film import Take
-from mjbeer.drawing.overlay.look import Look, Mark
+from mjbeer.drawing.overlay import Look, Mark
 from mjbeer.drawing.studio import Order
 from mjbeer.model.setting import FRICTION
 from mjbeer.output import files

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import partial
 
 from mjbeer.drawing.film import Take
-from mjbeer.drawing.overlay.look import Look
+from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Order
 from mjbeer.paper import stories
@@ -94,11 +94,11 @@ def orders(folder: pathlib.Path, quick: bool) -> list[Order]:
 
 def not_drawn(names: Sequence[str]) -> str:
     """Return the line that says why films are missing and what brings them, or "" where they can be drawn."""
-    from mjbeer.drawing import encoder, opengl
+    from mjbeer.drawing import opengl, video
 
     if opengl.problem():
         return opengl.missing(names)
-    return encoder.missing(names) if encoder.problem() else ""
+    return video.missing(names) if video.problem() else ""
 
 
 def write_gallery(folder: pathlib.Path) -> None:
@@ -108,10 +108,10 @@ def write_gallery(folder: pathlib.Path) -> None:
       RenderingError: if OpenGL does not work; the message says what to do.
       OutputError: if a file cannot be written.
     """
-    from mjbeer.drawing import animation
+    from mjbeer.drawing import video
 
     for name, film in FILMS.items():
-        animation.write(film.reel(), folder / f"{name}.webp", *GALLERY)
+        video.write_webp(film.reel(), folder / f"{name}.webp", *GALLERY)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from mjbeer.drawing.runner import Runner
+from mjbeer.drawing.race import Runner
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact

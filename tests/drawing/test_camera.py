@@ -5,7 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mjbeer.drawing.world.view import View, circle
+from mjbeer import exact, frozen, hoop, sliding
+from mjbeer.drawing.camera import CAMERAS, Camera, Shot, View, circle, on_incline, scale
+from mjbeer.drawing.scene import coordinates
+from mjbeer.theory.can import RADIUS
+from mjbeer.theory.trajectory import Trajectory
 
 # Rounding of a dozen operations on numbers of the size of the picture.
 ROUNDING = 1e-9
@@ -13,11 +17,11 @@ CENTRE = np.array([0.3, -0.06, 0.1])
 METRES = np.array([0.8, 0.45])
 PIXELS = (1600, 900)
 VIEW = View.facing(CENTRE, METRES, distance=2.0, above=0.1, pixels=PIXELS)
-coordinates = st.floats(-1, 1)
+PLACES = st.floats(-1, 1)
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
-@given(coordinates, coordinates)
+@given(PLACES, PLACES)
 def test_a_plane_across_the_axis_is_a_map_to_scale(x: float, z: float) -> None:
     """2000 pixels for a metre in each direction, whatever the eye's height is."""
     place = VIEW.pixel(CENTRE + np.array([x, 0.0, z]))
@@ -26,7 +30,7 @@ def test_a_plane_across_the_axis_is_a_map_to_scale(x: float, z: float) -> None:
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
-@given(coordinates, st.floats(-0.5, 2), coordinates, coordinates)
+@given(PLACES, st.floats(-0.5, 2), PLACES, PLACES)
 def test_plumb_lines_are_plumb_and_level_lines_level(x: float, y: float, low: float, high: float) -> None:
     plumb = VIEW.pixel(np.array([[x, y, low], [x, y, high]]))
     level = VIEW.pixel(np.array([[low, y, x], [high, y, x]]))
@@ -44,7 +48,7 @@ def test_what_is_behind_is_smaller_and_nearer_to_the_eye() -> None:
 
 
 @settings(max_examples=50, deadline=None, derandomize=True)
-@given(coordinates, coordinates, coordinates, st.integers(0, 700), st.integers(0, 400))
+@given(PLACES, PLACES, PLACES, st.integers(0, 700), st.integers(0, 400))
 def test_a_crop_shows_the_same_at_the_same_place(x: float, y: float, z: float, left: int, top: int) -> None:
     point = np.array([x, y, z])
     crop = VIEW.crop(left, top, left + 300, top + 200)
@@ -70,3 +74,61 @@ def test_a_view_towards_points_just_holds_them(pixels: tuple[int, int]) -> None:
     assert view.axes @ view.axes.T == pytest.approx(np.eye(3), abs=1e-12)
     assert np.linalg.det(view.axes) == pytest.approx(1.0)  # no mirror
     assert view.axes[0][2] == 0  # upright
+
+
+WIDE = (1280, 430)
+PLANE = -0.06
+TIMES = np.linspace(0, 1, 101)
+MOTIONS = {
+    "rocks": exact(frozen(), TIMES, 0.0),
+    "swings downhill": exact(sliding(), TIMES, 1.0),
+    "rolls uphill": exact(sliding(-0.3), TIMES, 1.0),
+    "stays": exact(frozen(), TIMES, frozen().equilibrium()),
+    "loops": exact(hoop(), TIMES, -3.0, 16.0),
+}
+
+
+def shot(motion: Trajectory, camera: Camera) -> Shot:
+    u, _, _, lift = coordinates(motion, TIMES).T
+    return Shot.fit(motion.scene, camera, TIMES, u, lift, PLANE, WIDE)
+
+
+@pytest.mark.parametrize("camera", CAMERAS)
+@pytest.mark.parametrize("name", MOTIONS)
+def test_the_can_is_in_the_picture_at_all_times(name: str, camera: Camera) -> None:
+    motion = MOTIONS[name]
+    taken = shot(motion, camera)
+    for time, u in zip(TIMES, motion.u, strict=True):
+        centre = on_incline(motion.scene, u * scale(motion.scene), RADIUS)
+        rim = np.insert(centre + circle(RADIUS), 1, PLANE, axis=1)
+        places = taken.view(time).pixel(rim)
+        assert (places > 0).all()
+        assert (places < WIDE).all()
+
+
+def test_a_pan_is_even_and_shows_the_hesitation() -> None:
+    """The camera's way has a constant second difference; the can goes to and fro in the picture by what it hesitates.
+
+    The swing's share in the pan is that of fitting a parabola over a little more than two swings.
+    """
+    motion = MOTIONS["swings downhill"]
+    taken = shot(motion, "pan")
+    way = taken.way(TIMES)
+    assert np.ptp(np.diff(way, 2)) < 1e-12 * np.ptp(way)
+    steady = motion.scene.acceleration() * TIMES**2 / 2
+    hesitation = np.ptp(motion.u - steady)
+    seen = np.ptp(motion.u * scale(motion.scene) - way) / scale(motion.scene)
+    assert seen == pytest.approx(hesitation, rel=0.2)
+
+
+def test_the_camera_pans_where_the_can_would_be_small() -> None:
+    still = shot(MOTIONS["rocks"], "auto")
+    assert still.still
+    assert np.array_equal(still.view(0.0).eye, still.view(1.0).eye)
+    assert not shot(MOTIONS["swings downhill"], "auto").still
+
+
+def test_a_can_at_rest_fills_what_it_may() -> None:
+    taken = shot(MOTIONS["stays"], "auto")
+    pixels = RADIUS * taken.view(0.0).scale(np.array([0.0, PLANE, 0.0]))
+    assert pixels == pytest.approx(0.22 * WIDE[1], rel=1e-9)

@@ -1,9 +1,9 @@
-"""Lines, arrows and texts drawn over a picture, with smooth edges."""
+"""A picture to draw on: its size, and lines, arrows and texts over it, with smooth edges."""
 
 import math
 import pathlib
 from collections.abc import Sequence
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 from matplotlib import get_data_path
@@ -13,17 +13,36 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 from PIL import Image, ImageDraw, ImageFont
 
+from mjbeer import require
+from mjbeer.exceptions import ParameterError
+
 Colour = str | tuple[float, float, float]
 """A colour as matplotlib takes it."""
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom [pixels]."""
 
+UNITS = 36
+"""Height of a picture in units."""
+_LARGEST = 4096
+"""Largest width and height [pixels] that H.264 encoders support."""
 INK = "#1f2933"
 """Colour of texts and of lines that explain."""
 _EDGE = 2
 """Width of the white edge around a text that may lie on anything [pixels]."""
 _HEAD = 3.2
 """Length of an arrow's head, in widths of its line."""
+
+
+def whole(name: str, pixels: float) -> int:
+    """Return a number of pixels as an integer.
+
+    Raises:
+      ParameterError: if it is not a whole number, not positive, or larger than encoders support.
+    """
+    number = require.positive(name, pixels)
+    if number % 1 != 0 or number > _LARGEST:
+        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.shown(pixels)}")
+    return int(number)
 
 
 class Sheet:
@@ -111,11 +130,16 @@ class Sheet:
 
         With a `halo` the text has a white edge, so that it can be read on anything.
         """
-        box = self.box(place, words, size, anchor, bold)
-        left, top = int(box[0]), int(box[1])
-        if halo:
-            self._blend(left - _EDGE, top - _EDGE, _letters(words, max(1, round(size)), bold, _EDGE), (1.0, 1.0, 1.0))
-        self._blend(left, top, _letters(words, max(1, round(size)), bold, 0), to_rgb(colour))
+        left, top, right, bottom = box = self.box(place, words, size, anchor, bold)
+        high, low = max(0, top - _EDGE), max(0, left - _EDGE)
+        part = self._pixels[high : max(0, bottom + _EDGE), low : max(0, right + _EDGE)]
+        if part.size:
+            image = Image.fromarray(part)
+            ink = tuple(round(255 * share) for share in to_rgb(colour))
+            ImageDraw.Draw(image).text(
+                (left - low, top - high), words, ink, _font(size, bold), stroke_width=_EDGE * halo, stroke_fill="white"
+            )
+            part[:] = image
         self.boxes.append(box)
         return box
 
@@ -126,19 +150,12 @@ class Sheet:
         size: float,
         anchor: tuple[float, float] = (0.0, 0.5),
         bold: bool = False,
-    ) -> Box:
+    ) -> tuple[int, int, int, int]:
         """Return the box that a text would have."""
-        height, width = _letters(words, max(1, round(size)), bold, 0).shape
+        font = _font(size, bold)
+        width, height = math.ceil(font.getlength(words)), sum(font.getmetrics())
         left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
         return left, top, left + width, top + height
-
-    def _blend(self, left: int, top: int, mask: np.ndarray, colour: tuple[float, float, float]) -> None:
-        """Mix a colour into the picture where a mask says how much of it, with its upper left corner at a place."""
-        rows, columns = mask.shape
-        under = self._pixels[max(0, top) : max(0, top + rows), max(0, left) : max(0, left + columns), :3]
-        high, low = max(0, -top), max(0, -left)
-        part = mask[high : high + under.shape[0], low : low + under.shape[1], None]
-        under[:] = under + part * (255 * np.array(colour, np.float32) - under)
 
     def _pen(self, width: float, colour: Colour, alpha: float):
         pen = self._renderer.new_gc()
@@ -159,23 +176,13 @@ def overlap(one: Box, other: Box) -> bool:
     return min(one[2], other[2]) > max(one[0], other[0]) and min(one[3], other[3]) > max(one[1], other[1])
 
 
-@lru_cache(1000)
-def _letters(words: str, size: int, bold: bool, edge: int) -> np.ndarray:
-    """Return how much of each pixel the letters of a text and an `edge` [pixels] around them cover, from 0 to 1.
-
-    The array is as high as a line, so that texts beside each other stand on one line.
-    """
-    font = _font(size, bold)
-    ascent, descent = font.getmetrics()
-    width = math.ceil(font.getlength(words))
-    image = Image.new("L", (width + 2 * edge, ascent + descent + 2 * edge))
-    ImageDraw.Draw(image).text((edge, edge), words, fill=255, font=font, stroke_width=edge)
-    return np.asarray(image, np.float32) / 255
+def _font(size: float, bold: bool) -> ImageFont.FreeTypeFont:
+    """Return the font that comes with matplotlib, in whole pixels: of fonts of that name a system may have another."""
+    return _load(max(1, round(size)), "DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")
 
 
 @cache
-def _font(size: int, bold: bool) -> ImageFont.FreeTypeFont:
-    """Return the font that comes with matplotlib, by its path: of fonts of that name a system may have another."""
-    path = pathlib.Path(get_data_path()) / "fonts" / "ttf" / ("DejaVuSans-Bold.ttf" if bold else "DejaVuSans.ttf")
+def _load(size: int, name: str) -> ImageFont.FreeTypeFont:
     # Pillow's other layout needs the system's FriBiDi, and sets letters elsewhere; where that is absent, it falls back.
+    path = pathlib.Path(get_data_path()) / "fonts" / "ttf" / name
     return ImageFont.truetype(path, size, layout_engine=ImageFont.Layout.BASIC)

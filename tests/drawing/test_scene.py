@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mjbeer import Can, Scene, exact, frozen, hoop, simulate, sliding
-from mjbeer.drawing.world.display import Display, on_incline, scale
+from mjbeer.drawing.camera import scale
+from mjbeer.drawing.scene import Display
 from mjbeer.theory.can import RADIUS
 from tests.support.scenes import METAL, SCENES, scenes
 
@@ -119,26 +120,3 @@ def test_size_does_not_show(radius: float) -> None:
     for field in ("geom_pos", "geom_size", "mesh_vert", "mat_texrepeat", "body_pos"):
         assert np.allclose(getattr(one, field), getattr(other, field), rtol=1e-6, atol=1e-9), field
     assert one.stat.extent == pytest.approx(other.stat.extent)
-
-
-def test_masses_do_not_matter() -> None:
-    """Nor gravity: a massless can, which MuJoCo would not move, and a heavy one on the moon look the same."""
-    light = Display.of([sliding()], 0, 1).model
-    heavy = Display.of([sliding(can=METAL, density=1e4, gravity=1.6)], 0, 1).model
-    assert np.array_equal(light.geom_pos, heavy.geom_pos)
-    assert np.array_equal(light.body_mass, heavy.body_mass)
-
-
-def test_a_hop_is_upwards() -> None:
-    display = Display.of([hoop()], 0, 1)
-    seen = []
-    for lift in (0.0, 0.03):
-        display.pose(np.array([[0.1, 1.0, 1.0, lift]]))
-        seen.append(display.data.body("can").xpos.copy())
-    assert seen[1] - seen[0] == pytest.approx([0, 0, 0.03 * scale(hoop())], abs=1e-15)
-
-
-def test_a_point_of_the_incline_is_where_it_was() -> None:
-    scene = frozen(0.4)
-    x, z = on_incline(scene, 0.7, 0.2)
-    assert in_incline(scene, np.array([x, 0.0, z]) * scale(scene)) == pytest.approx((0.7, 0.2))

@@ -6,20 +6,22 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
-from mjbeer.drawing.overlay.look import Mark
-from mjbeer.drawing.overlay.marks import LONGEST, Marks
-from mjbeer.drawing.world.display import on_incline, scale
-from mjbeer.drawing.world.positions import coordinates
-from mjbeer.drawing.world.shot import Shot
-from mjbeer.drawing.world.view import View
+from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.drawing.camera import Shot, View, on_incline, scale
+from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides
+from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
+from mjbeer.theory.scene import Scene
 from tests.support.drawn import Recorder
 
 TIMES = np.linspace(0, 0.5, 501)
 PIXELS = (1280, 430)
 PLANE = -0.06
+FEW = np.linspace(0, 0.5, 51)
+UNIT = 20.0
+# A pixel is a quarter of the width of the lines of the guides.
+PIXEL = 0.5
 # Rounding of places of some hundred pixels; the arcs are polygons, whose ends are exact.
 ROUNDING = 1e-6
 
@@ -116,3 +118,57 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
     even = 9.81 * math.sin(motion.scene.incline) * 0.4**2 / 2
     assert middle == pytest.approx(place(motion, view, even, 0.033), abs=0.2)  # a polygon of 48 corners
     assert u - even == pytest.approx(motion.scene.load.offset * math.sin(phi))
+
+
+def guided(scene: Scene) -> tuple[Recorder, Board, View]:
+    motion = exact(scene, FEW, 1.0)
+    display = Display.of([scene], float(motion.u.min()), float(motion.u.max()))
+    board = Board.of(scene, display.model)
+    view = Shot.fit(scene, "auto", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.2)
+    sheet = Recorder(*PIXELS)
+    guides(sheet, board, view, 0, UNIT)
+    return sheet, board, view
+
+
+@pytest.mark.parametrize("incline", [-60, -10, 0, 3, 10, 40, 80])
+def test_the_arrow_of_gravity_is_plumb(incline: float) -> None:
+    sheet, *_ = guided(frozen(math.radians(incline)))
+    ((tail, head),) = sheet.arrows
+    assert any("°" in words for words in sheet.words) == (incline != 0)
+    assert head[0] == tail[0]
+    assert head[1] > tail[1] + 50
+
+
+@pytest.mark.parametrize("incline", [-60, -10, 3, 10, 40, 80])
+def test_the_angle_of_the_incline_is_drawn_and_written(incline: float) -> None:
+    sheet, board, view = guided(frozen(math.radians(incline)))
+    level, arc, *_ = sheet.lines
+    corner, end = level
+    assert end[1] == corner[1]
+    assert np.sign(end[0] - corner[0]) == -np.sign(incline)  # uphill
+    first, last = arc[0] - corner, arc[-1] - corner
+    assert first[1] == pytest.approx(0, abs=1e-9)
+    assert math.degrees(math.atan2(-last[1], abs(last[0]))) == pytest.approx(abs(incline))
+    # Its corner lies on the board's underside.
+    edge = board.pixel(view, board.along(view, corner[0]))
+    assert edge == pytest.approx(corner, abs=PIXEL)
+    assert f"α = {abs(incline):g}°" in sheet.words
+
+
+@pytest.mark.parametrize("incline", [-10, 0, 10, 30])
+@pytest.mark.parametrize("radius", [1e-4, 0.033, 25.0])
+def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -> None:
+    """Each tick is where a point of the board at that distance is seen, in a can of any size."""
+    scene = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius))
+    motion = exact(scene, FEW * math.sqrt(radius / 0.033), 1.0)
+    display = Display.of([scene], -0.1, 0.1)
+    board = Board.of(scene, display.model)
+    view = Shot.fit(scene, "fixed", motion.time, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    sheet = Recorder(*PIXELS)
+    guides(sheet, board, view, 0, UNIT)
+    numbers = [float(words[:-2].replace("\N{MINUS SIGN}", "-")) for words in sheet.words if words.endswith(" m")]
+    ticks = [line[0] for line in sheet.lines[2 if incline else 0 :]]
+    assert len(numbers) == len(ticks) >= 2
+    for number, tick in zip(numbers, ticks, strict=True):
+        x, z = on_incline(scene, number / radius * RADIUS, board.under)
+        assert tick == pytest.approx(view.pixel(np.array([x, board.front, z])), abs=PIXEL)

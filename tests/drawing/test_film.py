@@ -3,26 +3,25 @@
 import math
 import weakref
 from collections.abc import Callable, Sequence
+from contextlib import closing
 
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, Trajectory, exact, frozen, hoop, simulate, sliding
-from mjbeer.drawing import frames, video
-from mjbeer.drawing.frames import Stage
-from mjbeer.drawing.overlay.look import Look
-from mjbeer.drawing.overlay.sheet import Sheet
-from mjbeer.drawing.painter import Painter
-from mjbeer.drawing.world.cameras import CAMERAS, Camera
-from mjbeer.drawing.world.canvas import Canvas
-from mjbeer.drawing.world.display import Display, on_incline, scale
-from mjbeer.drawing.world.positions import coordinates
+from mjbeer import Scene, Trajectory, exact, frozen, hoop, simulate, sliding
+from mjbeer.drawing import film, video
+from mjbeer.drawing.camera import CAMERAS, Camera, on_incline, scale
+from mjbeer.drawing.film import Stage
+from mjbeer.drawing.overlay import Look
+from mjbeer.drawing.scene import Painter, coordinates
+from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.load import segment
 
 pytestmark = pytest.mark.slow
 
 PLAIN = Look("a title", strips=(), marks=())
+FIXED = Look("a title", strips=(), marks=(), camera="fixed")
 SIZE = (640, 360)
 
 
@@ -35,7 +34,7 @@ class Seen:
 
     def __init__(self, pixels: np.ndarray, stage: Stage, pose: np.ndarray) -> None:
         self.pixels, self.stage = pixels.astype(int), stage
-        scene = stage.marks.scene
+        scene = stage.trajectory.scene
         self.axis = on_incline(scene, pose[0] * scale(scene), RADIUS)
 
     def at(self, x: float, z: float, tilt: float) -> np.ndarray:
@@ -64,8 +63,8 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
         lift=rest,
         lift_dot=rest,
     )
-    drawn = frames.draw(still, times, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"))
-    stage = Stage.of(still, *SIZE, Look("a title", strips=(), marks=(), camera="fixed"), 1.0)
+    drawn = film.draw(still, FIXED, 1.0, times, *SIZE)
+    stage = Stage.of(still, FIXED, 1.0, *SIZE)
     poses = np.stack([u, phis, rolls], axis=1)
     return [Seen(picture, stage, pose) for picture, pose in zip(drawn, poses, strict=True)]
 
@@ -113,7 +112,7 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
 @pytest.mark.parametrize("incline", [-60.0, 0.0, 80.0])
 def test_the_wall_fills_the_picture(camera: Camera, incline: float) -> None:
     """Behind it nothing is drawn, which would be black."""
-    drawing = frames.draw(motion(math.radians(incline)), np.array([0.5]), 300, 100, Look("", (), (), camera))
+    drawing = film.draw(motion(math.radians(incline)), Look("", (), (), camera), 1.0, np.array([0.5]), 300, 100)
     picture = next(drawing)[25:, 40:-40]  # without title and gravity's arrow
     drawing.close()
     assert not (picture.max(axis=2) < 8).any()
@@ -123,32 +122,17 @@ def test_the_wall_fills_the_picture(camera: Camera, incline: float) -> None:
 def test_what_a_still_camera_does_not_draw_anew_is_the_same() -> None:
     """A picture of the whole, and one of the empty board with the can in its place, differ by rounding only."""
     moved = motion()
-    stage = Stage.of(moved, *SIZE, PLAIN, 1.0)
+    stage = Stage.of(moved, PLAIN, 1.0, *SIZE)
     assert stage.shot.still
-    display, pictures = Display.of([moved.scene], *stage.reach), []
-    with Canvas(display.model, *stage.pixels) as canvas:
-        for still in (False, True):
-            sheet = Sheet(*stage.pixels)
-            Painter(canvas, display, still).paint(sheet, stage.shot.view(0.0), np.array([[0.01, 0.5, 0.5, 0.002]]), 0)
-            pictures.append(sheet.picture().astype(int))
+    pictures = []
+    for still in (False, True):
+        sheet = Sheet(*stage.shot.pixels)
+        with closing(Painter(stage.display, *stage.shot.pixels, still)) as painter:
+            painter.paint(sheet, stage.shot.view(0.0), np.array([[0.01, 0.5, 0.5, 0.002]]), 0)
+        pictures.append(sheet.picture().astype(int))
     difference = np.abs(pictures[0] - pictures[1]).max(axis=2)
     assert (difference > 2).sum() < 20  # pixels on edges, of 200 000
     assert np.ptp(pictures[0]) > 200
-
-
-@pytest.mark.draws
-@pytest.mark.parametrize("radius", [1e-4, 25.0])
-def test_size_does_not_show(radius: float) -> None:
-    """A can of 0.1 mm looks as one of 25 m does, but for the time and the distances."""
-    shown = []
-    for size in (RADIUS, radius):
-        scene = frozen(can=Can.massless(size, 4 * size))
-        moved = exact(scene, np.linspace(0, 10 * math.sqrt(size / 9.81), 41), 2.0)
-        drawing = frames.draw(moved, moved.time[30:31], 320, 180, Look("", strips=()))
-        shown.append(next(drawing)[40:120].astype(int))
-        drawing.close()
-    different = np.abs(shown[0] - shown[1]).max(axis=2) > 20
-    assert different.mean() < 0.03  # the numbers on the board
 
 
 def test_motion_between_samples_is_of_fourth_order() -> None:
@@ -162,21 +146,17 @@ def test_motion_between_samples_is_of_fourth_order() -> None:
     assert math.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.3)
 
 
-def test_one_sample_is_a_still() -> None:
-    still = exact(frozen(), np.array([0.0]), 1.0)
-    assert coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
-
-
 @pytest.mark.draws
 def test_one_sample_is_drawn() -> None:
     still = exact(frozen(), np.array([0.0]), 1.0)
+    assert coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
     assert video.frame(still, 0.0, 320, 180).shape == (180, 320, 3)
 
 
 @pytest.mark.draws
 def test_drawn_frames_are_never_all_held() -> None:
     made: list[weakref.ref] = []
-    for picture in frames.draw(motion(), np.linspace(0, 0.4, 5), 64, 36, PLAIN):
+    for picture in film.draw(motion(), PLAIN, 1.0, np.linspace(0, 0.4, 5), 64, 36):
         made.append(weakref.ref(picture))
         assert sum(each() is not None for each in made) <= 2
 
@@ -184,9 +164,9 @@ def test_drawn_frames_are_never_all_held() -> None:
 @pytest.mark.draws
 def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytest.MonkeyPatch) -> None:
     closed = []
-    real = Canvas.close
-    monkeypatch.setattr(Canvas, "close", lambda canvas: (closed.append(canvas), real(canvas)))
-    drawing = frames.draw(motion(), np.linspace(0, 0.4, 5), 64, 36, PLAIN)
+    real = Painter.close
+    monkeypatch.setattr(Painter, "close", lambda painter: (closed.append(painter), real(painter)))
+    drawing = film.draw(motion(), PLAIN, 1.0, np.linspace(0, 0.4, 5), 64, 36)
     next(drawing)
     assert closed == []
     drawing.close()

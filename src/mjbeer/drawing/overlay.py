@@ -1,0 +1,323 @@
+"""What is drawn over the pictures of a motion to explain it: words above, marks at the can, numbers on the board."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, Self
+
+import mujoco
+import numpy as np
+
+from mjbeer.drawing import strip
+from mjbeer.drawing.camera import Camera, View, circle, on_incline, scale
+from mjbeer.drawing.sheet import INK, UNITS, Box, Colour, Sheet, overlap
+from mjbeer.model import looks
+from mjbeer.model.looks import WALL
+from mjbeer.theory.can import RADIUS
+from mjbeer.theory.named import in_words
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
+
+Mark = Literal["phi", "paths", "forces", "ghost"]
+"""phi: the angle of the load. paths: of a point on the rim and of the load's centre of mass. forces: N and F. ghost: a
+can that accelerates evenly."""
+_TITLES = {
+    "sliding": "Beer that slides in its can without friction",
+    "frozen": "Beer frozen to its can",
+    "pendulum": "A pendulum in a rolling wheel",
+    "hoop": "A weight on the rim of a hoop",
+}
+_DAMPED = "A can that its load or the air brakes"
+
+
+@dataclass(frozen=True)
+class Look:
+    """What is drawn into the pictures of a motion besides the can, and below them."""
+
+    title: str
+    """What is seen, in a few words."""
+    strips: tuple[str, ...] = ("phi", "u")
+    """Names of the quantities in the charts below the picture."""
+    marks: tuple[Mark, ...] = ("phi", "paths")
+    """What is drawn to explain the motion."""
+    camera: Camera = "auto"
+    """How the camera moves."""
+
+    @classmethod
+    def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
+        """Return the look of a motion of which nothing else is known."""
+        title = _DAMPED if trajectory.scene.dissipates else _TITLES[looks.name(trajectory.scene)]
+        if trajectory.rolling == "contact":
+            return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "forces"), camera=camera)
+        if trajectory.scene.dissipates:
+            return cls(title, strips=("phi", "u_dot"), camera=camera)
+        if trajectory.scene.attachment == "sliding":
+            return cls(title, strips=("phi", "ahead"), marks=("phi", "ghost"), camera=camera)
+        return cls(title, camera=camera)
+
+
+# The lines above a picture: what is seen, when, how fast, and what the marks mean. Sizes are in units of the sheet.
+
+HEIGHT = 4.1
+"""Height of the first two lines."""
+_LEGEND = 1.5
+"""Height of the third line, which tells what the marks mean, if they need it."""
+_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7
+"""Where each of them is."""
+_GREY = "#52606d"
+_RIM, _CENTRE, _GHOST = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45)
+"""Colours of the path of a point on the rim, of that of the centre of mass, and of the ghost."""
+_NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)
+"""Colours of the forces."""
+_LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
+    "phi": (),
+    "paths": (("—", _RIM, "path of a point on the rim"), ("—", _CENTRE, "path of the centre of mass")),
+    "forces": (("→", _NORMAL, "normal force N"), ("→", _FRICTION, "friction F")),
+    "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
+}
+"""What the marks are: a sign, its colour, and its meaning."""
+
+
+def header_height(look: Look, unit: float) -> int:
+    """Return the height of the lines above a picture [pixels], for a unit of its sheet [pixels]."""
+    return round((HEIGHT + (_LEGEND if any(_LEGENDS[mark] for mark in look.marks) else 0)) * unit)
+
+
+def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed: float, unit: float) -> None:
+    """Draw the lines above a picture as they are at a `time` [s]."""
+    duration = float(trajectory.time[-1] - trajectory.time[0])
+    digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
+    head(sheet, (look.title, in_words(trajectory.scene)), time, speed, unit, digits)
+    sheet.blank(0, round(HEIGHT * unit), sheet.width, header_height(look, unit))
+    body, column = "can" if looks.name(trajectory.scene) in ("sliding", "frozen") else "wheel", 1.2 * unit
+    for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
+        *_, column, _ = sheet.text((column, _THIRD * unit), sign, 1.1 * unit, colour, bold=True)
+        *_, column, _ = sheet.text((column + 0.5 * unit, _THIRD * unit), meaning.format(body), 1.0 * unit)
+        column += 1.8 * unit
+
+
+def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, unit: float, digits: int = 2) -> None:
+    """Draw a title and a scene in words, the `time` [s] with some digits after the point, and the playback speed."""
+    pace = f"slowed down {1 / speed:.3g} times" if speed < 1 else f"sped up {speed:.3g} times"
+    sheet.blank(0, 0, sheet.width, round(HEIGHT * unit))
+    sheet.text((1.2 * unit, _FIRST * unit), words[0], 1.45 * unit, bold=True)
+    sheet.text((1.2 * unit, _SECOND * unit), words[1], 1.1 * unit, _GREY)
+    right = sheet.width - 1.2 * unit
+    sheet.text((right, _FIRST * unit), f"t = {time:.{digits}f} s", 1.45 * unit, anchor=(1, 0.5))
+    sheet.text((right, _SECOND * unit), "real time" if speed == 1 else pace, 1.1 * unit, _GREY, anchor=(1, 0.5))
+
+
+# The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
+
+LONGEST = 1.6
+"""Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
+_CLEAR = 0.4
+"""Least distance of a force's letter from the foot of the can: no letter is to cover it."""
+_RARE = 90.0
+"""Percentage of times at which no force is larger than the longest arrow shows."""
+_LETTER = 1.35
+"""Least height of a letter, in units of the sheet."""
+_FAINT = 0.05
+"""Least length of an arrow that is drawn."""
+
+
+@dataclass(frozen=True, eq=False)
+class Marks:
+    """The marks of a trajectory, to be drawn over the pictures at some times."""
+
+    trajectory: Trajectory
+    kinds: Sequence[Mark]
+    plane: float
+    """Coordinate y of the can's near end [m]."""
+    fine: np.ndarray
+    """Times [s] at which the paths are drawn."""
+    positions: np.ndarray
+    """u, phi, roll and lift at these times, shape (times, 4)."""
+
+    def draw(self, sheet: Sheet, view: View, top: int, time: float, now: np.ndarray) -> None:
+        """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
+        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
+        pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
+        drawn = {"ghost": self._ghost, "paths": self._paths, "forces": self._forces, "phi": self._phi}
+        for kind, draw in drawn.items():
+            if kind in self.kinds:
+                draw(pen, time, now)
+        sheet.clip(None)
+
+    def _ghost(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        motion = self.trajectory
+        roll = float(strip.even(motion.scene, motion, np.array(time))) / motion.scene.can.radius
+        centre, turned = np.array([roll, 1.0]), np.array([math.sin(roll), math.cos(roll)])
+        pen.line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
+        pen.line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
+
+    def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        until = np.searchsorted(self.fine, time, side="right")
+        u, phi, roll, lift = np.vstack([self.positions[:until], now]).T
+        radius, offset = self.trajectory.scene.can.radius, self.trajectory.scene.load.offset
+        axis = np.stack([u / radius, 1 + lift / radius], axis=1)
+        centre = axis - min(offset / radius, 1.0) * np.stack([np.sin(phi), np.cos(phi)], axis=1)
+        pen.line(axis + np.stack([np.sin(roll), np.cos(roll)], axis=1), 0.03, _RIM, alpha=0.8)
+        pen.line(centre, 0.035, _CENTRE, alpha=0.9)
+        pen.disc(centre[-1], 0.07, _CENTRE)
+
+    def _forces(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
+        foot = np.array([now[0] / self.trajectory.scene.can.radius, -WALL])
+        way = -1.0 if friction > 0 else 1.0
+        if normal > _FAINT:
+            length = min(normal, LONGEST)
+            pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
+            pen.text(foot - np.array([0.36 * way, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
+        if abs(friction) > _FAINT:
+            length = min(abs(friction), LONGEST)
+            start = foot - np.array([0, 0.12])
+            pen.arrow(start, start + np.array([way * length, 0]), _FRICTION)
+            pen.text(foot + np.array([way * max(length, _CLEAR), -0.54]), "F", _FRICTION)
+
+    @cached_property
+    def _lengths(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the lengths of the arrows of N and F, positive away from the incline and up it."""
+        normal, friction = strip.forces(self.trajectory.scene, self.trajectory)
+        weight = strip.weight(self.trajectory.scene)
+        largest = np.percentile(np.hypot(normal, friction), _RARE) / weight
+        length = min(1.0, LONGEST / max(largest, _FAINT)) / weight
+        return length * normal, length * friction
+
+    def _phi(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        """Draw phi outside the rim: from the incline to the beer's surface, or from under the axle to over a bob."""
+        u, phi, _, lift = now
+        radius, filled = self.trajectory.scene.can.radius, self.trajectory.scene.load.fill is not None
+        angle, centre = math.radians(float(strip.wrapped(phi))), np.array([u / radius, 1 + lift / radius])
+        start = (math.pi if angle >= 0 else 0.0) if filled else -math.pi / 2
+        for direction in (start, start - angle):
+            pen.line(centre + np.array([[1.07], [1.5]]) * _towards(direction), 0.045, INK)
+        pen.line(centre + 1.32 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
+        pen.text(centre + 1.74 * _towards(start - angle / 2), "φ", INK)
+
+
+def _towards(angle: float | np.ndarray) -> np.ndarray:
+    """Return unit vectors at angles [rad] from the first axis to the second, shape (..., 2)."""
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class _Pen:
+    """Draws at places along and over the incline, in radii, on the plane of the can's near end."""
+
+    sheet: Sheet
+    view: View
+    scene: Scene
+    plane: float
+    top: int
+
+    @cached_property
+    def radius(self) -> float:
+        """Return the can's radius in the picture [pixels]."""
+        return RADIUS * self.view.scale(np.array([0.0, self.plane, 0.0]))
+
+    def places(self, points: np.ndarray) -> np.ndarray:
+        """Return column and row on the sheet."""
+        points = on_incline(self.scene, RADIUS * points[..., 0], RADIUS * points[..., 1])
+        return self.view.pixel(np.insert(points, 1, self.plane, axis=-1)) + np.array([0, self.top])
+
+    def line(self, points: np.ndarray, width: float, colour, alpha: float = 1.0, dashes: Sequence[float] = ()) -> None:
+        self.sheet.line(self.places(points), max(1.0, width * self.radius), colour, alpha=alpha, dashes=dashes)
+
+    def arrow(self, tail: np.ndarray, tip: np.ndarray, colour: tuple[float, float, float]) -> None:
+        self.sheet.arrow(self.places(tail), self.places(tip), max(2.0, 0.11 * self.radius), colour)
+
+    def disc(self, point: np.ndarray, radius: float, colour: tuple[float, float, float]) -> None:
+        self.sheet.disc(self.places(point), max(2.0, radius * self.radius), colour)
+
+    def text(self, point: np.ndarray, words: str, colour: Colour) -> None:
+        size = max(_LETTER * self.sheet.height / UNITS, 0.46 * self.radius)
+        self.sheet.text(self.places(point), words, size, colour, (0.5, 0.5), halo=True)
+
+
+# What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
+
+_DARK = (0.12, 0.16, 0.2)
+"""Colour of gravity's arrow."""
+_SPACING = 7.0
+"""Least distance of two numbers on the board, in units of the sheet."""
+
+
+@dataclass(frozen=True, eq=False)
+class Board:
+    """The near edge of the board's underside, where its numbers and the angle of the incline are."""
+
+    scene: Scene
+    front: float
+    """Its coordinate y [m]."""
+    under: float
+    """Its height over the surface on which the can rolls, negative [m]."""
+
+    @classmethod
+    def of(cls, scene: Scene, model: mujoco.MjModel) -> "Board":
+        """Return the edge of the board of a display model."""
+        board = model.geom("board")
+        return cls(scene, front=float(board.pos[1] - board.size[1]), under=float(board.pos[2] - board.size[2]))
+
+    def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
+        """Return column and row of points of the edge, `along` the incline as drawn [m], shape (..., 2)."""
+        return view.pixel(np.insert(on_incline(self.scene, along, self.under), 1, self.front, axis=-1))
+
+    def along(self, view: View, column: float) -> float:
+        """Return how far down the incline the edge is seen in a column of the picture, as drawn [m]."""
+        first, second = self.pixel(view, np.array([0.0, 1.0]))[:, 0]
+        return float((column - first) / (second - first))
+
+
+def guides(sheet: Sheet, board: Board, view: View, top: int, unit: float) -> None:
+    """Draw gravity's arrow, the incline's angle and distances into a view whose upper edge is at a row of the sheet.
+
+    `unit` is the unit of length of the sheet [pixels].
+    """
+    width, height = view.pixels
+    sheet.clip((0, top, width, top + height))
+    shift = np.array([0.0, top])
+    tail = np.array([3 * unit if board.scene.incline < 0 else width - 1.6 * unit, top + 1.0 * unit])
+    sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
+    sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
+    taken = [_draw_angle(sheet, board, view, shift, unit)] if board.scene.incline else []
+    _draw_distances(sheet, board, view, shift, unit, taken)
+    sheet.clip(None)
+
+
+def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> Box:
+    """Draw the angle of the incline under the board's lower end, and return the box of its lines."""
+    width, height = view.pixels
+    uphill = -math.copysign(1.0, board.scene.incline)
+    tilt, reach = abs(board.scene.incline), 9 * unit
+    lowest = height - 2.6 * unit
+    corner = board.pixel(view, board.along(view, width - 2 * unit if uphill < 0 else 2 * unit))
+    if corner[1] > lowest:  # the board leaves the picture through its lower edge
+        corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
+    corner = corner + shift
+    sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
+    sheet.line(corner + 0.8 * reach * np.array([uphill, -1]) * _towards(np.linspace(0, tilt, 24)), 0.12 * unit)
+    place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
+    sheet.text(place, f"α = {math.degrees(tilt):.3g}°", 1.4 * unit, anchor=(0.5, 0))
+    left, right = sorted((float(corner[0]), float(corner[0] + uphill * reach)))
+    return left, float(corner[1] - reach * math.sin(tilt)), right, float(corner[1])
+
+
+def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float, taken: list[Box]) -> None:
+    """Write distances down the incline below the board [m], with a tick at each, where there is room."""
+    width, height = view.pixels
+    ends = [board.along(view, column) / scale(board.scene) for column in (0, width)]
+    least = (ends[1] - ends[0]) * _SPACING * unit / width
+    power = 10.0 ** math.floor(math.log10(least))
+    step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= least * (1 - 1e-9))
+    numbers = step * np.arange(math.ceil(min(ends) / step), math.floor(max(ends) / step) + 1)
+    down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
+    for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)) + shift, strict=True):
+        words = f"{round(number / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
+        below = place + np.array([0, 0.8 * unit])
+        box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
+        inside = box[0] > 0 and box[1] > shift[1] and box[2] < width and box[3] < shift[1] + height
+        if inside and not any(overlap(box, other) for other in sheet.boxes + taken):
+            sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
+            sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))

@@ -1,0 +1,225 @@
+"""The drawn scene: one can, or several side by side, on their board; it is posed, never stepped, and drawn by OpenGL.
+
+Its cans have the radius of the templates' can, whatever the scene's radius is. All scenes then look alike, and none is
+too small or too large for the graphics, which compute in single precision.
+"""
+
+import dataclasses
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import mujoco
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from mjbeer.drawing import opengl
+from mjbeer.drawing.camera import View, circle, on_incline, scale
+from mjbeer.drawing.sheet import Sheet
+from mjbeer.exceptions import RenderingError
+from mjbeer.model import looks
+from mjbeer.model.build import compile_spec, compose
+from mjbeer.model.setting import Setting
+from mjbeer.model.state import places
+from mjbeer.theory.can import RADIUS
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
+
+Colour: TypeAlias = tuple[float, float, float]
+_PAINT = [0.15, 0.17, 0.2, 1.0]
+"""Colour of lines on the board."""
+_PALER = 0.35
+"""How much nearer to white the surface of a painted load is."""
+_HIDDEN = 1e3
+"""How far off a hidden can is [m]: behind whatever looks at the board."""
+_RIM = 1.12
+"""Radius of what is drawn of a can, in radii, with room for what sticks out of it."""
+_NEAR_PLANE, _FAR_PLANE = 0.2, 20.0
+"""Nearest and farthest that is drawn, in distances of what is looked at."""
+
+
+def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
+    """Return u [m], phi [rad], roll [rad] and lift [m] at some times [s], shape (times, 4).
+
+    Between two samples each is the cubic that has the samples' values and rates. Its error falls as the fourth power
+    of the interval, so that the motion looks smooth even with 20 samples per second.
+    """
+    samples = np.stack([trajectory.u, trajectory.phi, trajectory.roll, trajectory.lift], axis=1)
+    if len(samples) == 1:
+        return np.repeat(samples, len(times), axis=0)
+    rates = np.stack([trajectory.u_dot, trajectory.phi_dot, trajectory.roll_dot, trajectory.lift_dot], axis=1)
+    return CubicHermiteSpline(trajectory.time, samples, rates)(times)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Display:
+    """A board with cans of one size on it. Their joints are named as in the templates, with a prefix for each lane."""
+
+    model: mujoco.MjModel
+    data: mujoco.MjData
+    scenes: Sequence[Scene]
+    lanes: Sequence[float]
+    """Where each can is across the board [m], away from the reader."""
+
+    @classmethod
+    def of(
+        cls, scenes: Sequence[Scene], low: float, high: float, apart: float = 0.0, lines: Sequence[float] = ()
+    ) -> "Display":
+        """Return the display of cans on one incline, whose board is long enough for u from `low` to `high` [m].
+
+        The cans are `apart` [m] from each other, the first of them nearest to the reader. `lines` are distances down
+        the incline at which a line is drawn across the board [m]. All these lengths are as drawn.
+
+        Raises:
+          TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
+          UnsupportedError: if MuJoCo cannot compile the geoms of a template.
+        """
+        lanes = [lane * apart for lane in range(len(scenes))]
+        specs = [compose(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
+        for spec in specs:
+            for pair in spec.pairs:
+                spec.delete(pair)
+        board, *others = specs
+        looks.lengthen(board, _resize(scenes[0]), low, high)
+        for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+            board.body("incline").add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
+        planks, wall = board.geom("board"), board.geom("wall")
+        planks.pos += [0, lanes[-1] / 2, 0]
+        planks.size += [0, lanes[-1] / 2, 0]
+        wall.pos += [0, lanes[-1], 0]
+        for number, along in enumerate(lines):  # as thin as a coat of paint
+            board.body("incline").add_geom(
+                board.default, name=f"line{number}", type=mujoco.mjtGeom.mjGEOM_BOX, rgba=_PAINT, group=2,
+                size=[0.003, planks.size[1], 0.0002], pos=[along, planks.pos[1], planks.pos[2] + planks.size[2]],
+            )  # fmt: skip
+        model = compile_spec(board)
+        return cls(model, mujoco.MjData(model), scenes, lanes)
+
+    def paint(self, labels: Sequence[Colour], loads: Sequence[Colour | None]) -> None:
+        """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
+        for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
+            self.model.mat(_prefix(number) + "label").rgba[:3] = label
+            for name, share in (("load", 0.0), ("foam", _PALER)):
+                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, _prefix(number) + name)
+                if load is not None and geom >= 0:
+                    self.model.mat_rgba[self.model.geom_matid[geom], :3] = np.array(load) * (1 - share) + share
+
+    def pose(self, positions: np.ndarray) -> None:
+        """Put each can at u [m], phi [rad], roll [rad] and lift [m], one row for each; a frozen load turns with it."""
+        joints = places(self.model)
+        for number, (scene, (u, phi, roll, lift)) in enumerate(zip(self.scenes, positions, strict=True)):
+            values = {"slide": u * scale(scene), "lift": lift * scale(scene), "roll": roll, "swing": phi - roll}
+            for name, value in values.items():
+                if (joint := _prefix(number) + name) in joints:
+                    self.data.joint(joint).qpos[:] = value
+        self._place()
+
+    def hide(self) -> None:
+        """Put all cans where nobody sees them."""
+        for number in range(len(self.scenes)):
+            self.data.joint(_prefix(number) + "lift").qpos[:] = _HIDDEN
+        self._place()
+
+    def _place(self) -> None:
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_camlight(self.model, self.data)
+
+    def front(self, number: int = 0) -> float:
+        """Return the coordinate y of a can's near end [m]."""
+        return self.lanes[number] - self._length(number) / 2
+
+    def _length(self, number: int) -> float:
+        return self.scenes[number].can.length * scale(self.scenes[number])
+
+    def outline(self, number: int, position: np.ndarray) -> np.ndarray:
+        """Return points around both ends of a can [m], shape (2, points, 3), for its u, phi, roll and lift."""
+        scene, near = self.scenes[number], self.front(number)
+        centre = on_incline(scene, position[0] * scale(scene), RADIUS + position[3] * scale(scene))
+        ring = centre + circle(_RIM * RADIUS)
+        return np.stack([np.insert(ring, 1, y, axis=1) for y in (near, near + self._length(number))])
+
+
+def _prefix(number: int) -> str:
+    return f"{number}-" if number else ""
+
+
+def _resize(scene: Scene) -> Scene:
+    """Return the scene at the size at which it is drawn, with masses of 1 kg: a pose does not depend on masses."""
+    size = scale(scene)
+    can = dataclasses.replace(scene.can, radius=RADIUS, length=scene.can.length * size, mass=1.0, inertia=RADIUS**2)
+    load = dataclasses.replace(scene.load, mass=1.0, offset=min(scene.load.offset * size, RADIUS), inertia=RADIUS**2)
+    return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)
+
+
+class Painter:
+    """Draws the cans of a display on their board. It holds graphics memory until it is closed.
+
+    Before a camera that stands still, only the parts with cans are drawn anew. Drawing takes as long as there are
+    pixels: a can that takes a tenth of the picture is drawn in a tenth of the time.
+
+    It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
+    """
+
+    def __init__(self, display: Display, width: int, height: int, still: bool) -> None:
+        """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
+
+        Raises:
+          RenderingError: if OpenGL cannot draw without a window; the message names what to install.
+        """
+        self._display, self._still, model = display, still, display.model
+        self._empty: np.ndarray | None = None
+        self._scene = mujoco.MjvScene(model, model.ngeom)
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the drawing time, and hidden by the wall
+        self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
+        model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+        self._gl = opengl.context(width, height)
+        try:
+            self._gl.make_current()
+            self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
+            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
+        except (mujoco.FatalError, RuntimeError) as error:
+            self._gl.free()
+            raise RenderingError(f"no off-screen picture of {width} x {height} pixels: {error}") from error
+
+    def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
+        """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
+        if self._still and self._empty is None:
+            self._display.hide()
+            board = self._draw(view)
+            self._empty = np.dstack([board, np.full(board.shape[:2], 255, np.uint8)])
+        self._display.pose(positions)
+        if self._empty is None:
+            sheet.put(self._draw(view), 0, top)
+            return
+        sheet.put(self._empty, 0, top)
+        for number, position in enumerate(positions):
+            left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
+            if right > left and lower > upper:
+                sheet.put(self._draw(view.crop(left, upper, right, lower)), left, top + upper)
+
+    def _draw(self, view: View) -> np.ndarray:
+        """Return what a view shows as an array of shape (height, width, 3), uint8."""
+        scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
+        model, data = self._display.model, self._display.data
+        mujoco.mjv_updateScene(model, data, self._option, None, self._anywhere, everything, scene)
+        near = _NEAR_PLANE * view.distance
+        for eye in scene.camera:  # two of them, for stereo; MuJoCo draws their mean
+            eye.pos, eye.up, eye.forward = view.eye, view.axes[1], -view.axes[2]
+            eye.frustum_near, eye.frustum_far = near, _FAR_PLANE * view.distance
+            eye.frustum_center = near * (view.low[0] + view.high[0]) / 2
+            eye.frustum_width = near * (view.high[0] - view.low[0]) / 2
+            eye.frustum_bottom, eye.frustum_top = near * view.low[1], near * view.high[1]
+        for light in scene.lights[: scene.nlight]:
+            if light.headlight:
+                light.pos, light.dir = view.eye, -view.axes[2]
+        window = mujoco.MjrRect(0, 0, *view.pixels)
+        pixels = np.empty((view.pixels[1], view.pixels[0], 3), np.uint8)
+        self._gl.make_current()
+        mujoco.mjr_render(window, scene, self._context)
+        mujoco.mjr_readPixels(pixels, None, window, self._context)
+        return pixels[::-1]  # OpenGL's first row is the lowest
+
+    def close(self) -> None:
+        """Free the graphics memory."""
+        self._gl.make_current()
+        self._context.free()
+        self._gl.free()

@@ -1,0 +1,238 @@
+"""The strip below a film: charts of quantities over time, each with a dot in step with the film."""
+
+import contextlib
+import dataclasses
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from mjbeer.drawing.sheet import Sheet
+from mjbeer.exceptions import MjbeerError
+from mjbeer.theory.equations import Coordinates
+from mjbeer.theory.exact import solution
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
+
+_MUJOCO = (0.0, 0.447, 0.698)
+"""Colour of a simulation's line, where there is one only."""
+_THEORY = "#b4bcc8"
+"""Colour of theory's lines, which are wide and lie below."""
+_STYLE: dict[Any, Any] = {
+    "axes.grid": True, "axes.spines.right": False, "axes.spines.top": False, "grid.alpha": 0.35,
+    "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
+    "legend.frameon": False,
+}  # fmt: skip
+_EARTH = 9.81
+"""Gravity on earth [m/s^2]."""
+_INTERVALS = 200
+"""Number of intervals of a motion over which forces are averaged."""
+_SMOOTH = 1500
+"""Times at which theory's lines are computed."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """A line of a chart."""
+
+    name: str
+    time: np.ndarray
+    """Times [s], shape (samples,)."""
+    values: np.ndarray
+    """Values at these times."""
+    colour: tuple[float, float, float] | None = None
+    """Its colour; None for theory's line, which is seen from the beginning."""
+    possible: float = math.inf
+    """Time [s] from which the line is dotted, because the motion is not possible."""
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """A chart over time."""
+
+    title: str
+    """What it shows, with letter and unit."""
+    lines: Sequence[Line]
+    low: float = -math.inf
+    """Least value that the chart has room for."""
+    high: float = math.inf
+    """Largest value that it has room for; the blow of a landing goes beyond."""
+    least: float = 0.0
+    """Least range of values that it shows: a straight line is not to look like a crooked one."""
+    tells: bool = True
+    """Whether theory's lines are there from the beginning, and tell what will be."""
+
+
+def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
+    """Return the charts of some quantities of a trajectory, by their names in QUANTITIES, with what theory says."""
+    theory = None
+    if trajectory.rolling != "exact" and trajectory.time[0] >= 0:
+        times = np.linspace(trajectory.time[0], trajectory.time[-1], _SMOOTH)
+        with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
+            theory = solution(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
+    source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
+    for title, values, limits in (QUANTITIES[name] for name in names):
+        lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
+        if theory is not None:
+            lines.append(Line("theory", theory.time, values(theory.scene, theory), possible=theory.rolls_until()))
+        level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
+        drawn.append(Chart(title if trajectory.scene.incline else level, lines, **limits))
+    return drawn
+
+
+def wrapped(angle: np.ndarray | float) -> np.ndarray:
+    """Return an angle [rad] in degrees between -180 and 180."""
+    return (np.degrees(angle) + 180) % 360 - 180
+
+
+def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
+    """Return where a can would be at some times [s] that accelerates evenly [m].
+
+    It starts with the same momentum as the can of the motion, and with its load at rest in it where that has an
+    equilibrium: the motion goes to and fro about it. With damping or drag no can accelerates evenly. It is then one
+    that has neither, and what it gains on the motion is what they cost.
+    """
+    if scene.dissipates:
+        scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
+    u, u_dot = motion.u[0], motion.u_dot[0]
+    if scene.attachment == "sliding":
+        swing = scene.load.moment / scene.effective_mass
+        u = u - swing * (math.sin(motion.phi[0]) - math.sin(scene.equilibrium()))
+        u_dot = u_dot - swing * math.cos(motion.phi[0]) * motion.phi_dot[0]
+    since = time - motion.time[0]
+    return u + u_dot * since + scene.acceleration() * since**2 / 2
+
+
+def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
+    """Return the normal and the friction force [N] that act in a motion, also while the can slips or is in the air.
+
+    They follow from the change of the momentum of can and load. Each is the mean force over a two hundredth of the
+    motion: a stiff contact trembles, which a single step would show and an eye would not. The friction is positive up
+    the incline.
+    """
+    load, heavy = scene.load.moment, scene.mass * scene.gravity
+    across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
+    along = scene.mass * motion.u_dot - load * np.cos(motion.phi) * motion.phi_dot
+    half = np.ptp(motion.time) / _INTERVALS / 2
+    first = np.maximum(motion.time - half, motion.time[0])
+    last = np.minimum(motion.time + half, motion.time[-1])
+
+    def change(momentum: np.ndarray) -> np.ndarray:
+        values = np.interp(last, motion.time, momentum) - np.interp(first, motion.time, momentum)
+        return values / (last - first)
+
+    normal = heavy * math.cos(scene.incline) + change(across)
+    return normal, heavy * math.sin(scene.incline) - change(along)
+
+
+def weight(scene: Scene) -> float:
+    """Return the weight of can and load [N], in which forces are drawn; without gravity, that on earth."""
+    return scene.mass * (scene.gravity or _EARTH)
+
+
+def _ahead(scene: Scene, motion: Coordinates) -> np.ndarray:
+    return 1e3 * (motion.u - even(scene, motion, motion.time))
+
+
+def _normal(scene: Scene, motion: Coordinates) -> np.ndarray:
+    return forces(scene, motion)[0] / weight(scene)
+
+
+def _slip(scene: Scene, motion: Coordinates) -> np.ndarray:
+    return 1e3 * (motion.u - motion.u[0] - scene.can.radius * (motion.roll - motion.roll[0]))
+
+
+Quantity = tuple[str, Callable[[Scene, Coordinates], np.ndarray], dict[str, Any]]
+QUANTITIES: dict[str, Quantity] = {
+    "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
+    "u": ("way down the incline, u [m]", lambda _, motion: motion.u, {}),
+    "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
+    "ahead": ("ahead of even acceleration [mm]", _ahead, {}),
+    "normal": ("normal force, N [weights]", _normal, {"low": -1.0, "high": 4.0}),
+    "lift": ("height above the incline [mm]", lambda _, motion: 1e3 * motion.lift, {}),
+    "slip": ("slid instead of rolled [mm]", _slip, {}),
+}
+"""What a chart can show, by name: its title, its values, shape (samples,), and the chart's limits."""
+
+
+class Strip:
+    """Charts side by side. Lines with a colour are drawn up to now; theory's may be there from the beginning."""
+
+    def __init__(self, charts: Sequence[Chart], width: int, height: int) -> None:
+        self._charts, self._height, self._unit = charts, height, height / 10
+        unit = self._unit
+        with rc_context(_STYLE | {"font.size": 0.9 * unit, "axes.linewidth": 0.06 * unit}):
+            figure = Figure(figsize=(width / 72, height / 72), dpi=72)
+            canvas = FigureCanvasAgg(figure)
+            panels = figure.subplots(1, len(charts), squeeze=False)[0]
+            sides = {"left": 4.5 * unit / width, "right": 1 - 2 * unit / width}
+            figure.subplots_adjust(**sides, top=0.84, bottom=0.27, wspace=10 * unit / (width / len(charts)))
+            drawn = [self._draw(panel, chart) for panel, chart in zip(panels, charts, strict=True)]
+            if len({line.name for line in charts[0].lines}) > 1:
+                handles, names = panels[0].get_legend_handles_labels()
+                named = dict(zip(names, handles, strict=True))
+                figure.legend(
+                    named.values(), named, loc="lower right", bbox_to_anchor=(1 - unit / width, 0), ncols=2,
+                    borderaxespad=0.1, borderpad=0, handlelength=1.5, columnspacing=1.2,
+                )  # fmt: skip
+            canvas.draw()
+            self._complete = np.array(canvas.buffer_rgba())
+            for line in itertools.chain(*drawn):
+                line.set_visible(False)
+            canvas.draw()
+            self._beginning = np.array(canvas.buffer_rgba())
+            self._panels = [(panel.transData, panel.get_window_extent()) for panel in panels]
+
+    def _draw(self, panel: Axes, chart: Chart) -> list:
+        """Draw a chart, and return the lines that are to be seen up to now only."""
+        unit, drawn = self._unit, []
+        for line in sorted(chart.lines, key=lambda line: line.colour is not None):
+            possible = line.time <= line.possible
+            style: dict[str, Any] = {
+                "color": line.colour or _THEORY,
+                "linewidth": (0.18 if line.colour else 0.5) * unit,
+            }
+            shown = panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
+            if not possible.all():
+                style |= {"linestyle": ":", "linewidth": 0.25 * unit}
+                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style)
+            if line.colour is not None or not chart.tells:
+                drawn += shown
+        panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
+        panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
+        low, high = panel.get_ylim()
+        room = max(0.0, chart.least - (high - low)) / 2
+        panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
+        panel.set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
+        panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
+        return drawn
+
+    def draw(self, sheet: Sheet, time: float, top: int) -> None:
+        """Draw the strip as it is at a `time` [s], with its upper edge at a row of the sheet."""
+        shown = self._beginning.copy()
+        for transform, extent in self._panels:
+            left, now = int(extent.x0), int(transform.transform((time, 0))[0])
+            shown[:, left:now] = self._complete[:, left:now]
+        sheet.put(shown, 0, top)
+        for (transform, extent), chart in zip(self._panels, self._charts, strict=True):
+            for line in chart.lines:
+                if line.colour is None:
+                    continue
+                value = line.values[max(np.searchsorted(line.time, time, side="right") - 1, 0)]
+                column, up = transform.transform((min(time, line.time[-1]), value))
+                if extent.y0 - 1 <= up <= extent.y1 + 1:
+                    sheet.disc(np.array([column, top + self._height - up]), 0.5 * self._unit, line.colour)
+
+
+def unbroken(values: np.ndarray) -> np.ndarray:
+    """Return values with a gap wherever they jump by more than half of their range, as a wrapped angle does."""
+    finite = values[np.isfinite(values)]
+    jumps = np.abs(np.diff(values, prepend=values[:1])) > (np.ptp(finite) / 2 if len(finite) else 0)
+    return np.where(jumps, np.nan, values)

@@ -1,0 +1,133 @@
+"""The charts below a film: a line up to now, theory's whole line, and a dot at what is now."""
+
+import math
+
+import numpy as np
+import pytest
+
+from mjbeer import Can, exact, frozen, simulate, sliding
+from mjbeer.drawing import strip
+from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, charts, unbroken
+
+RED = (1.0, 0.0, 0.0)
+TIME = np.linspace(0, 2, 201)
+SIZE = (400, 120)
+SECOND = np.linspace(0, 1, 2001)
+
+
+def red(picture: np.ndarray) -> np.ndarray:
+    """Rows and columns of the red pixels, shape (2, pixels)."""
+    return np.stack(np.nonzero((picture[..., 0] > 200) & (picture[..., 1:] < 80).all(axis=2)))
+
+
+def drawn(time: float, values: np.ndarray) -> np.ndarray:
+    shown, sheet = Strip([Chart("a ramp", [Line("MuJoCo", TIME, values, RED)])], *SIZE), Sheet(*SIZE)
+    shown.draw(sheet, time, 0)
+    return sheet.picture()
+
+
+def test_the_line_is_drawn_up_to_now_with_a_dot_at_its_end() -> None:
+    last = []
+    for time in (0.5, 1.0, 1.5):
+        rows, columns = red(drawn(time, TIME))
+        last.append((columns.max(), rows.min()))
+    (x1, y1), (x2, y2), (x3, y3) = last
+    assert x3 - x2 == pytest.approx(x2 - x1, abs=2)  # even time
+    assert y3 - y2 == pytest.approx(y2 - y1, abs=2)  # even values, upwards
+    assert x2 - x1 > 50
+    assert y2 < y1
+
+
+def test_theory_is_there_from_the_beginning_and_dotted_where_it_is_not_possible() -> None:
+    lengths = []
+    for possible in (np.inf, 1.0):
+        lines = [Line("theory", TIME, TIME, possible=possible), Line("MuJoCo", TIME, 0 * TIME, RED)]
+        sheet = Sheet(*SIZE)
+        Strip([Chart("a ramp", lines)], *SIZE).draw(sheet, 0.0, 0)
+        grey = np.abs(sheet.picture().astype(int) - [180, 188, 200]).max(axis=2) < 12
+        lengths.append((grey[:, :200].sum(), grey[:, 230:350].sum()))
+    assert lengths[0][0] == pytest.approx(lengths[1][0], rel=0.2)
+    assert lengths[1][1] < 0.5 * lengths[0][1]
+
+
+def test_an_angle_that_jumps_is_not_joined() -> None:
+    values = unbroken(np.array([170.0, 175.0, -179.0, -170.0]))
+    assert np.isnan(values).tolist() == [False, False, True, False]
+    assert not np.isnan(unbroken(np.array([1.0, 2.0, 3.0]))).any()
+    assert not np.isnan(unbroken(np.zeros(3))).any()
+
+
+def test_a_small_range_is_not_made_large() -> None:
+    """A dot for 0 and one for 0.01 are at the same height, where at least 10 is shown."""
+    heights = []
+    for value in (0.0, 0.01):
+        values = np.where(TIME > 1, value, 0.0)
+        shown = Strip([Chart("rest", [Line("MuJoCo", TIME, values, RED)], least=10.0)], *SIZE)
+        sheet = Sheet(*SIZE)
+        shown.draw(sheet, 1.5, 0)
+        heights.append(red(sheet.picture())[0].mean())
+    assert heights[0] == pytest.approx(heights[1], abs=0.5)
+
+
+def test_a_simulation_has_theory_beside_it_and_theory_has_not() -> None:
+    run = simulate(frozen(), 0.5, 1.0)
+    (chart,) = charts(run, ["phi"])
+    assert [line.name for line in chart.lines] == ["MuJoCo", "theory"]
+    truth = exact(frozen(), chart.lines[1].time, 1.0)
+    assert chart.lines[1].values == pytest.approx(np.degrees(truth.phi))
+    (chart,) = charts(exact(frozen(), TIME, 1.0), ["phi"])
+    assert [line.name for line in chart.lines] == ["exact theory"]
+
+
+@pytest.mark.parametrize("make", [frozen, sliding])
+def test_forces_of_a_rolling_can_are_those_that_rolling_needs(make) -> None:
+    """The mean over a width w is off by N'' w^2/24: N changes by a weight at up to 50 rad/s, and w is 5 ms, so 3e-3."""
+    motion = exact(make(can=Can.sheet_metal()), SECOND, 1.0)
+    normal, friction = strip.forces(motion.scene, motion)
+    weight, inner = motion.scene.mass * 9.81, slice(20, -20)
+    assert np.abs(normal - motion.forces.normal)[inner].max() < 3e-3 * weight
+    assert np.abs(friction - motion.forces.friction)[inner].max() < 3e-3 * weight
+
+
+def test_a_can_in_the_air_has_no_forces_and_a_slipping_one_mu_times_n() -> None:
+    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4)
+    normal, friction = strip.forces(run.scene, run)
+    weight = run.scene.mass * 9.81
+    flying = run.lift > 4e-3  # and not about to land
+    assert flying.sum() > 20
+    assert np.abs(normal[flying]).max() < 1e-3 * weight
+    assert np.abs(friction[flying]).max() < 1e-3 * weight
+    scene = frozen()
+    slides = simulate(scene, 0.5, scene.equilibrium(), rolling="contact", friction=0.1)
+    normal, friction = strip.forces(scene, slides)
+    touching = slides.time < 0.3
+    assert (friction / normal)[touching] == pytest.approx(0.1, rel=1e-4)  # what a contact this stiff leaves out
+
+
+def test_ahead_is_the_swing_of_eq_12() -> None:
+    """u = s + b sin(phi), and s accelerates with g sin(alpha): what is left is b sin(phi), in a massless can."""
+    motion = exact(sliding(), SECOND, 1.2, 3.0)
+    expected = 1e3 * motion.scene.load.offset * np.sin(motion.phi)
+    assert QUANTITIES["ahead"][1](motion.scene, motion) == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_damped_can_is_behind_the_one_that_accelerates_evenly() -> None:
+    """By what damping costs: the even one is that without damping, and starts alike."""
+    free, damped = sliding(can=Can.sheet_metal()), sliding(can=Can.sheet_metal(), damping=1e-3, drag=1e-4)
+    motion, without = exact(damped, SECOND, 1.2, 3.0), exact(free, SECOND, 1.2, 3.0)
+    even = strip.even(damped, motion, SECOND)
+    assert even == pytest.approx(strip.even(free, without, SECOND), abs=1e-12)
+    assert even[-1] - motion.u[-1] > 0.2
+
+
+def test_angles_are_between_plus_and_minus_180_degrees() -> None:
+    assert strip.wrapped(np.radians([0, 179, 181, -181, 540.5])) == pytest.approx([0, 179, -179, 179, -179.5])
+
+
+def test_slip_begins_at_zero_and_is_what_the_can_did_not_roll() -> None:
+    run = simulate(frozen(), 0.5, frozen().equilibrium(), rolling="contact", friction=0.1)
+    slid = QUANTITIES["slip"][1](run.scene, run)
+    assert slid[0] == 0
+    assert slid == pytest.approx(1e3 * (run.slip - run.slip[0]), abs=1e-9)
+    assert slid[-1] > 10
