@@ -57,12 +57,10 @@ _INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_POINTS, _STAGES -
 """The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
 _MATRIX = legendre.legvander(_POINTS, _STAGES) @ _INTEGRALS
 """That integral at the stages, a_ij of the method."""
-_TO_SERIES = np.linalg.inv(legendre.legvander(np.append(-1.0, _POINTS), _STAGES))
+_NODES = np.append(-1.0, _POINTS)
+_TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
 """The coefficients P_0 to P_s of the polynomial through values at the start and the stages."""
 _EYE = np.eye(_STAGES)
-_ENDS = np.stack([np.append(-1.0, _POINTS[:-1]), _POINTS], axis=1)
-"""Each stage and the one before it, between which a corner is looked for."""
-_VALUES = legendre.legvander(np.append(-1.0, _POINTS), _STAGES)
 
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -180,12 +178,10 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
 
 def _corner(sums: np.ndarray) -> float | None:
     """Return the share of a step at which the first of the `sums`, of shape (stages + 1, sums), passes zero inside."""
-    signs, found = np.sign(_VALUES @ sums), []
-    for which, place in zip(*np.nonzero(np.diff(signs, axis=0).T), strict=True):
-        zero = root(
-            lambda x, of=which, sign=signs[place, which]: -sign * legendre.legval(x, sums[:, of]), *_ENDS[place]
-        )
-        found.append((1 + zero) / 2)
+    values, found = legendre.legval(_NODES, sums), []
+    for which, place in zip(*np.nonzero(values[:, :-1] * values[:, 1:] < 0), strict=True):
+        rising = -np.sign(values[which, place]) * sums[:, which]
+        found.append((1 + root(lambda x, of=rising: legendre.legval(x, of), _NODES[place], _NODES[place + 1])) / 2)
     return min((share for share in found if _BESIDE < share < 1 - _BESIDE), default=None)
 
 

@@ -27,10 +27,12 @@ the range of phi. Four samples a period of a small swing have 0.007, three have 
 class Trajectory(Coordinates):
     """A motion of a scene, with the energy, forces and warnings that follow from it.
 
-    The coordinates are those of Fig. 3 of the paper. `phi` is 0 where the load's centre of mass is nearest to the
-    incline, and grows as the can rolls downhill. `u` starts at b sin(phi0) for a sliding load, whose centre of mass
-    starts at s = u - b sin(phi) = 0 (eq. 12), and at a phi0 for a frozen one (eq. 50): `distance` is counted from the
-    start.
+    The coordinates are those of Fig. 3 of the paper. `phi` is the angle of the load to the incline [rad]: 0 where its
+    centre of mass is nearest to the incline, and growing as the can rolls downhill. `u` is the place of the can's axis
+    along the incline [m]. It starts at b sin(phi0) for a sliding load, whose centre of mass starts at
+    s = u - b sin(phi) = 0 (eq. 12), and at a phi0 for a frozen one (eq. 50): `distance` is counted from the start.
+    `roll` is the angle by which the can itself has turned [rad], u/a as long as it does not slip, and `lift` its height
+    above the incline [m]. `u_dot`, `phi_dot`, `roll_dot` and `lift_dot` are their rates.
 
     Raises:
       ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
