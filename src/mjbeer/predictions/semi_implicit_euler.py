@@ -11,8 +11,8 @@ from mjbeer.theory.scene import Scene
 
 _DIFFERENCE = 1e-5
 """Step of the central differences [rad, or rad/s in units of sqrt(g/a)]: their relative error is 1e-10."""
-_TOLERANCE, _SHORT = 1e-12, 1e-3
-"""Tolerance of the perturbed motion, and the timestep of a central difference over sqrt(a/g): both leave 1e-6."""
+_TOLERANCE = 1e-12
+"""Tolerance of the perturbed motion."""
 _SIGN = {"Euler": 1, "implicitfast": 1, "discrete": 1, "implicit": -1}
 """Sign of the energy that forces proportional to the square of the rate add in each step."""
 _NODES = 40
@@ -34,13 +34,6 @@ def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: s
 
     span, start = (0.0, float(times[-1])), [phi0, 0.0]
     return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=_TOLERANCE, atol=_TOLERANCE).y[0]
-
-
-def euler_error(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
-    """Return the error of phi over the timestep [rad/s] at `times` [s] of a motion from rest, for small timesteps."""
-    h = _SHORT / _rate(scene)
-    ahead, behind = (euler_motion(scene, times, each, "Euler", phi0) for each in (h, -h))
-    return (ahead - behind) / (2 * h)
 
 
 def _rate(scene: Scene) -> float:
