@@ -26,7 +26,7 @@ def test_constraints_are_mujoco_s_defaults(written: str) -> None:
     kind = "eq" if model.neq else "pair"
     assert getattr(model, f"{kind}_solref")[0].tolist() == [0.02, 1]
     assert getattr(model, f"{kind}_solimp")[0].tolist() == [0.9, 0.95, 0.001, 0.5, 2]
-    for name in ("cone", "impratio", "solver", "iterations", "tolerance", "enableflags"):
+    for name in ("cone", "impratio", "solver", "iterations", "enableflags"):
         assert getattr(model.opt, name) == getattr(stock, name), name
     assert not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_REFSAFE
     assert (model.opt.timestep, model.opt.integrator) == (2e-3, mujoco.mjtIntegrator.mjINT_EULER)

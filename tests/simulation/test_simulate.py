@@ -240,6 +240,18 @@ def test_contact_holds_in_any_gravity(scene: Callable[..., Scene], gravity: floa
     assert np.abs(run.slip).max() < 1e-6 * run.scene.can.radius
 
 
+def test_the_solver_of_a_contact_does_not_take_a_light_load_for_nothing() -> None:
+    """With a tolerance that suits the can, a load let go beside the top stayed there, and so did the second run's.
+
+    The error is the contact's softness, 6e-9 rad; it falls with the square of the timestep.
+    """
+    can, load = Can(1e-4, 3e-4, 6e-4, 5e-12), Load(4e-7, 4e-10, 2.3e-15)
+    run = simulate(Scene(can, load, 0.0, "sliding"), 15, -3.14, rolling="contact", integrator="DOP853", timestep=0.01)
+    assert run.record.turned > 1
+    assert run.trusted
+    assert phi_error(run) < 2e-8
+
+
 def test_degrees_in_place_of_radians_are_a_warning() -> None:
     with pytest.warns(
         AngleWarning, match=r"phi0 = 60 is taken as radians, 9.549 turns: .* math.radians\(60\)"
