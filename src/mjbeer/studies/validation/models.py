@@ -15,18 +15,17 @@ from mjbeer.model.state import start
 from mjbeer.paper.witness import TOP, fall_from_top
 from mjbeer.simulation.simulate import simulate
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.studies.convergence import observed_order
 from mjbeer.studies.rows import Row
+from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.exact import exact, phi_error
 from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
 
-ORDERS: dict[Integrator, tuple[int, float]] = {
-    "RK4": (4, 0.2), DOP853: (8, 0.5), **{name: (1, 0.1) for name in INTEGRATORS if name != "RK4"},
-}  # fmt: skip
+ORDERS: dict[Integrator, tuple[int, float]] = {"RK4": (4, 0.2), DOP853: (8, 0.5)}
 """Order of each integrator, and the largest difference of the observed order from it."""
+ORDERS |= {name: (1, 0.1) for name in INTEGRATORS if name != "RK4"}
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the mesh of the beer is checked."""
 _GRIP = 1e6
@@ -35,40 +34,26 @@ _GRIP = 1e6
 
 def rows() -> Iterator[Row]:
     """Yield the rows of models."""
+    row = partial(Row, "models")
     for integrator, (expected, margin) in ORDERS.items():
-        yield Row(
-            "models", f"observed order less {expected}",
-            lambda name=integrator, of=expected: order(frozen(), name) - of,
-            f"frozen, reduced, {integrator}", margin, "", "higher orders' terms",
-        )  # fmt: skip
-    yield Row(
-        "models", "lift-off angle at M/m = 1e-3 (Littlewood: 90 degrees)",
-        lambda: _lift_off_error(hoop(hoop_mass=2e-4)), "hoop, contact, RK4, 20 us", 0.5, "degrees",
-        "penetration of the contact, which unloads late",
-    )  # fmt: skip
-    for quantity, mass, missing in (
-        ("hops missing at M/m = 1/20", 0.2 / 20, True), ("hops too many at M/m = 1/10 (above 1/13)", 0.2 / 10, False),
-    ):  # fmt: skip
-        yield Row(
-            "models", quantity,
-            lambda mass=mass, missing=missing: (
-                (fall_from_top(hoop(hoop_mass=mass), 1e-4, _GRIP).takeoff() is None) == missing
-            ),
-            "hoop, contact, RK4, 0.1 ms", 0, "", "it hops or not",
-        )  # fmt: skip
-    yield Row(
-        "models", "values that differ between two runs", _count_differences, "every scene, rolling and integrator",
-        0, "", "bit for bit",
-    )  # fmt: skip
-    for name, index in (("mass", 0), ("centre of mass", 1), ("inertia", 2)):
-        yield Row(
-            "models", f"{name} of the beer's mesh, eqs. (33)-(37)", partial(_mesh_error, index), "fills 0.05 to 0.95",
-            1e-3, "relative", "the polygon: falls as 1/resolution^2",
-        )  # fmt: skip
+        measure, by = partial(_order_error, frozen(), integrator), f"frozen, reduced, {integrator}"
+        yield row(f"observed order less {expected}", measure, by, margin, "", "higher orders' terms")
+    by, measure = "hoop, contact, RK4, 20 us", partial(_lift_off_error, hoop(hoop_mass=2e-4))
+    quantity, reason = "lift-off angle at M/m = 1e-3 (Littlewood: 90 degrees)", "penetration of the contact"
+    yield row(quantity, measure, by, 0.5, "degrees", f"{reason}, which unloads late")
+    by, light, heavy = "hoop, contact, RK4, 0.1 ms", hoop(hoop_mass=0.2 / 20), hoop(hoop_mass=0.2 / 10)
+    yield row("hops missing at M/m = 1/20", lambda: not _hops(light), by, 0, "", "it hops or not")
+    yield row("hops too many at M/m = 1/10 (above 1/13)", lambda: _hops(heavy), by, 0, "", "it hops or not")
+    quantity, by = "values that differ between two runs", "every scene, rolling and integrator"
+    yield row(quantity, _count_differences, by, 0, "", "bit for bit")
+    reason = "the polygon: falls as 1/resolution^2"
+    for index, name in enumerate(("mass", "centre of mass", "inertia")):
+        quantity, by = f"{name} of the beer's mesh, eqs. (33)-(37)", "fills 0.05 to 0.95"
+        yield row(quantity, partial(_mesh_error, index), by, 1e-3, "relative", reason)
 
 
-def order(scene: Scene, integrator: Integrator) -> float:
-    """Return the observed order of an integrator on a swing of 0.3 rad, over six halvings of the timestep.
+def _order_error(scene: Scene, integrator: Integrator) -> float:
+    """Return the observed order of an integrator on a swing of 0.3 rad, over six halvings, less the expected one.
 
     At order 8 the error falls by 14 digits over six halvings, more than a double has. For DOP853 each halving is
     therefore two rungs, and only rungs with an error between 1e-3 rad and 1e-13 rad are fitted.
@@ -81,7 +66,11 @@ def order(scene: Scene, integrator: Integrator) -> float:
     runs = (simulate(scene, duration, 0.3, integrator=integrator, timestep=float(h)) for h in steps)
     errors = np.array([phi_error(run) for run in runs])
     fitted = (errors > between[0]) & (errors < between[1])
-    return observed_order(steps[fitted], errors[fitted])
+    return observed_order(steps[fitted], errors[fitted]) - ORDERS[integrator][0]
+
+
+def _hops(scene: Scene) -> bool:
+    return fall_from_top(scene, 1e-4, _GRIP).takeoff() is not None
 
 
 def _lift_off_error(scene: Scene) -> float:
