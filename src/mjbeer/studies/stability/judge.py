@@ -18,28 +18,27 @@ from mjbeer.theory.exact import solution
 from mjbeer.theory.record import ERROR, LIFT, SLIP, doubts
 from mjbeer.theory.scene import Scene
 
-ACCURATE = "stable and accurate"
-INACCURATE = "stable, inaccurate"
-UNSTABLE = "unstable, detected"
-REFUSED = "refused"
-SILENT = "wrong and silent"
-MISSED = "tolerance missed"
-THEORIES = "theories differ"
-UNKNOWN = "beyond theory"
 VERDICTS = {
-    ACCURATE: "accurate", INACCURATE: "inaccurate", UNSTABLE: "unstable", REFUSED: "refused", SILENT: "silent",
-    MISSED: "missed", THEORIES: "theories", UNKNOWN: "beyond",
-}  # fmt: skip
+    (ACCURATE := "stable and accurate"): "accurate",
+    (INACCURATE := "stable, inaccurate"): "inaccurate",
+    (UNSTABLE := "unstable, detected"): "unstable",
+    (REFUSED := "refused"): "refused",
+    (SILENT := "wrong and silent"): "silent",
+    (MISSED := "tolerance missed"): "missed",
+    (THEORIES := "theories differ"): "theories",
+    (UNKNOWN := "beyond theory"): "beyond",
+}
 """Every way in which a run can end, and in a word. Only damped motions are beyond theory, the reference of which knows
 no damping."""
 NEVER = (SILENT, MISSED, THEORIES)
 """The verdicts that must not occur: a run that is trusted although it is wrong, a run whose error is above its
 tolerance, and a motion of which two theories say different things that no rounding explains."""
-FALSE = "false alarm"
-PARTS = "real slip or lift"
-WAY = "wrong on the way"
-SENSITIVE = "sensitive start"
-ALARMS = {FALSE: "false alarms", PARTS: "slip or lift", WAY: "way", SENSITIVE: "sensitive"}
+ALARMS = {
+    (FALSE := "false alarm"): "false alarms",
+    (PARTS := "real slip or lift"): "slip or lift",
+    (WAY := "wrong on the way"): "way",
+    (SENSITIVE := "sensitive start"): "sensitive",
+}
 """What the warnings of an accurate run can be, and in short. All but the first are facts: the can slips or lifts by
 more than is trusted; the run is right at its samples and wrong between them; a start that is closer than models are
 made moves the exact motion by more than is trusted, or the run itself: one that rests where its timestep is far too
@@ -49,6 +48,8 @@ REFUSALS = (ParameterError, ToleranceError, UnsupportedError)
 _GAIN = 10.0
 """A run is unstable if its kinetic energy exceeds the largest that the motion can have by this factor."""
 _ROUNDING = float(np.finfo(float).eps)
+_NEXT = 1 + _ROUNDING
+"""The next number after 1."""
 _NUDGES = 10.0
 """Largest distance of the two theories over the effect of nudging start and scene by a rounding each. In 2,400 random
 runs it was at most 2 where it needed an explanation."""
@@ -141,11 +142,9 @@ def _reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) ->
 def _beside(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Iterator[Angles]:
     """Yield the motions, by `reference`, of a scene and a start of which one number is nudged by a rounding."""
     aside = _ROUNDING * max(1.0, abs(phi0))
-    nudged = [(scene, phi0 + aside, phi_dot0), (scene, phi0 - aside, phi_dot0)]
-    nudged += [(scene, phi0, phi_dot0 * (1 + _ROUNDING))]
+    nudged = [(scene, phi0 + aside, phi_dot0), (scene, phi0 - aside, phi_dot0), (scene, phi0, phi_dot0 * _NEXT)]
     for name in ("incline", "gravity"):
-        other = dataclasses.replace(scene, **{name: getattr(scene, name) * (1 + _ROUNDING)})
-        nudged.append((other, phi0, phi_dot0))
+        nudged.append((dataclasses.replace(scene, **{name: getattr(scene, name) * _NEXT}), phi0, phi_dot0))
     for other, *start in nudged:
         if (motion := _reference(other, times, *start)) is not None:
             yield Angles.of(other, motion, *start)
