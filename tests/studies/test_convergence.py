@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-
 from mjbeer.studies.convergence import convergence, observed_order
 
 STEPS = 0.016 / 2.0 ** np.arange(10)

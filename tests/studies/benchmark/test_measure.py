@@ -7,6 +7,7 @@ import pathlib
 
 import numpy as np
 import pytest
+from mjbeer.studies.convergence import convergence
 from rich.console import Console
 
 from mjbeer.cli.app import main
@@ -15,7 +16,6 @@ from mjbeer.studies.benchmark import diagrams, measure, peers
 from mjbeer.studies.benchmark.measure import Rung, conduct, ladders
 from mjbeer.studies.benchmark.points import Benchmark, Curve, Point
 from mjbeer.studies.cases import CASES, INTERVAL
-from mjbeer.studies.convergence import convergence
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow

@@ -7,12 +7,12 @@ import re
 from dataclasses import replace
 
 import pytest
+from mjbeer.studies.convergence import convergence
 
 from mjbeer.studies.benchmark import diagrams, points, tables
 from mjbeer.studies.benchmark.measure import Rung
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark, Point
 from mjbeer.studies.cases import CASES, DEFAULT
-from mjbeer.studies.convergence import convergence
 from tests.support import figures
 
 # Next orders of rungs that are not all small: the issue of every convergence test.

@@ -15,7 +15,7 @@ from mjbeer.studies.stability.judge import ALARMS, FALSE, NEVER, REFUSED, VERDIC
 from mjbeer.studies.stability.known_cases import Case, cases
 from mjbeer.studies.stability.random_trials import REGIONS, random_trial
 
-KNOWN, RANDOM = GROUPS = "cases", "search"
+KNOWN, RANDOM = "cases", "search"
 """The groups of a study with known and with random cases."""
 SIZE = 4 * len(REGIONS)
 """Number of random runs in a batch, which takes some seconds."""
@@ -95,13 +95,11 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
 
 def tables(results: Sequence[Result]) -> list[Table]:
     """Return the tables of a search: how runs ended, the random ones by region and message, and what must not be."""
-    known, batches = (
-        [each.values | {"name": each.name} for each in results if each.group == group] for group in GROUPS
-    )
+    known, batches = ([of for of in results if of.group == group] for group in (KNOWN, RANDOM))
     kinds, regions = defaultdict[str, Counter[str]](Counter), defaultdict[str, Counter[str]](Counter)
     for case in known:
-        kinds[case["name"].partition(":")[0]].update(run["verdict"] for run in case["runs"])
-    for name, counts in (pair for of in batches for pair in of["regions"].items()):
+        kinds[case.name.partition(":")[0]].update(run["verdict"] for run in case.values["runs"])
+    for name, counts in (pair for of in batches for pair in of.values["regions"].items()):
         regions[name].update(counts)
     if regions:
         kinds["random"] = regions["all"] = sum(regions.values(), Counter[str]())
@@ -112,11 +110,11 @@ def tables(results: Sequence[Result]) -> list[Table]:
     ]
 
     def messages(kind: str) -> list[tuple[str, ...]]:
-        total = sum((Counter[str](of[kind]) for of in batches), Counter[str]())
+        total = sum((Counter[str](of.values[kind]) for of in batches), Counter[str]())
         return [(message, str(count)) for message, count in total.most_common()]
 
     def listed(kind: str) -> list[tuple[str, ...]]:
-        runs = [run | {"size": f"{run['error'] or math.nan:.1e}"} for of in batches for run in of[kind]]
+        runs = [run | {"size": f"{run['error'] or math.nan:.1e}"} for of in batches for run in of.values[kind]]
         return [tuple(str(run[name]) for name in ("verdict", "region", "number", "size", "call")) for run in runs]
 
     never = ("verdict", "region", "number", "error [rad]", "call")

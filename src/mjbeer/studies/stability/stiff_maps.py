@@ -141,16 +141,13 @@ FIGURES = {
 def rows(quick: bool = False) -> list[Row]:
     """Return a row a map; a `quick` study has fewer and coarser ones."""
     cells, damped_cells = (QUICK_CELLS, QUICK_DAMPED_CELLS) if quick else (CELLS, DAMPED_CELLS)
-    found = [(STIFF, plan.name, AGREEMENT[STIFF], partial(measure, plan, cells)) for plan in PLANS]
+    row = partial(Row, unit="relative", reason="bisection to 1 %, and an instability has to grow before it is seen")
+    found = [row(STIFF, plan.name, partial(measure, plan, cells), bound=AGREEMENT[STIFF]) for plan in PLANS]
     for rolling, integrator in DAMPED_PLANS:
-        bound, measured = AGREEMENT.get(rolling, AGREEMENT[DAMPED]), partial(measure_damped, rolling, integrator)
-        found.append((DAMPED, f"{rolling}, {integrator}", bound, partial(measured, damped_cells)))
-    reason = "bisection to 1 %, and an instability has to grow before it is seen"
-    return [
-        Row(group, name, measured, "", bound, "relative", reason)
-        for group, name, bound, measured in found
-        if not quick or name in _QUICK[group].split("; ")
-    ]
+        measured = partial(measure_damped, rolling, integrator, damped_cells)
+        bound = AGREEMENT.get(rolling, AGREEMENT[DAMPED])
+        found.append(row(DAMPED, f"{rolling}, {integrator}", measured, bound=bound))
+    return [each for each in found if not quick or each.name in _QUICK[each.group].split("; ")]
 
 
 def measure(plan: Plan, cells: tuple[int, int]) -> dict[str, Any]:
