@@ -4,10 +4,10 @@ import io
 import itertools
 import math
 import pathlib
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from mjbeer.studies.convergence import convergence
 from rich.console import Console
 
 from mjbeer.cli.app import main
@@ -16,6 +16,7 @@ from mjbeer.studies.benchmark import diagrams, measure, peers
 from mjbeer.studies.benchmark.measure import Rung, conduct, ladders
 from mjbeer.studies.benchmark.points import Benchmark, Curve, Point
 from mjbeer.studies.cases import CASES, INTERVAL
+from mjbeer.studies.validation.motions import observed_order
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow
@@ -45,16 +46,24 @@ def on(found: Benchmark, *curve: str) -> list[Point]:
     [("reduced", "Euler", 1), ("reduced", "RK4", 4), ("equality", "RK4", 4), ("contact", "DOP853", 2)],
 )
 def test_fitted_orders_are_the_methods(measured: Benchmark, way: str, method: str, order: int) -> None:
-    points = on(measured, way, method)
-    found = convergence([point.value for point in points], [point.error for point in points]).order
-    assert found == pytest.approx(order, abs=ORDER_MARGIN)
+    found = np.array([(each.value, each.error) for each in on(measured, way, method)][-3:])
+    assert observed_order(*found.T) == pytest.approx(order, abs=ORDER_MARGIN)
 
 
-def test_dop853_gains_eight_orders_a_rung_before_its_floor_where_the_ladder_ends(measured: Benchmark) -> None:
-    """From 32 to 8 ms; coarser rungs have not settled, and from 8 ms on there is rounding."""
-    errors = {each.value: each.error for each in on(measured, "reduced", "DOP853")}
-    assert math.log(errors[32e-3] / errors[8e-3], 4) == pytest.approx(8, abs=ORDER_MARGIN)
-    assert min(errors.values()) < 1e-13
+@pytest.mark.parametrize(
+    ("errors", "floored"),
+    [
+        (1e-2 * 16.0 ** -np.arange(8), False),
+        (np.maximum(1e-2 * 16.0 ** -np.arange(8), 3e-9), True),
+        ([2.0, 1.9, 2.1, 2.0, 1.8, 1.0, 0.1], False),  # motions that lost their phase
+        ([1e-2, 1e-9, 1e-9, 1e-9], False),  # too few
+    ],
+)
+def test_a_floor_is_where_errors_stop_falling(errors: Sequence[float], floored: bool) -> None:
+    rungs = [Point("frozen", "reduced", "RK4", "timestep", 16e-3 / 2**k, error) for k, error in enumerate(errors)]
+    for rung in rungs:
+        rung.u_max = rung.phi_max
+    assert measure._floored(rungs) is floored
 
 
 def test_a_ladder_ends_at_its_floor() -> None:

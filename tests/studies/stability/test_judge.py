@@ -164,17 +164,6 @@ def test_one_theory_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (again.apart, again.explained, len(again.motions)) == (None, True, 1)
 
 
-def test_beside_a_separatrix_each_start_that_doubles_confuse_is_right(monkeypatch: pytest.MonkeyPatch) -> None:
-    """On the top at rest the load may fall either way, if `solution` does not say that it stays."""
-    monkeypatch.setattr(judging, "solution", nothing)
-    found = true(pendulum(0.0), math.pi)
-    ends = [motion.phi[-1] - math.pi for motion in found.motions]
-    assert min(ends) < -1
-    assert max(ends) > 1
-    for motion in found.motions:
-        assert found.off(motion.phi, motion.roll) == 0
-
-
 def test_errors_are_relative_to_the_way_from_the_start() -> None:
     """A single late sample has turned as far as it is from the start, and not from itself."""
     whole, late = true(frozen(), math.pi), true(frozen(), math.pi, times=LONG[-1:])
