@@ -64,17 +64,9 @@ def rows(quick: bool = False) -> list[Row]:
     if quick:
         tried = [of for of in tried if of[:2] in _SAMPLE and of[2] in ("Euler", "RK4", DOP853) and of[3]]
     reason = "bisection to 0.4 %, and an instability has to grow before it is seen"
-    return [
-        Row(
-            GROUP,
-            ", ".join(way) + ("" if settled else ", not settled"),
-            partial(measure, *way, settled),
-            bound=AGREEMENT,
-            unit="relative",
-            reason=reason,
-        )
-        for *way, settled in tried
-    ]
+    row = partial(Row, GROUP, bound=AGREEMENT, unit="relative", reason=reason)
+    names = (", ".join(way) + ("" if settled else ", not settled") for *way, settled in tried)
+    return [row(name, partial(measure, *of)) for name, of in zip(names, tried, strict=True)]
 
 
 def measure(case: str, rolling: Rolling, integrator: Integrator, settled: bool = True) -> dict[str, Any]:

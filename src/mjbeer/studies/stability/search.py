@@ -82,7 +82,7 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
             alarms.update(outcome.alarms)
         if outcome.verdict == REFUSED:
             refusals.update(outcome.alarms)
-        about = {"number": number, "region": region, **dataclasses.asdict(outcome), "call": str(trial)}
+        about = {"number": number, "region": region, **dataclasses.asdict(outcome), "call": f"{trial!r}.simulate()"}
         if outcome.verdict in NEVER:
             kept["never"].append(about)
         elif not outcome.says and (outcome.error or 0) > (outcome.admitted or 0) + _ROUNDING:

@@ -1,4 +1,4 @@
-"""A trial: a scene, its start, how it is simulated and which samples are asked for, all in one line of Python."""
+"""A trial: a scene, its start, how it is simulated and which samples are asked for; its repr makes it again."""
 
 import math
 from dataclasses import dataclass
@@ -10,7 +10,8 @@ from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
 
-_SETTING = "phi0", "phi_dot0", "rolling", "integrator", "timestep"
+_SAMPLES = "steps", "every", "moments"
+"""The fields that say which samples are asked for."""
 
 
 @dataclass(frozen=True)
@@ -43,24 +44,8 @@ class Trial:
 
     def simulate(self) -> Run:
         """Return the simulated motion at the times of its samples."""
-        setting = {name: getattr(self, name) for name in (*_SETTING, "tolerance", "times", "friction", "softness")}
-        return simulate(self.scene, duration=self.timestep * self.steps, **setting)
-
-    def __str__(self) -> str:
-        """Return the call of `simulate` as one line of Python."""
-        samples = f"np.arange(0, {self.steps + 1}, {self.every})"
-        if self.moments is not None:
-            samples = f"np.array({list(self.moments)})"
-        words = [
-            repr(self.scene),
-            f"duration={self.timestep!r} * {self.steps}",
-            *(f"{name}={getattr(self, name)!r}" for name in _SETTING),
-            f"tolerance={self.tolerance!r}",
-            f"times={self.timestep!r} * {samples}",
-            f"friction={self.friction!r}",
-            *([] if self.softness == TUNED else [f"softness={self.softness!r}"]),
-        ]
-        return f"simulate({', '.join(words)})"
+        setting = {name: value for name, value in vars(self).items() if name not in _SAMPLES}
+        return simulate(duration=self.timestep * self.steps, times=self.times, **setting)
 
 
 def steps_of(duration: float, timestep: float) -> int:
