@@ -12,8 +12,18 @@ from mjbeer.exceptions import NoLibrationError, TemplateError
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability import judge as judging
 from mjbeer.studies.stability import reference
-from mjbeer.studies.stability.judge import ACCURATE, INACCURATE, REFUSED, SILENT, Outcome, Truth, alarm, judge, truth
-from mjbeer.studies.stability.trial import Trial
+from mjbeer.studies.stability.judge import (
+    ACCURATE,
+    INACCURATE,
+    REFUSED,
+    SILENT,
+    Outcome,
+    Trial,
+    Truth,
+    alarm,
+    judge,
+    truth,
+)
 
 pytestmark = pytest.mark.slow
 

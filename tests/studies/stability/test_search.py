@@ -27,12 +27,12 @@ from mjbeer.studies.stability.judge import (
     SILENT,
     THEORIES,
     Outcome,
+    Trial,
 )
 from mjbeer.studies.stability.known_cases import Case, Try, cases
 from mjbeer.studies.stability.random_trials import REGIONS, random_trial
 from mjbeer.studies.stability.reference import reference
 from mjbeer.studies.stability.search import RANDOM, RUNS, SIZE, SMALL, batch, tables, try_case
-from mjbeer.studies.stability.trial import Trial
 from mjbeer.theory.load import Load
 
 pytestmark = pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 from mjbeer import Can, exact, hoop, simulate, sliding
 from mjbeer.model import looks
 from mjbeer.studies.rows import Row
-from mjbeer.studies.validation import models, motions
+from mjbeer.studies.validation import motions
 from mjbeer.studies.validation.run import rows
 from mjbeer.theory import exact as theory
 from mjbeer.theory import trajectory
@@ -67,4 +67,4 @@ def test_energy_that_obeys_the_other_law_is_found_out() -> None:
 def test_a_mesh_of_another_fill_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
     right = looks.beer
     monkeypatch.setattr(looks, "beer", lambda fill, *rest: right(fill * 1.01, *rest))
-    assert min(models.mesh_errors(0.5)) > 1e-3
+    assert min(motions.mesh_errors(0.5)) > 1e-3

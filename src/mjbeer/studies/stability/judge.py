@@ -1,4 +1,4 @@
-"""The judge: how a run ended, by two theories that share no code, and by what the run says of itself."""
+"""Trials, and their judge: how a run ended, by two theories that share no code, and by what it says of itself."""
 
 import dataclasses
 import math
@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, NoLibrationError, ParameterError, ToleranceError, UnsupportedError
+from mjbeer.model.setting import FRICTION, TUNED, Integrator, Rolling, Softness
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.reference import LongMotionError, reference
-from mjbeer.studies.stability.trial import Trial
 from mjbeer.theory.equations import Coordinates, kinetic_energy
 from mjbeer.theory.exact import solution
 from mjbeer.theory.record import ERROR, LIFT, SLIP, doubts
@@ -62,6 +63,47 @@ _ASIDE = 1e-13
 """Distance of starts that count as the same [rad], relative beyond 1 rad: some hundred roundings."""
 _SAFETY = 2.5
 """Error estimate of a run over what a second run shows, at least."""
+_SAMPLES = "steps", "every", "moments"
+"""The fields that say which samples are asked for."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Everything that defines a run; units are those of `simulate`."""
+
+    scene: Scene
+    phi0: float
+    phi_dot0: float = 0.0
+    rolling: Rolling = "reduced"
+    integrator: Integrator | None = None
+    """None with a tolerance."""
+    timestep: float = 1e-3
+    tolerance: float | None = None
+    friction: float = FRICTION
+    steps: int = 1000
+    """Duration in timesteps."""
+    every: int = 1
+    """Number of timesteps from one sample to the next."""
+    moments: tuple[float, ...] | None = None
+    """The times of the samples in timesteps, if they are not regular."""
+    softness: Softness = TUNED
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times of the samples [s]."""
+        if self.moments is not None:
+            return self.timestep * np.array(self.moments)
+        return self.timestep * np.arange(0, self.steps + 1, self.every)
+
+    def simulate(self) -> Run:
+        """Return the simulated motion at the times of its samples."""
+        setting = {name: value for name, value in vars(self).items() if name not in _SAMPLES}
+        return simulate(duration=self.timestep * self.steps, times=self.times, **setting)
+
+
+def steps_of(duration: float, timestep: float) -> int:
+    """Return the number of timesteps to the first one at or after a duration."""
+    return math.ceil(duration / timestep * (1 - 1e-10))
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,8 +211,8 @@ class Outcome:
     That the incline would have to pull is a fact of the exact motion, and not among them."""
 
 
-def judge(simulate: Callable[[], Run]) -> Outcome:
-    """Simulate a motion, and return how that ended.
+def judge(make: Callable[[], Run]) -> Outcome:
+    """Return how a run ended that is made now.
 
     A run is accurate if the error of phi and u/a is at most `record.ERROR`, the limit for trusted runs as well.
 
@@ -178,7 +220,7 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
       MjbeerError: if the run cannot even be tried, as when its template is missing.
     """
     try:
-        run = simulate()
+        run = make()
     except (DivergenceError, *REFUSALS) as error:
         verdict = UNSTABLE if isinstance(error, DivergenceError) else REFUSED
         return Outcome(verdict, says=str(error), alarms=(_numberless(str(error)),))

@@ -9,8 +9,7 @@ import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Softness, supported
-from mjbeer.studies.stability.judge import ACCURATE, INACCURATE, REFUSED, UNSTABLE
-from mjbeer.studies.stability.trial import Trial, steps_of
+from mjbeer.studies.stability.judge import ACCURATE, INACCURATE, REFUSED, UNSTABLE, Trial, steps_of
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load

@@ -54,11 +54,12 @@ lift_dot; with contact, a thousandth of that."""
 
 def rows(quick: bool = False) -> list[Row]:
     """Return a row a scene, way of rolling and integrator; a `quick` study has a sample of them."""
+    methods: list[tuple[Integrator, bool]] = [*((name, True) for name in (*INTEGRATORS, DOP853)), ("RK4", False)]
     tried = [
         (case, rolling, integrator, settled)
         for case in CASES
         for rolling in ROLLINGS
-        for integrator, settled in (*((name, True) for name in (*INTEGRATORS, DOP853)), ("RK4", False))
+        for integrator, settled in methods
         if supported(CASES[case].scene, rolling) and (settled or rolling == "contact")
     ]
     if quick:

@@ -13,7 +13,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
-from mjbeer.studies.stability.trial import Trial
+from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
