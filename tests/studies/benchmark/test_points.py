@@ -14,8 +14,6 @@ from mjbeer.studies.benchmark.points import SHIPPED, Benchmark, Point
 from mjbeer.studies.cases import CASES, DEFAULT
 from tests.support import figures
 
-# Next orders of rungs that are not all small: the issue of every convergence test.
-
 
 def point(time: float, error: float, way: str = "reduced", method: str = "RK4", knob: str = "timestep") -> Point:
     return Point("frozen", way, method, knob, 1e-3, phi_max=error, u_max=error / 2, times=[time, 2 * time])

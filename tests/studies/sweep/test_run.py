@@ -14,7 +14,7 @@ import pytest
 
 import mjbeer
 from mjbeer import Can, LiquidWarning, Scene, Trajectory, exact, frozen, liquid, pendulum, simulate, sliding
-from mjbeer.exceptions import AngleWarning, OutputError, ParameterError
+from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.output import processes
 from mjbeer.studies.sweep import measure, run
 from mjbeer.studies.sweep.measure import DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
@@ -148,7 +148,6 @@ def test_the_time_of_parting_and_the_lowest_force_are_those_of_theory() -> None:
     ("arguments", "message"),
     [
         ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill \(height of .*\) must be in \(0, 1\], got 1.5"),
-        ({"damping": [0.0, -1.0]}, r"damping\[1\]: damping must be 0 or greater \[N m s\], got -1.0"),
         ({"fil": [0.5]}, "make is <function sliding.*>: got an unexpected keyword argument 'fil'"),
         ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
         ({"duration": 1e9}, "too many timesteps of 0.001 s for a sweep: at most 1,000,000,000$"),
@@ -158,11 +157,9 @@ def test_the_time_of_parting_and_the_lowest_force_are_those_of_theory() -> None:
         ({"quantity": named("fill", highest), "fill": [0.5]}, "quantity 'fill' is there already"),
         ({"make": made_of_u, "u": [0.1]}, "a quantity has the name of the parameter 'u'"),
         ({"output": "map.txt"}, "name must end in .npz, got 'map.txt'"),
-        ({"make": metal}, "missing a required argument: 'incline'"),
         ({"make": dict}, "make must return a scene, got <class 'dict'>, which returns {}"),
         ({"paired": True, "fill": [0.5], "incline": [0.1, 0.2]}, "one length: fill has 1, incline has 2"),
         ({"paired": True, "fill": [0.5, 2.0], "incline": [0.1, 0.2]}, r"fill\[1\] = 2, incline\[1\] = 0.2: fill"),
-        ({"paired": True}, "one length: no parameter is an array"),
         (
             {"fill": np.linspace(0.1, 0.9, 10**5), "incline": np.linspace(0, 1, 10**5)},
             r"at most 10,000,000 scenes, got 10,000,000,000 \(fill has 100000, incline has 100000\): cut it into",
@@ -175,11 +172,6 @@ def test_what_is_not_allowed_is_refused_before_anything_runs(
     monkeypatch.setattr(measure, "integrate", lambda *_: pytest.fail("something ran"))
     with pytest.raises(ParameterError, match=message):
         mjbeer.sweep(**({"make": sliding, "duration": 0.1, "phi0": 1.0} | arguments))
-
-
-def test_degrees_for_radians_give_a_warning() -> None:
-    with pytest.warns(AngleWarning, match="phi0 = 60 is taken as radians"):
-        mjbeer.sweep(sliding, 0.01, [1.0, 60.0], tolerance=1e-3)
 
 
 def test_a_combination_that_is_not_possible_is_listed_and_the_others_are_there() -> None:
@@ -238,10 +230,6 @@ def test_a_period_needs_a_swing_and_says_so() -> None:
     # While the can gains speed, its load swings about a tilt between that without damping and that of steady rolling.
     free, steady = (2 * math.pi / sliding(math.radians(5), damping=c).frequency() for c in (0.0, 1e-4))
     assert free < swept["period"][1, 0] < steady
-    heavy = {"can": Can.hoop(0.033, 0.12, 100.0), "damping": [0.02], "incline": 0.0}
-    creeping = mjbeer.sweep(sliding, 0.5, 1.0, tolerance=1e-6, quantity="period", **heavy)
-    assert creeping.failed[0].reason.startswith("period: no frequency: the load creeps back without a swing")
-    assert np.isfinite(creeping["phi"]).all()
 
 
 def test_what_liquids_warn_of_is_said_once_and_nothing_global_is_touched() -> None:
@@ -344,7 +332,6 @@ def edited(incline: float, fill: float) -> Scene:
         ({"duration": 0.5}, r"end \[s\] differ"),
         ({"phi_dot0": 1.0}, "arguments differ"),
         ({"fill": FILLS[:2]}, "parameters, scenes differ"),
-        ({"fill": FILLS + 1e-9}, "parameters, scenes differ"),
         ({"tolerance": 1e-7}, "setting differ"),
         ({"quantity": "period"}, "quantities, functions differ"),
         ({"make": named("sliding", metal)}, "scenes, functions differ"),
