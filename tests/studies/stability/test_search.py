@@ -167,7 +167,7 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
     assert [run["number"] - SIZE for run in found["overconfident"]] == [1]
     assert [run["number"] - SIZE for run in found["needless"]] == [7]
     assert (found["false alarms"], found["refusals"]) == ({"off by": 2, "drifts by": 1}, {"tolerance": 1})
-    assert found["never"][0]["call"].startswith("Trial(scene=Scene(")
+    assert found["never"][0]["call"].startswith("Trial(scene=")
     assert found["error"] == 3
     _, by_region, *others = tables([Result(RANDOM, name, values=found) for name in "ab"])
     everything = dict(zip(by_region.columns, by_region.rows[-1], strict=True))

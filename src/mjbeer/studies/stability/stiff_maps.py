@@ -264,7 +264,7 @@ def draw_all(document: dict[str, Any], folder: pathlib.Path) -> dict[str, str]:
     captions = {}
     for name, figure in FIGURES.items():
         if shown := [of for of in (*document[STIFF], *document[DAMPED]) if _figure(of) == name]:
-            _draw(folder / name, figure, shown)
+            draw(folder / name, figure, shown)
             captions[name] = figure.caption
     return captions
 
@@ -277,7 +277,7 @@ def _figure(of: dict[str, Any]) -> str:
     return f"stability-{'exceptions' if family == 'equality' else family}"
 
 
-def _draw(path: pathlib.Path, figure: Figure, maps: Sequence[dict[str, Any]]) -> None:
+def draw(path: pathlib.Path, figure: Figure, maps: Sequence[dict[str, Any]]) -> None:
     """Write maps of one family side by side, to `path` with .svg and with .png appended."""
     family = maps[0].get("family", "damping")
     shades = SHADES if "family" in maps[0] else DAMPED_SHADES

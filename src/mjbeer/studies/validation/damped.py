@@ -33,8 +33,6 @@ _ASIDE = 1e-4
 it is as large where steady rolling is fastest."""
 _SETTLED = 30.0
 """Time after which a loop is steady [s]: what distinguishes it decays in a second or faster."""
-
-
 _row = partial(Row, "damped")
 
 
@@ -64,15 +62,12 @@ def _limits() -> Iterator[Row]:
     bends = "power of the damping with which it bends the free motion, less 1"
     creeps = "power of the damping with which the load creeps off the frozen motion, plus 1"
     for name, can in CANS.items():
-        by, measure = (
-            f"{name}, reduced, 1e-8 and 1e-7 N m s",
-            partial(_approach, sliding(can=can), (1e-8, 1e-7), 1e-12, 1),
-        )
+        by, measure = f"sliding, {name}, reduced", partial(_approach, sliding(can=can), (1e-8, 1e-7), 1e-12, 1)
         reason = "the next power, which has 3e-4 of the first at 1e-7 N m s"
-        yield _row(bends, measure, f"sliding, {by}", 1e-3, "", reason)
-        by, measure = f"{name}, reduced, 1 and 10 N m s", partial(_approach, frozen(can=can), (1.0, 10.0), 1e-9, -1)
+        yield _row(bends, measure, f"{by}, 1e-8 and 1e-7 N m s", 1e-3, "", reason)
+        measure = partial(_approach, frozen(can=can), (1.0, 10.0), 1e-9, -1)
         reason = "the next power, which has 3e-3 of the first at 1 N m s"
-        yield _row(creeps, measure, f"sliding, {by}", 5e-3, "", reason)
+        yield _row(creeps, measure, f"{by}, 1 and 10 N m s", 5e-3, "", reason)
 
 
 def _steady_rolling() -> Iterator[Row]:
