@@ -28,7 +28,7 @@ from mjbeer.model import looks, state
 from mjbeer.model.build import build
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
-from mjbeer.studies.benchmark.measure import effective_softness
+from mjbeer.studies.benchmark.measure import applied_share
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy, potential_energy
 from tests.support import others
@@ -115,11 +115,11 @@ def test_cans_of_every_size(
     assert move(path, scene, start, 0.3 * pace) < TOLERANCE[rolling]
     if rolling == "equality":
         model = mujoco.MjModel.from_xml_path(str(path))
-        softness = effective_softness(model, np.concatenate([model.key("start").qpos, model.key("start").qvel]))
-        assert softness is not None
+        share = applied_share(model, np.concatenate([model.key("start").qpos, model.key("start").qvel]))
+        assert share is not None
         # 1e-4 with the exact diagonal. The sum of the joints' inverse inertias leaves out that the load couples them,
         # a factor of up to 1.9 here.
-        assert 1 - softness.effective_impedance < 2e-4
+        assert 1 - share < 2e-4
 
 
 @pytest.mark.parametrize(("integrator", "incline"), [*((each, -0.7) for each in INTEGRATORS), ("RK4", 1e-17)])

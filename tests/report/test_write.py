@@ -57,7 +57,7 @@ def test_a_failure_is_told_whatever_is_asked_for(
     assert re.fullmatch(SENTENCE.format(1, 2, 1, 2), last + "\n")
     assert ("│ first" in out) == (eye and options == ["--table"])
     assert (out == "") == (not options)
-    assert ("\tfirst\t" in out) == (not eye and options == ["--table"])
+    assert ("\nfirst\t" in out) == (not eye and options == ["--table"])
 
 
 @pytest.mark.parametrize("quick", [True, False])

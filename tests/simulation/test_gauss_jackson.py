@@ -12,7 +12,7 @@ from mjbeer.model.build import build
 from mjbeer.model.state import read, start
 from mjbeer.simulation import tolerance
 from mjbeer.simulation.gauss_jackson import BLOCK, COUNT, LAG, GaussJackson, weights
-from mjbeer.studies.convergence import observed_order
+from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
 

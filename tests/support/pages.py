@@ -56,7 +56,7 @@ def stories() -> list[Story]:
 def plots(folder: pathlib.Path) -> None:
     """Write plots of the benchmark and of stability that are nearly empty into a folder."""
     names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-    for name in (*names, *(figure.name for figure in (*stiff_maps.FIGURES, stiff_maps.DAMPED_FIGURE))):
+    for name in (*names, *stiff_maps.FIGURES):
         files.write(folder / f"{name}.svg", PLOT.format(name))
 
 

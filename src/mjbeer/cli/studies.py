@@ -36,10 +36,8 @@ def validate(given: Namespace) -> int:
     validation = validate(STDERR)
     if given.json:
         terminal.write(validation.json())
-    elif given.table and terminal.is_read_by_eye():
-        show(*validation.tables())
     elif given.table:
-        show(validation.table())
+        show(*validation.tables())
     return _conclude(validation, began)
 
 

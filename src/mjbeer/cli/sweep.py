@@ -19,10 +19,8 @@ if TYPE_CHECKING:
 
 PLOTS = (".png", ".svg")
 ENDINGS = (*PLOTS, ".csv", ".npz", ".nc")
-QUANTITIES = (
-    "phi", "u", "phi_dot", "u_dot", "error", "lowest_normal", "friction_needed", "parting_time", "energy_drift",
-    "trusted", "status", "period",
-)  # fmt: skip
+_OF_A_RUN = "phi u phi_dot u_dot error lowest_normal friction_needed parting_time energy_drift"
+QUANTITIES = (*_OF_A_RUN.split(), "trusted", "status", "period")
 _QUANTITY = (
     "quantity of the plot; files have all of them. phi, u, phi_dot and u_dot are those at the end, error is the "
     "estimate, and parting_time the time from which N < 0. period is measured only if it is asked for"
@@ -62,10 +60,8 @@ def sweep(given: Namespace) -> int:
     cast("Any", maker).__name__ = given.scene
     resumed = given.output if given.output.suffix == ".npz" else None
     with files.whole(given.output) if resumed is None else contextlib.nullcontext() as temporary:
-        result = sweep(
-            maker, given.duration, quantity=given.quantity, output=resumed, overwrite=given.overwrite,
-            **steps(given), **options,
-        )  # fmt: skip
+        options |= {"quantity": given.quantity, "output": resumed, "overwrite": given.overwrite, **steps(given)}
+        result = sweep(maker, given.duration, **options)
         if temporary and given.output.suffix in PLOTS:
             cast("Figure", result.plot(given.quantity).figure).savefig(temporary, facecolor="white", dpi=150)
         elif temporary:

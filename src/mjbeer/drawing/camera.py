@@ -149,9 +149,16 @@ class Shot:
 
     @classmethod
     def fit(
-        cls, scene: Scene, camera: Camera, time: np.ndarray, u: np.ndarray, lift: np.ndarray, plane: float,
-        pixels: tuple[int, int], room: bool = False,
-    ) -> "Shot":  # fmt: skip
+        cls,
+        scene: Scene,
+        camera: Camera,
+        time: np.ndarray,
+        u: np.ndarray,
+        lift: np.ndarray,
+        plane: float,
+        pixels: tuple[int, int],
+        room: bool = False,
+    ) -> "Shot":
         """Return the shot that shows a can that is at `u` and `lift` [m] at some times [s].
 
         With `room`, there is some for marks below the can.

@@ -87,10 +87,9 @@ class Display:
         planks.size += [0, lanes[-1] / 2, 0]
         wall.pos += [0, lanes[-1], 0]
         for number, along in enumerate(lines):  # as thin as a coat of paint
-            board.body("incline").add_geom(
-                board.default, name=f"line{number}", type=mujoco.mjtGeom.mjGEOM_BOX, rgba=_PAINT, group=2,
-                size=[0.003, planks.size[1], 0.0002], pos=[along, planks.pos[1], planks.pos[2] + planks.size[2]],
-            )  # fmt: skip
+            line = board.body("incline").add_geom(board.default, name=f"line{number}", rgba=_PAINT, group=2)
+            line.type, line.size = mujoco.mjtGeom.mjGEOM_BOX, [0.003, planks.size[1], 0.0002]
+            line.pos = [along, planks.pos[1], planks.pos[2] + planks.size[2]]
         model = compile_spec(board)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 

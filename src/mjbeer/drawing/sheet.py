@@ -110,10 +110,8 @@ class Sheet:
         along = way / length
         across = np.array([-along[1], along[0]])
         neck = head - _HEAD * width * along
-        shape = [
-            tail + across * width / 2, neck + across * width / 2, neck + across * 1.5 * width, head,
-            neck - across * 1.5 * width, neck - across * width / 2, tail - across * width / 2,
-        ]  # fmt: skip
+        half, wide = across * width / 2, across * 1.5 * width
+        shape = [tail + half, neck + half, neck + wide, head, neck - wide, neck - half, tail - half]
         self.area(np.array(shape), colour)
 
     def text(

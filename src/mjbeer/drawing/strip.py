@@ -26,10 +26,13 @@ _MUJOCO = (0.0, 0.447, 0.698)
 _THEORY = "#b4bcc8"
 """Colour of theory's lines, which are wide and lie below."""
 _STYLE: dict[Any, Any] = {
-    "axes.grid": True, "axes.spines.right": False, "axes.spines.top": False, "grid.alpha": 0.35,
+    "axes.grid": True,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "grid.alpha": 0.35,
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
-}  # fmt: skip
+}
 _EARTH = 9.81
 """Gravity on earth [m/s^2]."""
 _INTERVALS = 200
@@ -178,10 +181,9 @@ class Strip:
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()
                 named = dict(zip(names, handles, strict=True))
-                figure.legend(
-                    named.values(), named, loc="lower right", bbox_to_anchor=(1 - unit / width, 0), ncols=2,
-                    borderaxespad=0.1, borderpad=0, handlelength=1.5, columnspacing=1.2,
-                )  # fmt: skip
+                room = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.5, "columnspacing": 1.2}
+                corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0), "ncols": 2}
+                figure.legend(named.values(), named, **corner, **room)
             canvas.draw()
             self._complete = np.array(canvas.buffer_rgba())
             for line in itertools.chain(*drawn):

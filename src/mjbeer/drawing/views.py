@@ -27,9 +27,16 @@ if TYPE_CHECKING:
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
 _LABELS = {
-    "phi": "φ [°]", "u": "u [m]", "phi_dot": "dφ/dt [°/s]", "u_dot": "du/dt [m/s]", "roll": "roll [°]",
-    "distance": "distance [m]", "lift": "lift [m]", "slip": "slip [m]", "energy": "energy [J]",
-}  # fmt: skip
+    "phi": "φ [°]",
+    "u": "u [m]",
+    "phi_dot": "dφ/dt [°/s]",
+    "u_dot": "du/dt [m/s]",
+    "roll": "roll [°]",
+    "distance": "distance [m]",
+    "lift": "lift [m]",
+    "slip": "slip [m]",
+    "energy": "energy [J]",
+}
 """Labels of the quantities that a plot can show, by their names in a trajectory."""
 
 

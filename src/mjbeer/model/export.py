@@ -40,12 +40,12 @@ _PORTABLE_CONTACT = Softness(exact_diagonal=False, impedance=(0.999, 0.999), imp
 """The softness of a portable contact. With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double
 precision, but in single precision, as in mujoco_warp, the solver then ends with NaN."""
 # What a model that was read back must have: these arrays and options and, where its joints are, places in the world.
-_ARRAYS = (
-    "body_mass", "body_inertia", "body_ipos", "body_iquat", "jnt_axis", "dof_armature", "dof_damping",
-    "dof_dampingpoly", "tendon_armature", "tendon_damping", "tendon_dampingpoly", "wrap_prm", "actuator_gainprm",
-    "actuator_biasprm", "eq_data", "eq_solref", "eq_solimp", "pair_friction", "pair_solref", "pair_solimp",
-    "key_qpos", "key_qvel", "geom_contype", "geom_conaffinity",
-)  # fmt: skip
+_WHAT = """
+    body_mass body_inertia body_ipos body_iquat jnt_axis dof_armature dof_damping dof_dampingpoly tendon_armature
+    tendon_damping tendon_dampingpoly wrap_prm actuator_gainprm actuator_biasprm eq_data eq_solref eq_solimp
+    pair_friction pair_solref pair_solimp key_qpos key_qvel geom_contype geom_conaffinity
+"""
+_ARRAYS = tuple(_WHAT.split())
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
 _POSES = ("geom_xpos", "geom_xmat", "site_xpos", "site_xmat", "cam_xpos", "cam_xmat", "light_xpos", "light_xdir")
 _ROUNDING = 1e-14

@@ -122,8 +122,8 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
     errors = [Plot.of(folder / "plots" / f"error-{case}.svg") for case in benchmark.cases]
     figures = [
         Shown(plot.name, plot.title, figure.caption, maps["command"], plot)
-        for figure in (*stiff_maps.FIGURES, stiff_maps.DAMPED_FIGURE)
-        for plot in [Plot.of(folder / "plots" / f"{figure.name}.svg")]
+        for name, figure in stiff_maps.FIGURES.items()
+        for plot in [Plot.of(folder / "plots" / f"{name}.svg")]
     ]
     room = LIMIT - sum(len(film.video) + len(film.poster) for film in films.values())
     room -= sum(len(plot.svg) for plot in errors) + sum(len(each.plot.picture) for each in figures if each.plot)

@@ -167,16 +167,12 @@ def run(
 
 def table(title: str, results: Sequence[Result], document: bool = False) -> Table:
     """Return a table of results; the last column is the verdict or, for a `document`, what dominates the error."""
-    rows = [
-        (
-            result.name,
-            result.by,
-            _number(result.error) + ("" if result.passed or not document else FAILED),
-            f"{result.bound:.1e} {result.unit}".strip(),
-            result.reason if document else PASSED[result.passed],
-        )
-        for result in results
-    ]
+    rows = []
+    for result in results:
+        failed = FAILED if document and not result.passed else ""
+        last = result.reason if document else PASSED[result.passed]
+        bound = f"{result.bound:.1e} {result.unit}".strip()
+        rows.append((result.name, result.by, _number(result.error) + failed, bound, last))
     last = "what dominates the error" if document else "verdict"
     return Table(title, ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))
 
@@ -243,8 +239,8 @@ def _processor() -> str:
         lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
         return platform.processor() or platform.machine()
-    names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.machine()
+    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(names, platform.machine())
 
 
 def _version(name: str) -> str | None:

@@ -87,11 +87,8 @@ def _equations(scene: Scene) -> Rates:
         phi_ddot = (-depth * np.sin(turned) - lean * arm * square + open_arm * torque - arm * drag) / inertia
         slip_dot = push - lean * square - torque - drag - open_arm * phi_ddot
         by_phi = -depth * np.cos(turned) - (arm * arm - lean * lean) * square + lean * (torque + drag)
-        swing = np.array([
-            by_phi - 2 * lean * arm * phi_ddot,
-            -2 * lean * arm * phi_dot - arm * steep_drag,
-            open_arm * steep - arm * steep_drag,
-        ]) / inertia  # fmt: skip
+        steeps = by_phi - 2 * lean * arm * phi_ddot, -2 * lean * arm * phi_dot - arm * steep_drag
+        swing = np.array([*steeps, open_arm * steep - arm * steep_drag]) / inertia
         slide = np.array([-arm * square - lean * phi_ddot, -2 * lean * phi_dot - steep_drag, -steep - steep_drag])
         return np.array([phi_ddot, slip_dot]), np.array([swing, slide - open_arm * swing])
 

@@ -3,13 +3,10 @@
 import importlib
 import math
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, UnsupportedError
@@ -17,13 +14,10 @@ from mjbeer.studies.benchmark import peers
 from mjbeer.studies.benchmark.peers import PEERS, WHOLE, Peer
 from mjbeer.studies.cases import STIFF, Case
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import accelerations
-from tests.support.scenes import METAL, SCENES, scenes
+from tests.support.scenes import METAL
 
 pytestmark = pytest.mark.slow
 
-# Some ten roundings (1.1e-16) of terms that are each at most the scale that they are compared with; measured: 5e-16.
-ROUNDING = 1.5e-15
 # A tolerance holds for one step, of which there are some hundreds, and for metres, of which a radian of rolling has
 # 0.03. Measured: up to 75 times the tolerance (LSODA).
 GLOBAL = 300
@@ -40,37 +34,6 @@ STARTS = {
     "pendulum": (pendulum(), 1.0, 0.0),
 }
 EPS = float(np.finfo(float).eps)
-
-
-@settings(max_examples=200, deadline=None, derandomize=True)
-@given(
-    st.one_of(st.sampled_from(list(SCENES.values())), scenes()),
-    st.floats(-4, 4),
-    st.floats(-5, 5),
-    st.sampled_from([0.0, 1e-4, 1.0]),
-)
-def test_the_theory_has_the_same_accelerations(scene: Scene, phi: float, swing: float, damping: float) -> None:
-    """Theory has them in other forms, and is itself tested against Lagrange's equations."""
-    if scene.attachment == "sliding":
-        scene = replace(scene, damping=damping)
-    form, now = scene.oscillator, float(scene.oscillator.inertia(phi))
-    torque = form.depth + abs(form.slope)
-    phi_dot, u_dot = swing * math.sqrt(torque / form.base), -0.3
-    state = [phi, phi_dot] if scene.attachment == "frozen" else [0.7, phi, u_dot, phi_dot]
-    rates = peers.right_hand_side(scene)(1.0, state)
-    u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
-    lost = 0.0 if scene.attachment == "frozen" else scene.damping_law.linear * (abs(phi_dot) + 0.3 / scene.can.radius)
-    # J of a frozen load is written as base + chord/2 less chord/2 cos(phi).
-    worst = ROUNDING * (torque + lost + (form.chord + form.swing) * phi_dot**2) / now * (1 + form.chord / now)
-    assert abs(rates[-1] - phi_ddot) <= worst
-    if scene.attachment == "frozen":
-        assert rates[0] == phi_dot
-        return
-    assert rates[:2] == (u_dot, phi_dot)
-    share = scene.load.offset  # m/M_e is at most 1
-    forces = abs(scene.drive) + lost / scene.can.radius
-    size = forces / scene.effective_mass + share * phi_dot**2
-    assert abs(rates[2] - u_ddot) <= ROUNDING * size + share * worst
 
 
 @pytest.mark.parametrize("scene", [sliding(drag=0.1), sliding(damping=Damping(0.1, 0.2))])
@@ -106,12 +69,6 @@ def test_tolerances_lead_to_exact_theory(peer: Peer, start: tuple[Scene, float, 
     first, last = error(peer, *start, coarse), error(peer, *start, fine)
     assert last <= GLOBAL * fine
     assert math.log(first / last) / math.log(coarse / fine) == pytest.approx(1, abs=SLOPE)
-
-
-@pytest.mark.parametrize("peer", BARE)
-def test_the_last_tolerance_of_a_ladder_is_the_finest(peer: Peer) -> None:
-    assert list(peer.tolerances) == sorted(peer.tolerances, reverse=True)
-    assert error(peer, *STARTS["frozen"], peer.tolerances[-1]) < GLOBAL * max(peer.tolerances[-1], EPS)
 
 
 @pytest.mark.parametrize("peer", params(["SciPy LSODA", "SciPy odeint", "heyoka"]))
@@ -157,22 +114,7 @@ def test_a_failure_is_raised(peer: Peer, monkeypatch: pytest.MonkeyPatch, capfd:
     assert capfd.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("peer", params(["SciPy DOP853", "SciPy LSODA", "SciPy odeint"]))
-def test_a_state_without_a_sine_is_a_failure(peer: Peer, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(peers, "right_hand_side", lambda _: lambda _, state: (math.sin(math.inf), 0.0))
-    with pytest.raises(DivergenceError, match=r"SciPy: .*domain"):
-        peer.set_up(frozen(), 1.0, 0.0, TIMES, 1e-6)()
-
-
-@pytest.mark.parametrize(
-    "broken",
-    [
-        ImportError("libfmt.so.11: cannot open shared object file"),
-        ModuleNotFoundError("No module named 'cloudpickle'", name="cloudpickle"),
-        OSError("no such driver"),
-    ],
-    ids=str,
-)
+@pytest.mark.parametrize("broken", [ImportError("cannot open libfmt.so.11"), OSError("no such driver")], ids=str)
 def test_what_cannot_be_imported_is_absent_and_says_why(broken: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(_: str) -> None:
         raise broken

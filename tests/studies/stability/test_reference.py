@@ -56,23 +56,6 @@ def test_energy_is_kept_over_a_hundred_swings() -> None:
     assert np.abs(total - total[0]).max() / depth < 2e-14
 
 
-def test_samples_do_not_change_the_motion() -> None:
-    scene, times = frozen(), np.linspace(0, 3, 301)
-    many = reference(scene, times, 1.0)
-    for place in (0, 17, 300):
-        alone = reference(scene, times[place : place + 1], 1.0)
-        assert alone.phi[0] == pytest.approx(many.phi[place], abs=1e-13)
-        assert alone.phi_dot[0] == pytest.approx(many.phi_dot[place], abs=1e-12)
-
-
-def test_rates_are_those_of_the_angles() -> None:
-    scene, step = sliding(can=METAL), 1e-4
-    found = reference(scene, 0.3 + step * np.arange(-1, 2), 1.0, 3.0)
-    for values, rates in ((found.phi, found.phi_dot), (found.u, found.u_dot)):
-        slope = (values[2] - values[0]) / (2 * step)
-        assert slope == pytest.approx(rates[1], rel=1e-4)
-
-
 def test_a_balanced_load_turns_evenly() -> None:
     scene = Scene(Can(0.033, 0.1), Load(0.1, 0.0, 1e-5), 0.0, "frozen")
     found = reference(scene, np.array([0.0, 1.0, 1e3]), 1.0, 2.0)

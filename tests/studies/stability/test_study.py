@@ -43,12 +43,11 @@ def test_the_study_is_written(
     summary = (tmp_path / "summary.md").read_text()
     assert "All came out as theory expects." in summary
     drawn = sorted(each.stem for each in tmp_path.glob("*.svg"))
-    assert drawn == ["stability-damping", "stability-limits", "stability-solref"]
+    assert drawn == ["stability-damping", "stability-solref"]
     for name in drawn:
         assert f"]({name}.svg)" in summary
         assert (tmp_path / f"{name}.png").stat().st_size > 5000
-    assert [figures.faults(figure) for figure in seen] == [[], [], []]
-    assert len((tmp_path / "runs.csv").read_text().splitlines()) > 3
+    assert [figures.faults(figure) for figure in seen] == [[], []]
     kept = stiff_maps.load(tmp_path / "maps.json")
     assert [each["name"] for each in kept["maps"]] == ["equality, Euler"]
     assert kept["command"] == "mjbeer stability --quick"

@@ -1,10 +1,11 @@
 """Run the benchmark: climb each ladder of settings for its errors, then time all settings in rounds."""
 
 import gc
+import math
 import pathlib
 import time
 from collections.abc import Container, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from functools import partial
 from typing import Any
 
@@ -20,20 +21,8 @@ from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.stepping import Solution
 from mjbeer.studies.benchmark import peers, sweeps
 from mjbeer.studies.benchmark.peers import PEERS, Peer
-from mjbeer.studies.benchmark.points import (
-    CHOSEN,
-    COMMAND,
-    ERRORS,
-    SWEEPS,
-    TIMES,
-    TOLERANCE,
-    USUAL,
-    Benchmark,
-    Curve,
-    Point,
-)
+from mjbeer.studies.benchmark.points import CHOSEN, COMMAND, TOLERANCE, USUAL, Benchmark, Curve, Point
 from mjbeer.studies.cases import INTERVAL, MEASURED, Case
-from mjbeer.studies.convergence import convergence
 from mjbeer.studies.rows import Row, Study, run
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -42,6 +31,10 @@ REPEATS = 5
 """Timed rounds. Each round times every setting once, so that a slow minute of the machine hits all settings alike."""
 _ENOUGH = 5
 """Fewest rungs of a ladder that ends at its floor."""
+_FLAT = 0.5
+"""A rung is at the floor if no later rung has less than this share of its error."""
+_NO_FLOOR = 1e-2
+"""Errors above this [rad] are not taken for a floor: on a motion that far off, rungs may agree by chance."""
 _SHORT = 0.05
 """A run shorter than this [s] is timed twice and the first time dropped, so that caches and predictors are warm."""
 
@@ -60,17 +53,17 @@ def conduct(names: Sequence[str], folder: pathlib.Path, quick: bool, console: Co
     path, missing = folder / "study.jsonl", peers.absent()
     (folder / "summary.md").unlink(missing_ok=True)  # an earlier summary would not match the study
     climbed = [
-        Row(ERRORS, curve.label, partial(_climb, case, curve, values), case.name)
+        Row(Benchmark.ERRORS, curve.label, partial(_climb, case, curve, values), case.name)
         for case in cases
         for curve, values in ladders(case.scene, quick, missing).items()
     ]
     rungs: dict[Any, Rung] = {}
     timed = [
-        Row(TIMES, f"round {repeat + 1}", partial(_time, case, path, rungs), case.name)
+        Row(Benchmark.TIMES, f"round {repeat + 1}", partial(_time, case, path, rungs), case.name)
         for repeat in range(REPEATS)
         for case in cases
     ]
-    many = Row(SWEEPS, "sweeps of many scenes", partial(sweeps.compare, quick))
+    many = Row(Benchmark.SWEEPS, "sweeps of many scenes", partial(sweeps.compare, quick))
     settings = {"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": missing}
     return Benchmark.of_study(run([*climbed, *timed, many], console, path, COMMAND, settings))
 
@@ -124,8 +117,7 @@ class Rung:
             motion = self._prepared.coordinates(result.states, truth.time)
             moved = Trajectory(**vars(motion), scene=truth.scene, phi0=truth.phi0, phi_dot0=0.0)
             point.slip_max, point.energy_drift = float(np.abs(moved.slip).max()) / radius, moved.energy_drift
-            soft = effective_softness(self._prepared.model, self._start)
-            point.share = None if soft is None else soft.effective_impedance
+            point.share = applied_share(self._prepared.model, self._start)
             result = motion.phi, motion.u
         if not np.isfinite([values[-1] for values in result]).all():  # a value that is not finite stays so
             raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
@@ -168,11 +160,14 @@ def _climb(case: Case, curve: Curve, values: Sequence[float]) -> dict[str, Any]:
 
 
 def _floored(points: Sequence[Point]) -> bool:
-    """Return whether the errors stopped falling; rungs whose samples are interpolated would hide the order."""
+    """Return whether the errors stopped falling: no later rung has less than half the error of some rung.
+
+    Rungs whose samples are interpolated would hide that.
+    """
     exact = [point for point in points if point.failure is None and np.frexp(point.value / INTERVAL)[0] == 0.5]
-    if len(exact) < _ENOUGH:
-        return False
-    return convergence([point.value for point in exact], [point.error for point in exact]).floor is not None
+    errors = [point.error for point in exact if 0 < point.error < math.inf]
+    rungs = enumerate(errors[:-2] if len(exact) >= _ENOUGH else [])
+    return any(min(errors[place:]) >= _FLAT * error and error < _NO_FLOOR for place, error in rungs)
 
 
 def _time(case: Case, path: pathlib.Path, rungs: dict[Any, Rung]) -> dict[str, list[float]]:
@@ -197,36 +192,19 @@ def _time(case: Case, path: pathlib.Path, rungs: dict[Any, Rung]) -> dict[str, l
     return times
 
 
-@dataclass(frozen=True)
-class EffectiveSoftness:
-    """The softness of a constraint as the solver used it."""
+def applied_share(model: mujoco.MjModel, state: np.ndarray) -> float | None:
+    """Return the share of a hard constraint's force that the solver applies at a `state`, shape (nq + nv,).
 
-    effective_timeconst: float
-    """Time constant [s]: `refsafe` raises one below two timesteps."""
-    impedance: float
-    """d of solimp: the share of its reference acceleration that a row with the exact diagonal would reach."""
-    effective_impedance: float
-    """The share that the row reached, with the regularizer that the solver used and the exact diagonal."""
-
-
-def effective_softness(model: mujoco.MjModel, state: np.ndarray) -> EffectiveSoftness | None:
-    """Return the softness of the rolling constraint at a `state`, shape (nq + nv,); None if no constraint is active.
-
-    The time constant comes from the stiffness K = 1/(d tau)^2 (damping ratio 1) of MuJoCo's reference acceleration, and
-    the impedance from the regularizer R and the diagonal A = J M^-1 J^T of the constraint's first row.
+    It is A/(A + R) with the regularizer R and the diagonal A = J M^-1 J^T of the rolling constraint's first row; None
+    if no constraint is active.
     """
-    data = mujoco.MjData(model)
+    data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
     data.qpos[:], data.qvel[:] = state[: model.nq], state[model.nq :]
     with quiet():
         mujoco.mj_forward(model, data)
     if data.nefc == 0:
         return None
-    solimp = model.eq_solimp if model.neq else model.pair_solimp
-    jacobian, mass = np.array(data.efc_J).reshape(-1, model.nv)[0], np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, mass)
+    jacobian = np.array(data.efc_J).reshape(-1, model.nv)[0]
     diagonal = float(jacobian @ np.linalg.solve(mass, jacobian))
-    return EffectiveSoftness(
-        effective_timeconst=1 / (float(solimp[0, 1]) * float(data.efc_KBIP[0, 0]) ** 0.5),
-        impedance=float(data.efc_KBIP[0, 2]),
-        effective_impedance=diagonal / (diagonal + float(data.efc_R[0])),
-    )
+    return diagonal / (diagonal + float(data.efc_R[0]))

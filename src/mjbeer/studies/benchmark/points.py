@@ -11,15 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.model.setting import ROLLINGS, Setting, Softness
-from mjbeer.studies.benchmark.peers import WHOLE
+from mjbeer.model.setting import Setting, Softness
 from mjbeer.studies.rows import Study
 
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.jsonl")
 """The benchmark that comes with mjbeer: errors to six digits, least run times."""
-ERRORS, TIMES, SWEEPS = "errors", "run times", "sweeps"
-"""The groups of a study's rows: a ladder with its errors, a round of timing, and the times of many scenes."""
 TIMESTEP, TOLERANCE = "timestep", "tolerance"
 CHOSEN = "mjbeer"
 """The method of runs to a tolerance, which choose their integrator and its steps."""
@@ -126,6 +123,9 @@ def milliseconds(time: float) -> str:
 class Benchmark:
     """A study of error against run time; its points are in the order in which they were measured."""
 
+    ERRORS, TIMES, SWEEPS = "errors", "run times", "sweeps"
+    """The groups of its rows: a ladder with its errors, a round of timing, and the times of many scenes."""
+
     settings: dict[str, Any]
     machine: dict[str, Any]
     points: list[Point]
@@ -145,16 +145,16 @@ class Benchmark:
     def of_study(cls, study: Study) -> "Benchmark":
         """Return the benchmark whose rows are in a study."""
         points = []
-        for ladder in study.of(ERRORS):
+        for ladder in study.of(cls.ERRORS):
             curve = {name: ladder.values[name] for name in ("way", "method", "knob")}
             rungs = [Point(ladder.by, **curve, **rung) for rung in ladder.values["points"]]
             ran = [point for point in rungs if point.failure is None]
-            for timed in study.of(TIMES):
+            for timed in study.of(cls.TIMES):
                 if timed.by == ladder.by:
                     for point, time in zip(ran, timed.values[ladder.name], strict=True):
                         point.times.append(time)
             points += rungs
-        sweeps = [way for result in study.of(SWEEPS) for way in result.values["ways"]]
+        sweeps = [way for result in study.of(cls.SWEEPS) for way in result.values["ways"]]
         return cls(study.settings, study.machine, points, sweeps)
 
     def of(self, case: str) -> list[Point]:
@@ -178,16 +178,6 @@ class Benchmark:
                 known |= {"error": point.error, "time_min": point.time, "time_median": statistics.median(point.times)}
             writer.writerow(known)
         return text.getvalue()
-
-
-def ours(points: Iterable[Point]) -> list[Point]:
-    """Return the points of mjbeer's own models: not of other tools, nor of models as people usually write them."""
-    return [point for point in points if point.way in ROLLINGS]
-
-
-def drawn(points: Iterable[Point]) -> list[Point]:
-    """Return the points that plots show: not those of whole calls, which lie beside those of the runs alone."""
-    return [point for point in points if point.way != WHOLE]
 
 
 def front(points: Iterable[Point]) -> list[Point]:

@@ -1,4 +1,4 @@
-"""The judge: how a run ended, by two theories that share no code, and by what the run says of itself."""
+"""Trials, and their judge: how a run ended, by two theories that share no code, and by what it says of itself."""
 
 import dataclasses
 import math
@@ -9,37 +9,37 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, NoLibrationError, ParameterError, ToleranceError, UnsupportedError
+from mjbeer.model.setting import FRICTION, TUNED, Integrator, Rolling, Softness
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.reference import LongMotionError, reference
-from mjbeer.studies.stability.trial import Trial
 from mjbeer.theory.equations import Coordinates, kinetic_energy
 from mjbeer.theory.exact import solution
 from mjbeer.theory.record import ERROR, LIFT, SLIP, doubts
 from mjbeer.theory.scene import Scene
 
-ACCURATE = "stable and accurate"
-INACCURATE = "stable, inaccurate"
-UNSTABLE = "unstable, detected"
-REFUSED = "refused"
-SILENT = "wrong and silent"
-MISSED = "tolerance missed"
-THEORIES = "theories differ"
-UNKNOWN = "beyond theory"
 VERDICTS = {
-    ACCURATE: "accurate", INACCURATE: "inaccurate", UNSTABLE: "unstable", REFUSED: "refused", SILENT: "silent",
-    MISSED: "missed", THEORIES: "theories", UNKNOWN: "beyond",
-}  # fmt: skip
+    (ACCURATE := "stable and accurate"): "accurate",
+    (INACCURATE := "stable, inaccurate"): "inaccurate",
+    (UNSTABLE := "unstable, detected"): "unstable",
+    (REFUSED := "refused"): "refused",
+    (SILENT := "wrong and silent"): "silent",
+    (MISSED := "tolerance missed"): "missed",
+    (THEORIES := "theories differ"): "theories",
+    (UNKNOWN := "beyond theory"): "beyond",
+}
 """Every way in which a run can end, and in a word. Only damped motions are beyond theory, the reference of which knows
 no damping."""
 NEVER = (SILENT, MISSED, THEORIES)
 """The verdicts that must not occur: a run that is trusted although it is wrong, a run whose error is above its
 tolerance, and a motion of which two theories say different things that no rounding explains."""
-FALSE = "false alarm"
-PARTS = "real slip or lift"
-WAY = "wrong on the way"
-SENSITIVE = "sensitive start"
-ALARMS = {FALSE: "false alarms", PARTS: "slip or lift", WAY: "way", SENSITIVE: "sensitive"}
+ALARMS = {
+    (FALSE := "false alarm"): "false alarms",
+    (PARTS := "real slip or lift"): "slip or lift",
+    (WAY := "wrong on the way"): "way",
+    (SENSITIVE := "sensitive start"): "sensitive",
+}
 """What the warnings of an accurate run can be, and in short. All but the first are facts: the can slips or lifts by
 more than is trusted; the run is right at its samples and wrong between them; a start that is closer than models are
 made moves the exact motion by more than is trusted, or the run itself: one that rests where its timestep is far too
@@ -49,6 +49,8 @@ REFUSALS = (ParameterError, ToleranceError, UnsupportedError)
 _GAIN = 10.0
 """A run is unstable if its kinetic energy exceeds the largest that the motion can have by this factor."""
 _ROUNDING = float(np.finfo(float).eps)
+_NEXT = 1 + _ROUNDING
+"""The next number after 1."""
 _NUDGES = 10.0
 """Largest distance of the two theories over the effect of nudging start and scene by a rounding each. In 2,400 random
 runs it was at most 2 where it needed an explanation."""
@@ -61,6 +63,47 @@ _ASIDE = 1e-13
 """Distance of starts that count as the same [rad], relative beyond 1 rad: some hundred roundings."""
 _SAFETY = 2.5
 """Error estimate of a run over what a second run shows, at least."""
+_SAMPLES = "steps", "every", "moments"
+"""The fields that say which samples are asked for."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Everything that defines a run; units are those of `simulate`."""
+
+    scene: Scene
+    phi0: float
+    phi_dot0: float = 0.0
+    rolling: Rolling = "reduced"
+    integrator: Integrator | None = None
+    """None with a tolerance."""
+    timestep: float = 1e-3
+    tolerance: float | None = None
+    friction: float = FRICTION
+    steps: int = 1000
+    """Duration in timesteps."""
+    every: int = 1
+    """Number of timesteps from one sample to the next."""
+    moments: tuple[float, ...] | None = None
+    """The times of the samples in timesteps, if they are not regular."""
+    softness: Softness = TUNED
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times of the samples [s]."""
+        if self.moments is not None:
+            return self.timestep * np.array(self.moments)
+        return self.timestep * np.arange(0, self.steps + 1, self.every)
+
+    def simulate(self) -> Run:
+        """Return the simulated motion at the times of its samples."""
+        setting = {name: value for name, value in vars(self).items() if name not in _SAMPLES}
+        return simulate(duration=self.timestep * self.steps, times=self.times, **setting)
+
+
+def steps_of(duration: float, timestep: float) -> int:
+    """Return the number of timesteps to the first one at or after a duration."""
+    return math.ceil(duration / timestep * (1 - 1e-10))
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,13 +182,15 @@ def _reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) ->
 
 
 def _beside(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Iterator[Angles]:
-    """Yield the motions, by `reference`, of a scene and a start of which one number is nudged by a rounding."""
+    """Yield the motions, by `reference`, of a scene and a start of which one number is nudged by a rounding.
+
+    The incline is nudged by a rounding of 1 rad: that raises a crest over the one before by what rounding does on the
+    way from one to the other, which a motion closer beside the separatrix cannot bear.
+    """
     aside = _ROUNDING * max(1.0, abs(phi0))
-    nudged = [(scene, phi0 + aside, phi_dot0), (scene, phi0 - aside, phi_dot0)]
-    nudged += [(scene, phi0, phi_dot0 * (1 + _ROUNDING))]
-    for name in ("incline", "gravity"):
-        other = dataclasses.replace(scene, **{name: getattr(scene, name) * (1 + _ROUNDING)})
-        nudged.append((other, phi0, phi_dot0))
+    nudged = [(scene, phi0 + aside, phi_dot0), (scene, phi0 - aside, phi_dot0), (scene, phi0, phi_dot0 * _NEXT)]
+    for changed in ({"incline": scene.incline + _ROUNDING}, {"gravity": scene.gravity * _NEXT}):
+        nudged.append((dataclasses.replace(scene, **changed), phi0, phi_dot0))
     for other, *start in nudged:
         if (motion := _reference(other, times, *start)) is not None:
             yield Angles.of(other, motion, *start)
@@ -170,8 +215,8 @@ class Outcome:
     That the incline would have to pull is a fact of the exact motion, and not among them."""
 
 
-def judge(simulate: Callable[[], Run]) -> Outcome:
-    """Simulate a motion, and return how that ended.
+def judge(make: Callable[[], Run]) -> Outcome:
+    """Return how a run ended that is made now.
 
     A run is accurate if the error of phi and u/a is at most `record.ERROR`, the limit for trusted runs as well.
 
@@ -179,7 +224,7 @@ def judge(simulate: Callable[[], Run]) -> Outcome:
       MjbeerError: if the run cannot even be tried, as when its template is missing.
     """
     try:
-        run = simulate()
+        run = make()
     except (DivergenceError, *REFUSALS) as error:
         verdict = UNSTABLE if isinstance(error, DivergenceError) else REFUSED
         return Outcome(verdict, says=str(error), alarms=(_numberless(str(error)),))

@@ -9,8 +9,7 @@ import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Softness, supported
-from mjbeer.studies.stability.judge import ACCURATE, INACCURATE, REFUSED, UNSTABLE
-from mjbeer.studies.stability.trial import Trial, steps_of
+from mjbeer.studies.stability.judge import ACCURATE, INACCURATE, REFUSED, UNSTABLE, Trial, steps_of
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
@@ -232,77 +231,57 @@ def _extreme() -> Iterator[tuple]:  # noqa: PLR0912 - a list, most of it loops o
 
 def _found() -> Iterator[tuple[str, str, tuple[Try, ...]]]:
     """Yield name, cause and tries of the cases in which the random search found errors."""
-    slow = math.sqrt(0.033 / 1e-3)
+    fall = math.sqrt(0.033 / 1e-3)
     why = "MuJoCo's solver stops once its cost falls by less than 1e-8 m^2/s^4: its tolerance has to scale with g^2"
-    weak = (("pendulum", pendulum(gravity=1e-3)), ("frozen", frozen(gravity=1e-3)))
-    yield (
-        "contact in a gravity of 1e-3 m/s^2",
-        why,
-        tuple(
-            Try(f"contact, RK4, {name}", Trial(scene, 1.0, 0.0, "contact", "RK4", slow / 100, steps=3000), (ACCURATE,))
-            for name, scene in weak
-        ),
-    )
+    runs = [
+        Try(f"contact, RK4, {name}", Trial(scene, 1.0, 0.0, "contact", "RK4", fall / 100, steps=3000), (ACCURATE,))
+        for name, scene in (("pendulum", pendulum(gravity=1e-3)), ("frozen", frozen(gravity=1e-3)))
+    ]
+    yield "contact in a gravity of 1e-3 m/s^2", why, tuple(runs)
     full = sliding(fill=1 - 1e-6)
+    stepped = Trial(full, 1.0, timestep=1.0, steps=20_000)
     to_tolerance = Trial(full, 1.0, timestep=10.0, tolerance=1e-6, steps=2000)
     why = "rounding of a distance of 3e8 m exceeds the lever arm b, unless forces are evaluated near the origin"
-    yield (
-        "sliding, fill 1 - 1e-6, twenty thousand seconds",
-        why,
-        (
-            Try("reduced, RK4, 1 s", Trial(full, 1.0, timestep=1.0, steps=20_000), (INACCURATE,)),
-            Try("reduced, to a tolerance of 1e-06", to_tolerance, (ACCURATE,), 1e-6),
-        ),
-    )
+    runs = [Try("reduced, RK4, 1 s", stepped, (INACCURATE,))]
+    runs += [Try("reduced, to a tolerance of 1e-06", to_tolerance, (ACCURATE,), 1e-6)]
+    yield "sliding, fill 1 - 1e-6, twenty thousand seconds", why, tuple(runs)
+
     can = Can(0.025006609705965473, 0.075, 79385.39201711072, 49.64210918385945)
-    heavy = Scene(can, Load(41429.27842882292, 0.01647772919452516), 0.1789453673759448)
-    start, inside = pendulum().separatrix()[1] - 1.9179754510771998e-4, 9.52342486122195e-4
+    scene = Scene(can, Load(41429.27842882292, 0.01647772919452516), 0.1789453673759448)
+    trial = Trial(scene, 1.762099488321489, -10.949445992431022, tolerance=1e-3, steps=5040)
+    why = "two runs were 1.4e-4 rad apart, but 1.1e-3 rad off: steps so large do not show the method's order"
+    runs = [Try("reduced, to a tolerance of 0.001", trial, (ACCURATE,))]
+    yield "a swing through 2 rad, to a loose tolerance", why, tuple(runs)
+
+    start, step = pendulum().separatrix()[1] - 1.9179754510771998e-4, 9.52342486122195e-4
+    trial = Trial(pendulum(), start, timestep=step, tolerance=1e-8, steps=steps_of(1.8888099925141655, step))
+    why = "rounding grows a millionfold: two runs were by chance 3e-9 rad apart, and 7e-7 rad off"
+    runs = [Try("reduced, to a tolerance of 1e-08", trial, (ACCURATE, REFUSED), 1e-8)]
+    yield "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance", why, tuple(runs)
+
     can = Can(2.232597258875798, 6.697791776627394, 394.26174331092784, 1965.1939220659342)
     load = Load(144122.9903690899, 0.9475437058226647, 229790.58734976512)
-    level, beside = Scene(can, load, 1.7453292519943295e-10, "frozen"), 0.006320380984655366
-    steady, rate = Scene(Can(0.033, 0.1, 61.0, 0.0332), Load(0.1, 0.0039, 1.09e-5), 0.0), 1298.0
+    contact: dict[str, Any] = {"rolling": "contact", "integrator": DOP853}
+    start, contact["timestep"], contact["friction"] = 3.1415926530014993, 0.006320380984655366, 479.9389762024384
+    trial = Trial(Scene(can, load, 1.7453292519943295e-10, "frozen"), start, steps=4187, **contact)
+    why = "the solver of the contact took what moves the can for nothing, alike at half the timestep"
+    runs = [Try("contact, DOP853, 6 ms", trial, (ACCURATE,))]
+    yield "frozen, 6e-10 rad beside the top, in contact", why, tuple(runs)
+
+    contact |= {"timestep": 1.9e-4, "friction": 0.0147}
+    trial = Trial(frozen(math.radians(9.4), can=_METAL), -1.13, steps=90, moments=(90.0,), **contact)
+    why = "slip has to be counted over all steps, whatever samples are asked for"
+    runs = [Try("contact, DOP853, 0.19 ms", trial, (INACCURATE,))]
+    yield "a can that slips before its only sample", why, tuple(runs)
+
+    scene, rate = Scene(Can(0.033, 0.1, 61.0, 0.0332), Load(0.1, 0.0039, 1.09e-5), 0.0), 1298.0
+    trial = Trial(scene, -1.356, rate, timestep=8 * math.pi / rate, steps=12, moments=(12.0,))
+    why = "RK4 sees the same angle at every half of its step, and at half the timestep too; uneven timesteps do not"
+    yield "four whole turns in a timestep", why, (Try("reduced, RK4, 19 ms", trial, (INACCURATE,)),)
+
     can = Can(0.033, 0.099, 0.20528761908358859, 3.284134444100273e-11)
-    light = Scene(can, Load(0.1, 0.023717555437268875, 4.4992031467605796e-24), 0.1530378281024036)
-    for name, why, setting, trial, expected, within in (
-        (
-            "a swing through 2 rad, to a loose tolerance",
-            "two runs were 1.4e-4 rad apart, but 1.1e-3 rad off: steps so large do not show the method's order",
-            "reduced, to a tolerance of 0.001",
-            Trial(heavy, 1.762099488321489, -10.949445992431022, tolerance=1e-3, steps=5040), (ACCURATE,), math.inf,
-        ),
-        (
-            "pendulum, 1.9e-4 rad inside the separatrix, to a tolerance",
-            "rounding grows a millionfold: two runs were by chance 3e-9 rad apart, and 7e-7 rad off",
-            "reduced, to a tolerance of 1e-08",
-            Trial(pendulum(), start, timestep=inside, tolerance=1e-8, steps=steps_of(1.8888099925141655, inside)),
-            (ACCURATE, REFUSED), 1e-8,
-        ),
-        (
-            "frozen, 6e-10 rad beside the top, in contact",
-            "the solver of the contact took what moves the can for nothing, alike at half the timestep",
-            "contact, DOP853, 6 ms",
-            Trial(level, 3.1415926530014993, 0.0, "contact", DOP853, beside, None, 479.9389762024384, 4187),
-            (ACCURATE,), math.inf,
-        ),
-        (
-            "a can that slips before its only sample",
-            "slip has to be counted over all steps, whatever samples are asked for",
-            "contact, DOP853, 0.19 ms",
-            Trial(frozen(math.radians(9.4), can=_METAL), -1.13, 0.0, "contact", DOP853, 1.9e-4, None, 0.0147, 90, 1,
-                  (90.0,)), (INACCURATE,), math.inf,
-        ),
-        (
-            "four whole turns in a timestep",
-            "RK4 sees the same angle at every half of its step, and at half the timestep too; uneven timesteps do not",
-            "reduced, RK4, 19 ms",
-            Trial(steady, -1.356, rate, timestep=8 * math.pi / rate, steps=12, moments=(12.0,)),
-            (INACCURATE,), math.inf,
-        ),
-        (
-            "a load without inertia in a can with next to none, to a tolerance",
-            "two runs may miss the bottom alike; the energy drifts where a step does, and bounds the tolerance too",
-            "reduced, to a tolerance of 8.8e-05",
-            Trial(light, 0.1741755317767891, 47.46025974037111, tolerance=8.8e-5, steps=13_500), (ACCURATE,), 8.8e-5,
-        ),
-    ):  # fmt: skip
-        yield name, why, (Try(setting, trial, expected, within),)
+    scene = Scene(can, Load(0.1, 0.023717555437268875, 4.4992031467605796e-24), 0.1530378281024036)
+    trial = Trial(scene, 0.1741755317767891, 47.46025974037111, tolerance=8.8e-5, steps=13_500)
+    why = "two runs may miss the bottom alike; the energy drifts where a step does, and bounds the tolerance too"
+    runs = [Try("reduced, to a tolerance of 8.8e-05", trial, (ACCURATE,), 8.8e-5)]
+    yield "a load without inertia in a can with next to none, to a tolerance", why, tuple(runs)

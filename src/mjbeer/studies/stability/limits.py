@@ -9,19 +9,14 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model import state
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, supported
-from mjbeer.output.plots import COLOURS, GREY, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.predictions import linear_stability
 from mjbeer.predictions.linear_stability import ACCURACY, ACCURATE_PERIODS, GROWTH, PERIODS, RUNGE_KUTTA
@@ -59,20 +54,20 @@ lift_dot; with contact, a thousandth of that."""
 
 def rows(quick: bool = False) -> list[Row]:
     """Return a row a scene, way of rolling and integrator; a `quick` study has a sample of them."""
-    found = []
-    for case in CASES:
-        for rolling in (way for way in ROLLINGS if supported(CASES[case].scene, way)):
-            tried: list[tuple[Integrator, bool]] = [(name, True) for name in (*INTEGRATORS, DOP853)]
-            if rolling == "contact":
-                tried.append(("RK4", False))
-            for integrator, settled in tried:
-                if quick and not (settled and integrator in ("Euler", "RK4", DOP853) and (case, rolling) in _SAMPLE):
-                    continue
-                name = f"{case}, {rolling}, {integrator}" + ("" if settled else ", not settled")
-                reason = "bisection to 0.4 %, and an instability has to grow before it is seen"
-                measured = partial(measure, case, rolling, integrator, settled)
-                found.append(Row(GROUP, name, measured, bound=AGREEMENT, unit="relative", reason=reason))
-    return found
+    methods: list[tuple[Integrator, bool]] = [*((name, True) for name in (*INTEGRATORS, DOP853)), ("RK4", False)]
+    tried = [
+        (case, rolling, integrator, settled)
+        for case in CASES
+        for rolling in ROLLINGS
+        for integrator, settled in methods
+        if supported(CASES[case].scene, rolling) and (settled or rolling == "contact")
+    ]
+    if quick:
+        tried = [of for of in tried if of[:2] in _SAMPLE and of[2] in ("Euler", "RK4", DOP853) and of[3]]
+    reason = "bisection to 0.4 %, and an instability has to grow before it is seen"
+    row = partial(Row, GROUP, bound=AGREEMENT, unit="relative", reason=reason)
+    names = (", ".join(way) + ("" if settled else ", not settled") for *way, settled in tried)
+    return [row(name, partial(measure, *of)) for name, of in zip(names, tried, strict=True)]
 
 
 def measure(case: str, rolling: Rolling, integrator: Integrator, settled: bool = True) -> dict[str, Any]:
@@ -206,41 +201,3 @@ def table(results: Sequence[Result]) -> Table:
         lines.append((result.name, stable, accurate, lost if of.get("lost_a_stage") else PASSED[result.passed]))
     columns = ("swing", "stable to ωh (over theory)", "accurate to ωh (over theory)", "verdict")
     return Table("Largest timesteps of a small swing", columns, lines)
-
-
-def draw(results: Sequence[Result], path: Path) -> None:
-    """Draw the limits over the integrators, to `path` with .svg and with .png appended.
-
-    Raises:
-      OutputError: if a file cannot be written.
-    """
-    limits = [result.values for result in results]
-    names = [name for name in (*INTEGRATORS, DOP853) if any(of["integrator"] == name for of in limits)]
-    cases = [case for case in CASES if any(of["case"] == case for of in limits)]
-    markers, colours = dict(zip(ROLLINGS, "os^", strict=True)), dict(zip(CASES, COLOURS, strict=False))
-    title = "How long may a timestep be? Limits of small swings, and linear theory"
-    subtitle = "reduced: rolling is built into the coordinates; equality: a constraint of two joints; contact: friction"
-    with chart(path, width=10, height=6.5, title=title, subtitle=subtitle) as [axes]:
-        for place, name in enumerate(names):
-            for limit in (linear_stability.stable_limit(name), linear_stability.accurate_limit(name)):
-                axes.plot([place - 0.45, place + 0.45], [limit] * 2, color="black", linewidth=1.2, zorder=1)
-        for of in limits:
-            x = names.index(of["integrator"]) + (cases.index(of["case"]) - (len(cases) - 1) / 2) * 0.16
-            x += (ROLLINGS.index(of["rolling"]) - 1) * 0.045
-            style: dict[str, Any] = {"linestyle": "none", "color": colours[of["case"]], "markersize": 6}
-            marker = markers[of["rolling"]] if of["settled"] else "x"
-            axes.plot([x], [of["stable"]], marker=marker, **style)
-            if of["settled"]:
-                axes.plot([x], [of["accurate"]], marker=marker, markerfacecolor="white", **style)
-        style = {"linestyle": "none", "color": GREY}
-        handles: list[Artist] = [Patch(facecolor=colours[case], label=case) for case in cases]
-        handles += [Line2D([], [], marker=marker, label=name, **style) for name, marker in markers.items()]
-        handles += [
-            Line2D([], [], marker="o", label="largest stable timestep", **style),
-            Line2D([], [], marker="o", markerfacecolor="white", label="largest accurate timestep (1 %)", **style),
-            Line2D([], [], marker="x", label="stable, contact not settled", **style),
-            Line2D([], [], color="black", label="linear theory of the scene"),
-        ]
-        axes.set_xticks(range(len(names)), names)
-        axes.set(yscale="log", xlabel="integrator", ylabel="frequency of the swing × timestep, ωh", ylim=(1e-2, 12))
-        name_below([axes], 4, handles)

@@ -13,7 +13,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
-from mjbeer.studies.stability.trial import Trial
+from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
@@ -46,19 +46,14 @@ class Pick:
         return 10 ** self.between(math.log10(low), math.log10(high))
 
     def one(self, *options: T) -> T:
-        """Return one of the options; all are equally likely."""
-        return options[int(self._generator.integers(len(options)))]
-
-    def of(self, options: Sequence[T]) -> T:
-        """Return one of the options; a single one takes no choice."""
-        return self.one(*options) if len(options) > 1 else options[0]
+        """Return one of the options; all are equally likely, and a single one takes no choice."""
+        return options[int(self._generator.integers(len(options)))] if len(options) > 1 else options[0]
 
     def sign(self) -> int:
         """Return 1 or -1."""
         return self.one(1, -1)
 
     def chance(self, probability: float) -> bool:
-        """Return True with a probability."""
         return bool(self._generator.random() < probability)
 
 
@@ -98,10 +93,8 @@ def _fills(pick: Pick) -> Scene:
 
 def _steep(pick: Pick) -> Scene:
     """Return a scene on a steep incline, to either side."""
-    scene = _ordinary(pick)
-    return replace(
-        scene, incline=pick.sign() * math.radians(pick.one(pick.between(30, 89.9), 90 - pick.decades(1e-6, 1)))
-    )
+    scene, side = _ordinary(pick), pick.sign()
+    return replace(scene, incline=side * math.radians(pick.one(pick.between(30, 89.9), 90 - pick.decades(1e-6, 1))))
 
 
 def _gravity(pick: Pick) -> Scene:
@@ -143,16 +136,11 @@ def _damped(pick: Pick, scene: Scene) -> Scene:
     The unit of damping is M a^2 over the time of a fall through the radius, and that of drag is M/a; the torque may
     grow with several powers of the slip rate.
     """
-    radius, mass = scene.can.radius, scene.effective_mass
-    clock = slow(scene)
+    radius, mass, clock = scene.can.radius, scene.effective_mass, slow(scene)
     linear = mass * radius**2 / clock * pick.decades(1e-6, 1e6)
-    law = pick.one(
-        linear,
-        linear,
-        Damping(linear, linear * clock * pick.decades(1e-6, 1e2)),
-        Damping(pick.one(0.0, linear), *(linear * clock**power * pick.decades(1e-6, 1e2) for power in (1, 2))),
-        0.0,
-    )
+    squared = Damping(linear, linear * clock * pick.decades(1e-6, 1e2))
+    cubed = Damping(pick.one(0.0, linear), *(linear * clock**power * pick.decades(1e-6, 1e2) for power in (1, 2)))
+    law = pick.one(linear, linear, squared, cubed, 0.0)
     drag = mass / radius * pick.decades(1e-6, 1e2)
     return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
 
@@ -194,43 +182,39 @@ def _beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
     return phi0, pick.sign() * rate * (1 + beside)
 
 
-_PACES: dict[str, Callable[[Pick, Scene, float], tuple[float, float]]] = {
-    # a thousandth to a third of the time of a fall through the radius
-    "usual": lambda pick, scene, _: (slow(scene) * pick.decades(1e-3, 0.3), pick.decades(20, 3000)),
-    # ten to a thousand timesteps a small swing or a turn, which may be very different from that
-    "swinging": lambda pick, scene, fast: (
-        2 * math.pi / max(fast, 1e-3 / slow(scene)) / pick.decades(10, 1000), pick.decades(20, 3000)
-    ),
-    # far too small timesteps, and far too large ones
-    "extreme": lambda pick, scene, spin: (
-        slow(scene) / max(1.0, spin * slow(scene)) * pick.decades(1e-4, 3), pick.decades(10, 1e4)
-    ),
-    # turns by a hundredth of a radian to a hundred radians in a step
-    "turning": lambda pick, scene, spin: (
-        pick.decades(1e-2, 1e2) / max(spin, 1 / slow(scene)), pick.decades(20, 3000)
-    ),
-    # a whole number of turns, or nearly, in a step or a part of one: RK4 evaluates forces at half steps, and the run at
-    # half the timestep at quarters of them, all of which then see the same angle
-    "resonant": lambda pick, scene, spin: (
-        2 * math.pi * (pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3))
-        * (1 + pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))) / max(spin, 1 / slow(scene)),
-        pick.one(pick.decades(2, 30), pick.decades(2, 500)),
-    ),
-    # one step to five, long or short
-    "few": lambda pick, scene, _: (slow(scene) * pick.decades(1e-6, 3), pick.between(1, 6)),
-    # 20 to 200 s in thousands of steps
-    "long": lambda pick, *_: (
-        pick.decades(20, 200) / (steps := pick.decades(2e3, 1.5e4)), steps
-    ),
-}  # fmt: skip
-"""How a timestep [s] and a number of steps are chosen for a scene and the rate of its start [rad/s], by name; for
-"swinging" that of its swing, if that is faster."""
+_PACES = ("usual", "swinging", "extreme", "turning", "resonant", "few", "long")
+"""The ways to choose a timestep and a number of steps; those of `_paced`."""
+
+
+def _paced(pick: Pick, name: str, clock: float, spin: float, frequency: float) -> tuple[float, float]:
+    """Return a timestep [s] and a number of steps, of a scene with a `clock` [s] and the rates [1/s] of its motion."""
+    turn = max(spin, 1 / clock)
+    if name == "usual":  # a thousandth to a third of the time of a fall through the radius
+        timestep = clock * pick.decades(1e-3, 0.3)
+    elif name == "swinging":  # ten to a thousand timesteps a small swing or a turn, which may be very different
+        timestep = 2 * math.pi / max(frequency, spin, 1e-3 / clock) / pick.decades(10, 1000)
+    elif name == "extreme":  # far too small timesteps, and far too large ones
+        return clock / max(1.0, spin * clock) * pick.decades(1e-4, 3), pick.decades(10, 1e4)
+    elif name == "turning":  # turns by a hundredth of a radian to a hundred radians in a step
+        timestep = pick.decades(1e-2, 1e2) / turn
+    elif name == "resonant":
+        # A whole number of turns, or nearly, in a step or a part of one: RK4 evaluates forces at half steps, and the
+        # run at half the timestep at quarters of them, all of which then see the same angle.
+        whole = 2 * math.pi * (pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3))
+        timestep = whole * (1 + pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))) / turn
+        return timestep, pick.one(pick.decades(2, 30), pick.decades(2, 500))
+    elif name == "few":  # one step to five, long or short
+        return clock * pick.decades(1e-6, 3), pick.between(1, 6)
+    else:  # 20 to 200 s in thousands of steps
+        duration, steps = pick.decades(20, 200), pick.decades(2e3, 1.5e4)
+        return duration / steps, steps
+    return timestep, pick.decades(20, 3000)
 
 
 def _pace(pick: Pick, scene: Scene, start: Start, name: str) -> tuple[float, int]:
     """Return timestep [s] and number of steps at one of the paces, or less: as much as theory can follow."""
     spin, frequency, form = abs(start[1]), _frequency(scene, start), scene.oscillator
-    timestep, steps = _PACES[name](pick, scene, max(frequency, spin) if name == "swinging" else spin)
+    timestep, steps = _paced(pick, name, slow(scene), spin, frequency)
     share = _DAMPED if scene.dissipates else 1.0
     push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
     if scene.dissipates:  # the load may turn with the can
@@ -313,16 +297,16 @@ class Region(NamedTuple):
         Raises:
           ParameterError: if the choices make a scene that cannot be, or a start or timestep outside the domain.
         """
-        scene = pick.of(self.scenes)(pick)
+        scene = pick.one(*self.scenes)(pick)
         if self.damped:
             scene = _damped(pick, scene)
-        start = pick.of(self.starts)(pick, scene)
-        timestep, steps = _pace(pick, scene, start, pick.of(self.paces))
+        start = pick.one(*self.starts)(pick, scene)
+        timestep, steps = _pace(pick, scene, start, pick.one(*self.paces))
         setting = self.setting(pick, scene)
         anywhere = setting["tolerance"] is not None or setting["integrator"] == DOP853
         if setting["tolerance"] is not None:
             setting["integrator"] = None
-        setting |= _samples(pick, steps, anywhere, pick.of(self.samples))
+        setting |= _samples(pick, steps, anywhere, pick.one(*self.samples))
         require.start(*start)
         require.within("timestep", timestep, *require.TIMESTEP)
         return Trial(scene, *start, timestep=timestep, steps=steps, **setting)
@@ -331,7 +315,7 @@ class Region(NamedTuple):
 _ANY_SCENE = (_ordinary, _steady, _anything, _ratios, _fills, _steep, _gravity)
 _ANY_START = (_by_hand, _by_hand, _spun, _far, _beside_the_separatrix)
 _MOSTLY_ORDINARY, _MOSTLY_STEADY = (_ordinary, _ordinary, _anything), (_steady, _steady, _ordinary)
-_EITHER_PACE, _ANY_PACE = ("usual", "swinging"), tuple(_PACES)
+_EITHER_PACE, _ANY_PACE = ("usual", "swinging"), _PACES
 _ANY_SAMPLES = ("regular", "sparse", "late")
 REGIONS = (
     Region("ordinary"),

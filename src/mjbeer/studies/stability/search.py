@@ -1,10 +1,9 @@
 """The search for runs that are wrong and do not say so: known cases and random ones, all before the same judge."""
 
-import csv
 import dataclasses
-import io
+import math
 import warnings
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 from functools import partial
 from typing import Any
@@ -12,7 +11,7 @@ from typing import Any
 from mjbeer.model.setting import ROLLINGS
 from mjbeer.output.terminal import Table
 from mjbeer.studies.rows import Result, Row
-from mjbeer.studies.stability.judge import ACCURATE, ALARMS, FALSE, NEVER, REFUSED, VERDICTS, alarm, judge
+from mjbeer.studies.stability.judge import ALARMS, FALSE, NEVER, REFUSED, VERDICTS, alarm, judge
 from mjbeer.studies.stability.known_cases import Case, cases
 from mjbeer.studies.stability.random_trials import REGIONS, random_trial
 
@@ -32,18 +31,18 @@ _ROUNDING = 1e-9
 """Errors below this [rad] do not count as overconfident: a second run at half the timestep cannot see rounding."""
 _COLUMNS = {**VERDICTS, **ALARMS, _SMALL_FALSE: f"below {SMALL:g}", _ALONE: "one theory"}
 """What is counted, and the heading of its column. From the false alarms on, the runs are among the accurate ones."""
-_CSV = ("kind", "case", "setting", "verdict", "error", "admitted", "says", "expected", "as_expected")
 
 
 def rows(extent: str, number: int = 0) -> list[Row]:
     """Return all known cases and the random ones from a `number` on; but for a "long" study, cases have fewer tries."""
-    firsts = range(number, number + RUNS[extent], SIZE)
-    return [
-        *(Row(KNOWN, f"{each.kind}: {each.name}", partial(try_case, each, extent != "long"), bound=0,
-              unit="runs", reason="each ends as theory allows") for each in cases()),
-        *(Row(RANDOM, f"random runs {first} to {first + SIZE - 1}", partial(batch, first), bound=0,
-              unit="runs", reason="none is wrong and silent, and theories agree") for first in firsts),
-    ]  # fmt: skip
+    found = []
+    for each in cases():
+        measured, reason = partial(try_case, each, extent != "long"), "each ends as theory allows"
+        found.append(Row(KNOWN, f"{each.kind}: {each.name}", measured, bound=0, unit="runs", reason=reason))
+    for first in range(number, number + RUNS[extent], SIZE):
+        name, reason = f"random runs {first} to {first + SIZE - 1}", "none is wrong and silent, and theories agree"
+        found.append(Row(RANDOM, name, partial(batch, first), bound=0, unit="runs", reason=reason))
+    return found
 
 
 def try_case(case: Case, quick: bool = False) -> dict[str, Any]:
@@ -83,7 +82,7 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
             alarms.update(outcome.alarms)
         if outcome.verdict == REFUSED:
             refusals.update(outcome.alarms)
-        about = {"number": number, "region": region, **dataclasses.asdict(outcome), "call": str(trial)}
+        about = {"number": number, "region": region, **dataclasses.asdict(outcome), "call": f"{trial!r}.simulate()"}
         if outcome.verdict in NEVER:
             kept["never"].append(about)
         elif not outcome.says and (outcome.error or 0) > (outcome.admitted or 0) + _ROUNDING:
@@ -96,15 +95,12 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
 
 def tables(results: Sequence[Result]) -> list[Table]:
     """Return the tables of a search: how runs ended, the random ones by region and message, and what must not be."""
-    known, batches = ([each for each in results if each.group == group] for group in (KNOWN, RANDOM))
-    kinds: dict[str, Counter[str]] = {}
-    for result in known:
-        counts = kinds.setdefault(result.name.partition(":")[0], Counter())
-        counts.update(run["verdict"] for run in result.values["runs"])
-    regions: dict[str, Counter[str]] = {}
-    for result in batches:
-        for name, counts in result.values["regions"].items():
-            regions.setdefault(name, Counter()).update(counts)
+    known, batches = ([of for of in results if of.group == group] for group in (KNOWN, RANDOM))
+    kinds, regions = defaultdict[str, Counter[str]](Counter), defaultdict[str, Counter[str]](Counter)
+    for case in known:
+        kinds[case.name.partition(":")[0]].update(run["verdict"] for run in case.values["runs"])
+    for name, counts in (pair for of in batches for pair in of.values["regions"].items()):
+        regions[name].update(counts)
     if regions:
         kinds["random"] = regions["all"] = sum(regions.values(), Counter[str]())
     ended = [(kind, *(str(count[verdict]) for verdict in VERDICTS)) for kind, count in kinds.items()]
@@ -113,16 +109,13 @@ def tables(results: Sequence[Result]) -> list[Table]:
         for name, counts in regions.items()
     ]
 
-    def kept(which: str) -> list[dict[str, Any]]:
-        return [run for result in batches for run in result.values[which]]
-
     def messages(kind: str) -> list[tuple[str, ...]]:
-        total = sum((Counter[str](result.values[kind]) for result in batches), Counter[str]())
+        total = sum((Counter[str](of.values[kind]) for of in batches), Counter[str]())
         return [(message, str(count)) for message, count in total.most_common()]
 
-    def listed(which: str) -> list[tuple[str, ...]]:
-        return [(run["verdict"], run["region"], str(run["number"]), f"{run['error'] or float('nan'):.1e}", run["call"])
-                for run in kept(which)]  # fmt: skip
+    def listed(kind: str) -> list[tuple[str, ...]]:
+        runs = [run | {"size": f"{run['error'] or math.nan:.1e}"} for of in batches for run in of.values[kind]]
+        return [tuple(str(run[name]) for name in ("verdict", "region", "number", "size", "call")) for run in runs]
 
     never = ("verdict", "region", "number", "error [rad]", "call")
     found = [
@@ -141,21 +134,9 @@ def table_of_cases(results: Sequence[Result]) -> Table:
     rows = []
     for result in results:
         ways = ([run for run in result.values["runs"] if run["setting"].startswith(way)] for way in ROLLINGS)
-        rows.append((result.name, *(_summary(runs) for runs in ways), result.values["why"]))
+        rows.append((result.name, *map(_summary, ways), result.values["why"]))
     title, columns = "Known cases: runs, and the largest error [rad]", ("case", *ROLLINGS, "why it is one")
     return Table(title, columns, rows, left=(0, 4))
-
-
-def to_csv(results: Sequence[Result]) -> str:
-    """Return every run of the known cases as CSV."""
-    text = io.StringIO()
-    writer = csv.DictWriter(text, _CSV, extrasaction="ignore", lineterminator="\n")
-    writer.writeheader()
-    for result in results:
-        kind, _, case = result.name.partition(": ")
-        for run in result.values["runs"]:
-            writer.writerow({**run, "kind": kind, "case": case, "expected": " or ".join(run["expected"])})
-    return text.getvalue()
 
 
 def _summary(runs: list[dict[str, Any]]) -> str:
@@ -166,6 +147,6 @@ def _summary(runs: list[dict[str, Any]]) -> str:
         if matching:
             errors = [run["error"] for run in matching if run["error"] is not None]
             worst = f" ({max(errors):.0e})" if errors else ""
-            parts.append(f"{len(matching)} {verdict if verdict != ACCURATE else 'accurate'}{worst}")
+            parts.append(f"{len(matching)} {verdict.removeprefix('stable and ')}{worst}")
     unexpected = sum(not run["as_expected"] for run in runs)
     return ", ".join(parts) + (f"; {unexpected} UNEXPECTED" if unexpected else "")

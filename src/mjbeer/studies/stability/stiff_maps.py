@@ -9,12 +9,16 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling
-from mjbeer.output.plots import COLOURS
+from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
-from mjbeer.studies.maps import Map, draw
 from mjbeer.studies.rows import PASSED, Result, Row, Study
 from mjbeer.studies.stability.limits import bisected
 from mjbeer.studies.stability.stiff_runs import EXPLODED, SILENT, DampedRuns, Plan, ShortRuns
@@ -27,16 +31,15 @@ CELLS, QUICK_CELLS = (20, 20), (8, 8)
 """Number of timesteps in a map, and of stiffnesses; the second is for quick studies."""
 DAMPED_CELLS, QUICK_DAMPED_CELLS = (13, 16), (4, 6)
 """Number of timesteps and of dampings."""
-SPANS = {
-    "equality": ((1e-4, 1.0), (1e-4, 1e-1)),
-    "direct": ((1e-5, 1.0), (1e2, 1e10)),
-    "contact": ((1e-4, 1e-1), (1e-4, 1e-1)),
-    "gravity": ((1e-3, 10.0), (1e-3, 1e3)),
-    "spring": ((1e-3, 10.0), (1e-3, 1e3)),
-    "damping": ((2.5e-4, 1.6e-2), (1e-4, 1e1)),
+AXES = {
+    "equality": ((1e-4, 1.0), (1e-4, 1e-1), "time constant of solref [s]"),
+    "direct": ((1e-5, 1.0), (1e2, 1e10), "stiffness K of solref [1/s²]"),
+    "contact": ((1e-4, 1e-1), (1e-4, 1e-1), "time constant of solref [s]"),
+    "gravity": ((1e-3, 10.0), (1e-3, 1e3), "gravity [m/s²]"),
+    "spring": ((1e-3, 10.0), (1e-3, 1e3), "spring, as gravity [m/s²]"),
+    "damping": ((2.5e-4, 1.6e-2), (1e-4, 1e1), "damping [N m s]"),
 }
-"""Ranges of a map, by family: timesteps [s], and time constants [s], stiffnesses [1/s^2], gravities [m/s^2] or dampings
-[N m s]; those of real liquids are below 0.02."""
+"""The timesteps [s] of a map by family, its values, and what these are; dampings of real liquids are below 0.02."""
 AGREEMENT = {STIFF: 0.05, DAMPED: 0.04, "contact": 0.12}
 """Largest relative difference at which a measured border agrees with the predicted one. The largest of the damped maps
 is 0.033: theory takes the load's angle as constant in parts of a run, in which the fast rate changes by some per cent.
@@ -59,104 +62,92 @@ PLANS = (
     *(Plan("spring", name) for name in _MOSTLY),
 )
 """Maps of stiffness of a full study."""
-_QUICK = (
-    "equality, Euler", "equality, RK4", "equality, discrete", "equality, implicitfast, refsafe",
-    "equality, Euler, refsafe, damping ratio 0.1", "equality, Euler, slide first", "direct, Euler", "contact, Euler",
-    "contact, RK4", "gravity, Euler", "gravity, RK4", "spring, discrete",
-)  # fmt: skip
+_QUICK = {
+    STIFF: "equality, Euler; equality, RK4; equality, discrete; equality, implicitfast, refsafe; direct, Euler; "
+    "equality, Euler, refsafe, damping ratio 0.1; equality, Euler, slide first; contact, Euler; contact, RK4; "
+    "gravity, Euler; gravity, RK4; spring, discrete",
+    DAMPED: "reduced, Euler; reduced, RK4; equality, implicit; equality, discrete; contact, RK4",
+}
+"""Names of the maps of a quick study."""
 DAMPED_PLANS: tuple[tuple[Rolling, Integrator], ...] = tuple((way, name) for way in ROLLINGS for name in _ALL)
 """Ways of rolling and integrators of the maps of damping of a full study."""
-_QUICK_DAMPED = (
-    ("reduced", "Euler"), ("reduced", "RK4"), ("equality", "implicit"), ("equality", "discrete"), ("contact", "RK4"),
-)  # fmt: skip
 SHADES = {"unstable": "#E8A27C", "stable, error above 1 %": "#BFDFF2", "stable and accurate": COLOURS[0]}
 """The outcomes of a map of stiffness, and their colours, which differ in hue and in brightness."""
 DAMPED_SHADES = {
-    "exploded": "#E8A27C", "inaccurate, and says so": "#F6E3B4", "accurate, but warns": "#BFDFF2",
-    "accurate and trusted": COLOURS[0], "wrong and silent": "#000000",
-}  # fmt: skip
-VALUES = {
-    "equality": "time constant of solref [s]",
-    "contact": "time constant of solref [s]",
-    "direct": "stiffness K of solref [1/s²]",
-    "gravity": "gravity [m/s²]",
-    "spring": "spring, as gravity [m/s²]",
-    "damping": "damping [N m s]",
+    "exploded": "#E8A27C",
+    "inaccurate, and says so": "#F6E3B4",
+    "accurate, but warns": "#BFDFF2",
+    "accurate and trusted": COLOURS[0],
+    "wrong and silent": "#000000",
 }
-"""Labels of the vertical axis, by family."""
+_THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
+"""The look of a border that theory predicts."""
+_MEASURED: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3.5, "color": "black"}
+_MEASURED |= {"markerfacecolor": "white", "markeredgewidth": 0.7}
 
 
 class Figure(NamedTuple):
-    """A figure that shows several maps side by side."""
+    """A figure that shows several maps side by side; its files have its name without an ending."""
 
-    name: str
-    """Name of its files, without an ending."""
     columns: int
     title: str
     caption: str
-    holds: Callable[[dict[str, Any]], bool]
-    """Returns whether a map belongs to the figure."""
 
 
-def _usual(of: dict[str, Any]) -> bool:
-    """Return whether a map is of an equality with critical damping and its exact diagonal."""
-    return of["family"] == "equality" and of["dampratio"] == 1 and of["written"] == "exact"
-
-
-FIGURES = (
-    Figure(
-        "stability-solref", 3, "How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
+FIGURES = {
+    "stability-solref": Figure(
+        3,
+        "How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
         "A joint equality with refsafe off: timestep against the time constant of solref.",
-        lambda of: _usual(of) and not of["refsafe"],
     ),
-    Figure(
-        "stability-refsafe", 3, "With refsafe, short time constants are replaced without a word: stable, but softer",
+    "stability-refsafe": Figure(
+        3,
+        "With refsafe, short time constants are replaced without a word: stable, but softer",
         "A joint equality with refsafe on: timestep against the time constant of solref.",
-        lambda of: _usual(of) and of["refsafe"],
     ),
-    Figure(
-        "stability-exceptions", 2, "A light damper explodes in spite of refsafe; a mistaken inertia moves the limit",
+    "stability-exceptions": Figure(
+        2,
+        "A light damper explodes in spite of refsafe; a mistaken inertia moves the limit",
         "An equality with a damping ratio of 0.1, or with MuJoCo's default diagonal, slide or hinge first.",
-        lambda of: of["family"] == "equality" and not _usual(of),
     ),
-    Figure(
-        "stability-direct", 3, "A constraint with a direct (negative) solref, which refsafe does not touch",
-        "Timestep against stiffness K of solref = (−K, −2ζ√K).", lambda of: of["family"] == "direct",
+    "stability-direct": Figure(
+        3,
+        "A constraint with a direct (negative) solref, which refsafe does not touch",
+        "Timestep against stiffness K of solref = (−K, −2ζ√K).",
     ),
-    Figure(
-        "stability-contact", 4, "A can that lies on the ground: its friction halves the timestep that RK4 bears",
-        "Contact with friction: timestep against the time constant of solref.", lambda of: of["family"] == "contact",
+    "stability-contact": Figure(
+        4,
+        "A can that lies on the ground: its friction halves the timestep that RK4 bears",
+        "Contact with friction: timestep against the time constant of solref.",
     ),
-    Figure(
-        "stability-gravity", 3, "A can that swings in ever stronger gravity, which no integrator takes implicitly",
-        "No constraint: timestep against gravity.", lambda of: of["family"] == "gravity",
+    "stability-gravity": Figure(
+        3,
+        "A can that swings in ever stronger gravity, which no integrator takes implicitly",
+        "No constraint: timestep against gravity.",
     ),
-    Figure(
-        "stability-spring", 4, 'A can that swings on a spring: only "discrete" takes it implicitly, and stays stable',
+    "stability-spring": Figure(
+        4,
+        'A can that swings on a spring: only "discrete" takes it implicitly, and stays stable',
         "No constraint: timestep against a joint's spring, by the gravity that has its frequency.",
-        lambda of: of["family"] == "spring",
     ),
-)  # fmt: skip
-DAMPED_FIGURE = Figure(
-    "stability-damping", 6, "Damping between can and load: which timestep explodes, and which is accurate",
-    "Half a can of beer, of sheet metal, let go at 1 rad; real liquids have a damping of at most 0.02 N m s.",
-    lambda of: True,
-)  # fmt: skip
+    "stability-damping": Figure(
+        6,
+        "Damping between can and load: which timestep explodes, and which is accurate",
+        "Half a can of beer, of sheet metal, let go at 1 rad; real liquids have a damping of at most 0.02 N m s.",
+    ),
+}
 
 
 def rows(quick: bool = False) -> list[Row]:
     """Return a row a map; a `quick` study has fewer and coarser ones."""
-    plans = [plan for plan in PLANS if plan.name in _QUICK] if quick else PLANS
     cells, damped_cells = (QUICK_CELLS, QUICK_DAMPED_CELLS) if quick else (CELLS, DAMPED_CELLS)
-    reason = "bisection to 1 %, and an instability has to grow before it is seen"
-    found = [
-        Row(STIFF, plan.name, partial(measure, plan, cells), "", AGREEMENT[STIFF], "relative", reason) for plan in plans
-    ]
-    for rolling, integrator in _QUICK_DAMPED if quick else DAMPED_PLANS:
-        bound, name = AGREEMENT["contact" if rolling == "contact" else DAMPED], f"{rolling}, {integrator}"
+    row = partial(Row, unit="relative", reason="bisection to 1 %, and an instability has to grow before it is seen")
+    found = [row(STIFF, plan.name, partial(measure, plan, cells), bound=AGREEMENT[STIFF]) for plan in PLANS]
+    for rolling, integrator in DAMPED_PLANS:
         measured = partial(measure_damped, rolling, integrator, damped_cells)
-        found.append(Row(DAMPED, name, measured, "", bound, "relative", reason))
-    return found
+        bound = AGREEMENT.get(rolling, AGREEMENT[DAMPED])
+        found.append(row(DAMPED, f"{rolling}, {integrator}", measured, bound=bound))
+    return [each for each in found if not quick or each.name in _QUICK[each.group].split("; ")]
 
 
 def measure(plan: Plan, cells: tuple[int, int]) -> dict[str, Any]:
@@ -183,7 +174,8 @@ def _measure(family: str, cells: tuple[int, int], make: Callable[[float, list[fl
     whose outcome is the predicted one. "boundaries" has for each value the timestep [s] from which on runs explode,
     measured and predicted, or None where none does; "error" is the largest relative difference of the two.
     """
-    timesteps, values = (np.geomspace(*span, count).tolist() for span, count in zip(SPANS[family], cells, strict=True))
+    spans = zip(AXES[family][:2], cells, strict=True)
+    timesteps, values = (np.geomspace(*span, count).tolist() for span, count in spans)
     measured, boundaries, same, worst = [], [], [], 0.0
     for value in values:
         runs = make(value, timesteps)
@@ -240,10 +232,10 @@ def to_json(study: Study, date: datetime.date) -> str:
     head = json.dumps({"command": command, "date": date.isoformat(), "machine": study.machine}, indent=1)
     parts = []
     for group in (STIFF, DAMPED):
-        kept = (
-            {"name": each.name, "agrees": each.passed, "worst": each.error, **each.values} for each in study.of(group)
-        )
-        rounded = [json.loads(json.dumps(of), parse_float=lambda digits: float(f"{float(digits):.6g}")) for of in kept]
+        kept = [
+            json.dumps({"name": of.name, "agrees": of.passed, "worst": of.error, **of.values}) for of in study.of(group)
+        ]
+        rounded = [json.loads(of, parse_float=lambda digits: float(f"{float(digits):.6g}")) for of in kept]
         parts.append(f' "{group}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]")
     return head[: head.rindex("}")].rstrip() + ",\n" + ",\n".join(parts) + "}\n"
 
@@ -270,25 +262,55 @@ def draw_all(document: dict[str, Any], folder: pathlib.Path) -> dict[str, str]:
       OutputError: if a file cannot be written.
     """
     captions = {}
-    of_groups = [(figure, document[STIFF], SHADES) for figure in FIGURES]
-    for figure, maps, shades in [*of_groups, (DAMPED_FIGURE, document[DAMPED], DAMPED_SHADES)]:
-        shown = [of for of in maps if figure.holds(of)]
-        if shown:
-            labels = "timestep h [s]", VALUES[shown[0].get("family", "damping")]
-            whole = figure is DAMPED_FIGURE
-            titles = [of["name"] if whole else of["name"].partition(", ")[2] for of in shown]
-            panels = [_panel(title, of) for title, of in zip(titles, shown, strict=True)]
-            words = {"title": figure.title, "subtitle": figure.caption}
-            draw(folder / figure.name, panels, figure.columns, shades, labels, **words)
-            captions[figure.name] = figure.caption
+    for name, figure in FIGURES.items():
+        if shown := [of for of in (*document[STIFF], *document[DAMPED]) if _figure(of) == name]:
+            draw(folder / name, figure, shown)
+            captions[name] = figure.caption
     return captions
 
 
-def _panel(title: str, of: dict[str, Any]) -> Map:
-    """Return a map as `draw` takes it, with the points of its borders that are inside."""
-    times, cells = of["timesteps"], [[int(cell) for cell in row] for row in of["measured"]]
-    measured, predicted = (
-        [(edge[place], value) for value, edge in zip(of["values"], of["boundaries"], strict=True)
-         if edge[place] and times[0] < edge[place] < times[-1]] for place in (0, 1)
-    )  # fmt: skip
-    return Map(title, times, of["values"], cells, predicted, measured)
+def _figure(of: dict[str, Any]) -> str:
+    """Return the name of the figure that a map belongs to."""
+    family = of.get("family", "damping")
+    if family == "equality" and of["dampratio"] == 1 and of["written"] == "exact":
+        return "stability-refsafe" if of["refsafe"] else "stability-solref"
+    return f"stability-{'exceptions' if family == 'equality' else family}"
+
+
+def draw(path: pathlib.Path, figure: Figure, maps: Sequence[dict[str, Any]]) -> None:
+    """Write maps of one family side by side, to `path` with .svg and with .png appended."""
+    family = maps[0].get("family", "damping")
+    shades = SHADES if "family" in maps[0] else DAMPED_SHADES
+    columns = min(figure.columns, len(maps))
+    rows = math.ceil(len(maps) / columns)
+    wide = 2.3 if columns > 4 else 3.5
+    size, height = max(wide * columns + 0.5, 9.5), 0.9 * wide * rows + 1.7
+    with chart(path, rows, columns, size, height, figure.title, figure.caption) as panels:
+        for axes in panels[len(maps) :]:
+            axes.set_visible(False)
+        for place, (axes, of) in enumerate(zip(panels, maps, strict=False)):
+            _colour(axes, of, list(shades.values()))
+            for border, style in ((1, _THEORY), (0, _MEASURED)):
+                edges = [(edges[border], value) for value, edges in zip(of["values"], of["boundaries"], strict=True)]
+                inside = [edge for edge in edges if edge[0] and of["timesteps"][0] < edge[0] < of["timesteps"][-1]]
+                axes.plot(*zip(*inside, strict=True) if inside else ([], []), **style)
+            axes.set_title(of["name"].removeprefix(f"{family}, "), fontsize=10)
+            axes.set_xlabel("timestep h [s]" if place + columns >= len(maps) else "")
+            axes.set_ylabel(AXES[family][2] if place % columns == 0 else "")
+        handles: list[Artist] = [Patch(facecolor=shade, label=name) for name, shade in shades.items()]
+        handles += [Line2D([], [], label="limit of stability, theory", **_THEORY)]
+        handles += [Line2D([], [], label="the same, measured", **_MEASURED)]
+        name_below(panels, 5 if columns > 2 else 3, handles)
+
+
+def _colour(axes: Axes, of: dict[str, Any], shades: Sequence[str]) -> None:
+    """Draw the cells of a map, whose edges are half-way between its values on the logarithmic axes."""
+    edges = []
+    for values in (np.log(of["timesteps"]), np.log(of["values"])):
+        half = (values[1] - values[0]) / 2
+        edges.append(np.exp(np.append(values - half, values[-1] + half)))
+    style: dict[str, Any] = {"cmap": ListedColormap(shades), "vmin": 0, "vmax": len(shades) - 1, "rasterized": True}
+    axes.pcolormesh(*edges, [[int(cell) for cell in row] for row in of["measured"]], **style)
+    axes.set(xscale="log", yscale="log")
+    axes.minorticks_off()
+    axes.grid(visible=False)

@@ -80,10 +80,10 @@ class Plan:
     @property
     def name(self) -> str:
         """Name that is unique among the plans."""
-        parts = [self.family, self.integrator]
-        parts += ["refsafe"] if self.refsafe else []
-        parts += [f"damping ratio {self.dampratio:g}"] if self.dampratio != 1 else []
-        return ", ".join([*parts, *([f"{self.written} first"] if self.written != "exact" else [])])
+        parts = [self.family, self.integrator, "refsafe" if self.refsafe else ""]
+        parts += [f"damping ratio {self.dampratio:g}" if self.dampratio != 1 else ""]
+        parts += [f"{self.written} first" if self.written != "exact" else ""]
+        return ", ".join(filter(None, parts))
 
 
 class ShortRuns:

@@ -78,24 +78,18 @@ def to_json(study: Study) -> str:
 
 
 def write(study: Study, folder: pathlib.Path) -> None:
-    """Write runs.csv, maps.json, the plots, and at the end summary.md into a folder.
+    """Write maps.json, the plots of the maps, and at the end summary.md into a folder.
 
     Raises:
       OutputError: if a file cannot be written.
     """
-    files.write(folder / "runs.csv", search.to_csv(study.of(search.KNOWN)))
     maps = stiff_maps.to_json(study, datetime.date.today())
     files.write(folder / "maps.json", maps)
-    captions = {}
-    if study.of(limits.GROUP):
-        limits.draw(study.of(limits.GROUP), folder / "stability-limits")
-        captions["stability-limits"] = "Largest timesteps of small swings, as ωh, against linear theory."
-    captions |= stiff_maps.draw_all(json.loads(maps), folder)
     count = len(study.failed)
     verdict = f"**{count} did not come out as theory expects.**" if count else "All came out as theory expects."
     first, *others = tables(study)
     lines = ["# mjbeer: stability", "", verdict, _READ, first.markdown()]
-    for name, caption in captions.items():
+    for name, caption in stiff_maps.draw_all(json.loads(maps), folder).items():
         lines += [f"![{name}]({name}.svg)", "", caption, ""]
     known = search.table_of_cases(study.of(search.KNOWN))
     lines += [table.markdown() for table in (*others, known) if table.rows]

@@ -22,11 +22,10 @@ SCENE = "scene"
 """The one dimension of a sweep over a list of scenes."""
 _HEADER = "sweep.json"
 """What a NumPy file has beside the arrays, whose names there all end in .npy."""
-_UNITS = {name: quantity.unit for name, quantity in NAMED.items()} | {
-    "incline": "rad", "phi0": "rad", "phi_dot0": "rad/s", "density": "kg/m^3", "gravity": "m/s^2", "damping": "N m s",
-    "drag": "kg/m", "viscosity": "m^2/s", "radius": "m", "length": "m", "offset": "m", "wheel_mass": "kg",
-    "load_mass": "kg", "hoop_mass": "kg",
-}  # fmt: skip
+_UNITS = {name: quantity.unit for name, quantity in NAMED.items()}
+_UNITS |= {"incline": "rad", "phi0": "rad", "phi_dot0": "rad/s", "density": "kg/m^3", "gravity": "m/s^2"}
+_UNITS |= {"damping": "N m s", "drag": "kg/m", "viscosity": "m^2/s", "radius": "m", "length": "m", "offset": "m"}
+_UNITS |= {"wheel_mass": "kg", "load_mass": "kg", "hoop_mass": "kg"}
 """Units of quantities, and of the parameters of mjbeer's own scenes; a fill has none."""
 
 

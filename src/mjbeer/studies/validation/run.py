@@ -13,14 +13,10 @@ from mjbeer import paper
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.row import CONFIRMED, CORRECTED, LIMIT, Finding
 from mjbeer.studies.rows import FAILED, PASSED, Result, Row, table, told
-from mjbeer.studies.validation import damped, models, motions
+from mjbeer.studies.validation import damped, motions
 
 _WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
 """The verdicts of the audit, short enough for a terminal."""
-_COLUMNS = (
-    "part", "equation", "quantity", "by", "error", "at most", "unit", "error of what is printed", "must be", "row",
-    "what dominates the error",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -48,42 +44,19 @@ class Validation:
     @property
     def failures(self) -> list[str]:
         """A line for each check and each row of the audit that failed."""
-        audit = [
-            f"{finding.equation} {finding.quantity} ({finding.witness}): error {_judged(finding):.1e}, at most "
-            f"{finding.bound:.1e}"
-            + ("" if finding.misses_by is None
-               else f"; as printed {finding.printed:.2g}, expected {finding.misses_by:.2g}")
-            for finding in self.findings if not finding.passed
-        ]  # fmt: skip
-        return [*(told(result) for result in self.results if not result.passed), *audit]
+        checks = [told(result) for result in self.results if not result.passed]
+        return checks + [_failed(finding) for finding in self.findings if not finding.passed]
 
     def tables(self, document: bool = False) -> list[Table]:
         """Return the tables of the checks and of the audit, for a terminal or a document."""
         return [table("Validation against exact theory", self.results, document), audit(self.findings, document)]
 
-    def table(self) -> Table:
-        """Return one table for programs, with all digits: a row for each check and each row of the audit."""
-        checks = [
-            ("check", "", result.name, result.by, repr(result.error), repr(result.bound), result.unit, "", "",
-             PASSED[result.passed], result.reason)
-            for result in self.results
-        ]  # fmt: skip
-        findings = [
-            ("audit", finding.equation, finding.quantity, finding.witness, repr(_judged(finding)),
-             repr(finding.bound), "relative",
-             *(("", "") if finding.misses_by is None else (repr(finding.printed), repr(finding.misses_by))),
-             PASSED[finding.passed], finding.reason)
-            for finding in self.findings
-        ]  # fmt: skip
-        return Table("Validation", _COLUMNS, [*checks, *findings])
-
     def json(self) -> str:
         """Return the results and the findings as JSON, with the versions of the packages that were used."""
         versions = {name: version(name) for name in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
-        names = {"name": "quantity", "by": "by", "error": "error", "bound": "bound", "unit": "unit", "reason": "reason"}
+        about = ("by", "error", "bound", "unit", "reason", "passed")
         checks = [
-            {called: getattr(result, name) for name, called in names.items()} | {"passed": result.passed}
-            for result in self.results
+            {"quantity": result.name} | {name: getattr(result, name) for name in about} for result in self.results
         ]
         findings = [dataclasses.asdict(finding) | {"passed": finding.passed} for finding in self.findings]
         content = {"checks": [_finite(each) for each in checks], "audit": [_finite(each) for each in findings]}
@@ -92,7 +65,7 @@ class Validation:
 
 def rows() -> list[Row]:
     """Return all rows of the validation, in the order of its table."""
-    return [*motions.rows(), *damped.rows(), *models.rows(), *motions.extremes()]
+    return [*motions.rows(), *damped.rows(), *motions.models(), *motions.extremes()]
 
 
 def validate(console: Console) -> Validation:
@@ -131,9 +104,13 @@ def audit(findings: list[Finding], document: bool = False) -> Table:
     return Table(title, (*columns, "printed", "right", "at most", "row"), lines, left=(0, 1, 2, 6))
 
 
-def _judged(finding: Finding) -> float:
-    """Return the error of what is right: of the printed form, unless there is another."""
-    return finding.printed if finding.right is None else finding.right
+def _failed(finding: Finding) -> str:
+    """Return a line about a finding that failed, with the error of what is right, which may be what is printed."""
+    error = finding.printed if finding.right is None else finding.right
+    line = f"{finding.equation} {finding.quantity} ({finding.witness}): error {error:.1e}, at most {finding.bound:.1e}"
+    if finding.misses_by is None:
+        return line
+    return f"{line}; as printed {finding.printed:.2g}, expected {finding.misses_by:.2g}"
 
 
 def _finite(fields: dict[str, Any]) -> dict[str, Any]:
