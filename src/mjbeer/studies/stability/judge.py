@@ -184,13 +184,15 @@ def _reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) ->
 def _beside(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Iterator[Angles]:
     """Yield the motions, by `reference`, of a scene and a start of which one number is nudged by a rounding.
 
-    The incline is nudged by a rounding of 1 rad: that raises a crest over the one before by what rounding does on the
-    way from one to the other, which a motion closer beside the separatrix cannot bear.
+    The incline is nudged by a rounding of 1 rad: it lifts or lowers the next crest by as much as rounding on the way
+    there, and so shows whether a motion beside the separatrix passes it by chance.
     """
     aside = _ROUNDING * max(1.0, abs(phi0))
+    inclines, gravity = (scene.incline + _ROUNDING, scene.incline - _ROUNDING), scene.gravity * _NEXT
+    changed = [dataclasses.replace(scene, incline=incline) for incline in inclines]
+    changed.append(dataclasses.replace(scene, gravity=gravity))
     nudged = [(scene, phi0 + aside, phi_dot0), (scene, phi0 - aside, phi_dot0), (scene, phi0, phi_dot0 * _NEXT)]
-    for changed in ({"incline": scene.incline + _ROUNDING}, {"gravity": scene.gravity * _NEXT}):
-        nudged.append((dataclasses.replace(scene, **changed), phi0, phi_dot0))
+    nudged += [(other, phi0, phi_dot0) for other in changed]
     for other, *start in nudged:
         if (motion := _reference(other, times, *start)) is not None:
             yield Angles.of(other, motion, *start)
