@@ -22,6 +22,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Start
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
@@ -74,13 +75,10 @@ def _equations(scene: Scene) -> Rates:
     unit = mass * radius**2
     push, beta = scene.drive / mass / radius, scene.load.moment / mass / radius
     base, depth, bottom = oscillator.base / unit, oscillator.depth / unit, oscillator.bottom
-    linear, quadratic, cubic = (each / unit for each in scene.damping_law.coefficients)
-    air = scene.drag * radius / mass
+    law, air = Damping(*(each / unit for each in scene.damping_law.coefficients)), scene.drag * radius / mass
 
     def rates(phi: np.ndarray, phi_dot: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        size, roll_dot = np.abs(slip), phi_dot + slip
-        torque = slip * (linear + size * (quadratic + size * cubic))
-        steep = linear + size * (2 * quadratic + size * 3 * cubic)
+        torque, steep, roll_dot = law.torque(slip), law.slope(slip), phi_dot + slip
         drag, steep_drag = air * roll_dot * np.abs(roll_dot), 2 * air * np.abs(roll_dot)
         arm, lean, square, turned = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot, phi - bottom
         inertia, open_arm = base + lean * lean, 1 - arm

@@ -203,17 +203,14 @@ def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str
 
 
 def axis_drift(scene: Scene, motion: Coordinates, start: Coordinates) -> np.ndarray:
-    """Return u less the value that the momentum at the start implies [m], at each sample: eq. (46), integrated twice.
+    """Return u less the value that the momentum at the start implies [m], at each sample.
 
-    With a sliding load M_e u - m b sin(phi) - (m + m_can) g sin(alpha) t^2 / 2 grows linearly in time, whatever the
-    can. A frozen load conserves no such momentum: there u = a phi, the drift is 0, and slip shows an error instead.
+    A frozen load conserves no such momentum: there the drift is 0, and slip shows an error instead.
     """
     if scene.attachment == "frozen":
         return np.zeros_like(motion.time)
-    time, mass, arm = motion.time - start.time, scene.effective_mass, scene.load.moment / scene.effective_mass
-    moved = motion.u - arm * np.sin(motion.phi) - (start.u - arm * np.sin(start.phi))
-    speed = start.u_dot - arm * np.cos(start.phi) * start.phi_dot
-    return moved - speed * time - scene.drive / mass * time**2 / 2
+    begin = tuple(float(each[0]) for each in (start.phi, start.phi_dot, start.u, start.u_dot))
+    return motion.u - equations.axis(scene, motion.time - start.time, motion.phi, motion.phi_dot, begin)[0]
 
 
 def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
