@@ -43,17 +43,11 @@ _BESIDE = 1e-6
 """Share of a step that a corner may be from its ends. The torque beside the corner is the square of that, or less."""
 
 
-def _points() -> np.ndarray:
-    """Return the Radau points, the roots of P_s - P_(s-1), of which the last is 1."""
-    series = np.zeros(_STAGES + 1)
-    series[-2:] = -1, 1
-    rough = np.sort(legendre.legroots(series).real)
-    points = rough - legendre.legval(rough, series) / legendre.legval(rough, legendre.legder(series))
-    points[-1] = 1.0
-    return points
-
-
-_POINTS = _points()
+_RADAU = np.array([0.0] * (_STAGES - 1) + [-1.0, 1.0])
+_ROUGH = np.sort(legendre.legroots(_RADAU).real)
+_POINTS = _ROUGH - legendre.legval(_ROUGH, _RADAU) / legendre.legval(_ROUGH, legendre.legder(_RADAU))
+_POINTS[-1] = 1.0
+"""The Radau points, the roots of P_s - P_(s-1)."""
 _INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_POINTS, _STAGES - 1)), lbnd=-1) / 2
 """The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
 _MATRIX = legendre.legvander(_POINTS, _STAGES) @ _INTEGRALS

@@ -181,23 +181,13 @@ class Trajectory(Coordinates):
         return pictures[0]().plot(self, *names, theory=theory)
 
     def video(
-        self,
-        path: str | os.PathLike[str] | None = None,
-        width: int = 640,
-        height: int = 360,
-        fps: float = 30,
-        speed: float = 1.0,
-        camera: str = "auto",
-        progress: bool = True,
+        self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
     ) -> Any:
         """Return a video of the motion, which a notebook shows, and write it to `path` (.mp4) if there is one.
 
-        The other arguments are those of `mjbeer.render`.
-
-        Raises:
-          ParameterError, RenderingError, OutputError: as `mjbeer.render`.
+        `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        return pictures[0]().video(self, path, width, height, fps, speed, camera, progress)
+        return pictures[0]().video(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
