@@ -119,8 +119,9 @@ def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
     names = {str(each): each for each in allowed}
     if isinstance(value, str) and value in names:
         return names[value]
-    alike = " or ".join(map(repr, spelled_alike(value, names))) if isinstance(value, str) else ""
-    question = f": did you mean {alike}?" if alike else ""
+    folded = {each.casefold(): each for each in names}
+    alike = difflib.get_close_matches(value.casefold(), folded, n=2) if isinstance(value, str) else []
+    question = f": did you mean {' or '.join(repr(folded[each]) for each in alike)}?" if alike else ""
     raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {shown(value)}{question}")
 
 
@@ -169,12 +170,6 @@ def shown(value: object) -> str:
     except (ValueError, RuntimeError):  # an integer of 5000 digits, and what a foreign __repr__ raises
         text = f"<{type(value).__name__}>"
     return " ".join(text.splitlines())
-
-
-def spelled_alike(word: str, allowed: Iterable[str]) -> list[str]:
-    """Return the one or two allowed words that are spelled most like this one, in capitals or not; empty if none is."""
-    folded = {each.casefold(): each for each in allowed}
-    return [folded[each] for each in difflib.get_close_matches(word.casefold(), folded, n=2)]
 
 
 def _refused(what: str, unit: str, value: object) -> ParameterError:

@@ -12,7 +12,7 @@ from mjbeer import Can, Load, Scene, exact, sliding
 from mjbeer.exceptions import AngleWarning, ToleranceError
 from mjbeer.theory import damped
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import energy, slip_rate
+from mjbeer.theory.equations import slip_rate
 from tests.support import damped_taylor, taylor
 from tests.support.scenes import METAL, scenes
 
@@ -121,7 +121,7 @@ def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> No
     slip = slip_rate(scene, motion.phi_dot, motion.u_dot)
     loss = scene.damping_law.torque(slip) * slip + drag * np.abs(motion.u_dot) ** 3
     work = float((loss.reshape(-1, 12) @ weights) @ halves)
-    begin, end = energy(scene, exact(scene, [0.0, 1.0], 1.0, -30.0))
+    begin, end = exact(scene, [0.0, 1.0], 1.0, -30.0).energy
     bound = 1e-9 if drag or isinstance(damping, Damping) else 20 * ROUNDING
     assert work == pytest.approx(begin - end, rel=bound)
 

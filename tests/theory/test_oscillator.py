@@ -152,6 +152,17 @@ def test_separatrix_and_mirror(scene: Scene) -> None:
     assert (behind.equilibrium(), behind.frequency()) == (-scene.equilibrium(), scene.frequency())
 
 
+@pytest.mark.parametrize("short", [1e-4, 1e-8, 1e-11, 1e-13])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_separatrix_beside_the_steepest_incline(short: float, sign: int) -> None:
+    """V is a cubic in a narrow well: as far uphill as half the way downhill to the barrier it is as high as there."""
+    scene = frozen(sign * frozen().largest_incline() * (1 - short))
+    low, high = (sign * each - abs(scene.equilibrium()) for each in scene.separatrix()[::sign])
+    well = scene.oscillator.crest.well  # its own square is a difference of slope and depth
+    assert high == pytest.approx(well, abs=ANGLE)
+    assert low == pytest.approx(-well / 2, rel=well, abs=ANGLE)
+
+
 slopes = st.one_of(st.just(0.0), st.floats(-300, 0).map(lambda power: 10**power), st.floats(0, 3))
 sizes = st.floats(-30, 0).map(lambda power: 10**power)
 

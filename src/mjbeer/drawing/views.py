@@ -9,7 +9,7 @@ import math
 import os
 import pathlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,7 +22,6 @@ from mjbeer.theory.trajectory import Trajectory
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from mjbeer.drawing.camera import Camera
 
 _SMOOTH = 2000
 """Number of samples of the line of exact theory in a plot."""
@@ -105,16 +104,7 @@ class Video:
         return mediapy.html_from_compressed_video(self.data, self.width, self.height, loop=True, autoplay=False)
 
 
-def video(
-    trajectory: Trajectory,
-    path: str | os.PathLike[str] | None,
-    width: int,
-    height: int,
-    fps: float,
-    speed: float,
-    camera: "Camera",
-    progress: bool,
-) -> Video:
+def video(trajectory: Trajectory, path: str | os.PathLike[str] | None, width: int, height: int, **others: Any) -> Video:
     """Return a video of a trajectory, and write it to `path` if there is one, as `mjbeer.render` does."""
     import tempfile
 
@@ -122,7 +112,7 @@ def video(
 
     with tempfile.TemporaryDirectory() as folder:
         target = pathlib.Path(folder) / "trajectory.mp4" if path is None else require.path(path)
-        render(trajectory, target, width, height, fps=fps, speed=speed, camera=camera, progress=progress)
+        render(trajectory, target, width, height, **others)
         return Video(target.read_bytes(), int(width), int(height))
 
 

@@ -19,7 +19,7 @@ from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import Setting
 from mjbeer.model.state import START_DEPTH, places, read, write
-from mjbeer.theory.equations import Coordinates, accelerations, stiffness
+from mjbeer.theory.equations import Coordinates, accelerations, part, stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
@@ -40,12 +40,9 @@ _OF_SLIP = 8 * float(np.finfo(float).eps)
 
 
 def require_theory(model: mujoco.MjModel, scene: Scene, setting: Setting) -> None:
-    """Check that a model from a template moves as the scene does.
+    """Check that a model from a template moves as the scene does, or raise a TemplateError that says what differs.
 
     It must have the scene's joints, no constraint but that of rolling, and theory's accelerations at a few states.
-
-    Raises:
-      TemplateError: if not; the message names the file and what differs.
     """
     if fault := _fault(model, scene, setting):
         raise TemplateError(f"{looks.template(scene)} {fault}: an edit of it acts on the motion; restore the template")
@@ -85,8 +82,7 @@ def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, 
     than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
     """
     chosen = np.linspace(0, len(way.time) - 1, min(STATES, len(way.time))).astype(int)
-    some = Coordinates(**{name: array[chosen] for name, array in vars(way).items()})
-    difference, relative = residual(model, scene, write(model, some), exact_constraint)
+    difference, relative = residual(model, scene, write(model, part(way, chosen)), exact_constraint)
     missing = min(relative * max(record.path, 1.0), difference * float(way.time[-1]) ** 2 / 2)
     return missing / max(1.0, record.turned)
 

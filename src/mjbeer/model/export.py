@@ -9,6 +9,8 @@ import math
 import os
 import pathlib
 import xml.etree.ElementTree as ET
+from collections.abc import Generator
+from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -92,7 +94,7 @@ def export(
             f"{', '.join(setting.INTEGRATORS)}"
         )
     if require.boolean("portable", portable):
-        made = Setting(rolling, integrator, timestep, friction=friction, softness=_portable_softness(scene, made))
+        made = replace(made, softness=_portable_softness(scene, made))
     spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
     # It replaces the template's.
     spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
@@ -116,9 +118,7 @@ def export(
 def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
     """Return the specification of a scene to be shown, which starts at `phi0` [rad] with `phi_dot0` [rad/s].
 
-    Raises:
-      UnsupportedError: if MuJoCo cannot have such a model.
-      TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
+    The errors are those of `build` with `visuals`.
     """
     spec = compose(scene, made, visuals=True)
     _add_sensors(spec, scene)
@@ -187,25 +187,23 @@ def _text(spec: mujoco.MjSpec) -> str:
 
 
 def _require_same(built: mujoco.MjModel, reread: mujoco.MjModel) -> None:
-    """Check that a model that was read back from MJCF has the same numbers, and all in the same place in two positions.
-
-    Raises:
-      MjbeerError: if not; the message has the first number that differs.
-    """
-    both = built, reread
-    pairs = [(name, *(getattr(model, name) for model in both)) for name in _ARRAYS]
-    pairs += [(f"option {name}", *(getattr(model.opt, name) for model in both)) for name in _OPTIONS]
-    for aside in (0.0, 0.5):
-        posed = [mujoco.MjData(model) for model in both]
-        for model, data in zip(both, posed, strict=True):
-            data.qpos[:] = model.qpos0 + aside
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_camlight(model, data)
-        pairs += [(name, *(getattr(data, name) for data in posed)) for name in _POSES]
-    for name, old, new in pairs:
+    """Check that a model that was read back from MJCF has the same numbers, and all in the same places."""
+    for (name, old), (_, new) in zip(_numbers(built), _numbers(reread), strict=True):
         allowed = _ROUNDING * np.abs(old).max(initial=0.0) + np.finfo(float).eps
         if np.shape(old) != np.shape(new) or not np.allclose(old, new, rtol=0, atol=allowed):
             raise MjbeerError(f"the MJCF written is not the model: {name} is {new}, not {old}")
+
+
+def _numbers(model: mujoco.MjModel) -> Generator[tuple[str, np.ndarray]]:
+    """Yield the numbers of a model, and where all is in two positions, by name."""
+    yield from ((name, getattr(model, name)) for name in _ARRAYS)
+    yield from ((f"option {name}", getattr(model.opt, name)) for name in _OPTIONS)
+    data = mujoco.MjData(model)
+    for aside in (0.0, 0.5):
+        data.qpos[:] = model.qpos0 + aside
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_camlight(model, data)
+        yield from ((name, getattr(data, name).copy()) for name in _POSES)
 
 
 def _portable_softness(scene: Scene, made: Setting) -> Softness:
@@ -214,9 +212,6 @@ def _portable_softness(scene: Scene, made: Setting) -> Softness:
     Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
     angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances 1/m + a^2/I: of the two the one is taken
     that is not too soft.
-
-    Raises:
-      UnsupportedError: if not all that load a portable export have the integrator, damping and drag.
     """
     if made.integrator not in PORTABLE:
         raise UnsupportedError(

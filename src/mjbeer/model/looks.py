@@ -62,11 +62,7 @@ look sharp, each has vertices of its own."""
 
 
 def folder() -> pathlib.Path:
-    """Return the folder of the templates.
-
-    Raises:
-      TemplateError: if there is none.
-    """
+    """Return the folder of the templates; if there is none, that is a TemplateError."""
     for candidate in FOLDERS:
         if (candidate / "shared.xml").is_file():
             return candidate

@@ -122,11 +122,7 @@ class Setting:
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
-        """Return the setting of a call that may leave out the integrator, which is RK4 then, or the tolerance's.
-
-        Raises:
-          ParameterError: if a field is not allowed, or both a tolerance and an integrator are given.
-        """
+        """Return the setting of a call that gives an integrator or a tolerance, which chooses its own, or neither."""
         setting = cls(integrator=cls.integrator if integrator is None else integrator, tolerance=tolerance, **fields)
         if tolerance is not None and integrator is not None:
             raise ParameterError(

@@ -49,7 +49,7 @@ def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.
 
 def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
-    return at(places(model), scene, phi0, phi_dot0).ravel()
+    return write(model, begin(scene, phi0, phi_dot0))[0]
 
 
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:

@@ -52,8 +52,10 @@ STYLE: Any = {
     "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
 }
 """Settings of matplotlib."""
-_TITLE, _SUBTITLE, _EDGE = 0.32, 0.24, 0.1
-"""Heights of the title's and the subtitle's lines, and their distance from the edge [inches]."""
+_TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
+_SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
+_EDGE = 0.1
+"""Distance of the title from the edge [inches]."""
 _TOLD = "told "
 """Begins the name of a line in an SVG whose points tell something."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -79,7 +81,12 @@ def chart(
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(width, height))
-        used = _head(figure, title, subtitle)
+        used = 0.0  # height of title and subtitle at the top left [inches]
+        for text, line, look in ((title, 0.32, _TITLE), (subtitle, 0.24, _SUBTITLE)):
+            if text:
+                place = _EDGE / width, 1 - (_EDGE / 2 + used) / height
+                figure.text(*place, text, ha="left", va="top", **look)
+                used += line
         figure.set_layout_engine(ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)))
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
@@ -123,19 +130,6 @@ def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = (
         shown = [zip(*panel.get_legend_handles_labels(), strict=True) for panel in axes]
         handles = list({name: handle for pairs in shown for handle, name in pairs}.values())
     axes[0].figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
-
-
-def _head(figure: Figure, title: str, subtitle: str) -> float:
-    """Write title and subtitle at the top left, and return the height that they take [inches]."""
-    used = 0.0
-    large: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
-    small: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
-    for text, line, style in ((title, _TITLE, large), (subtitle, _SUBTITLE, small)):
-        if text:
-            place = (_EDGE / figure.get_figwidth(), 1 - (_EDGE / 2 + used) / figure.get_figheight())
-            figure.text(*place, text, ha="left", va="top", **style)
-            used += line
-    return used
 
 
 def _power(value: float, _: int | None) -> str:

@@ -38,7 +38,6 @@ class Table:
     """Indices of the columns that are aligned to the left; the others, of numbers, are aligned to the right."""
 
     def __rich__(self) -> rich.table.Table:
-        """Return the table for rich to print."""
         table = rich.table.Table(title=self.title)
         for index, name in enumerate(self.columns):
             table.add_column(name, justify="left" if index in self.left else "right", overflow="fold")

@@ -36,13 +36,10 @@ def euler_motion(scene: Scene, times: np.ndarray, timestep: float, integrator: s
     return solve_ivp(slopes, span, start, method="DOP853", t_eval=times, rtol=_TOLERANCE, atol=_TOLERANCE).y[0]
 
 
-def _rate(scene: Scene) -> float:
-    return float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
-
-
 def _acceleration(scene: Scene, q: float, v: float) -> tuple[float, float, float]:
     """Return the exact acceleration a [rad/s^2] and its derivatives a_q and a_v by angle and rate."""
-    acceleration, dq, dv = scene.oscillator.acceleration, _DIFFERENCE, _DIFFERENCE * _rate(scene)
+    rate = float(np.sqrt(scene.gravity / scene.can.radius)) or 1.0
+    acceleration, dq, dv = scene.oscillator.acceleration, _DIFFERENCE, _DIFFERENCE * rate
     a_q = float(acceleration(q + dq, v) - acceleration(q - dq, v)) / (2 * dq)
     a_v = float(acceleration(q, v + dv) - acceleration(q, v - dv)) / (2 * dv)
     return float(acceleration(q, v)), a_q, a_v

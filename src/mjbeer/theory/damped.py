@@ -22,6 +22,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.motion import ROUNDINGS, UNCERTAIN, Start
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
@@ -42,17 +43,11 @@ _BESIDE = 1e-6
 """Share of a step that a corner may be from its ends. The torque beside the corner is the square of that, or less."""
 
 
-def _points() -> np.ndarray:
-    """Return the Radau points, the roots of P_s - P_(s-1), of which the last is 1."""
-    series = np.zeros(_STAGES + 1)
-    series[-2:] = -1, 1
-    rough = np.sort(legendre.legroots(series).real)
-    points = rough - legendre.legval(rough, series) / legendre.legval(rough, legendre.legder(series))
-    points[-1] = 1.0
-    return points
-
-
-_POINTS = _points()
+_RADAU = np.array([0.0] * (_STAGES - 1) + [-1.0, 1.0])
+_ROUGH = np.sort(legendre.legroots(_RADAU).real)
+_POINTS = _ROUGH - legendre.legval(_ROUGH, _RADAU) / legendre.legval(_ROUGH, legendre.legder(_RADAU))
+_POINTS[-1] = 1.0
+"""The Radau points, the roots of P_s - P_(s-1)."""
 _INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_POINTS, _STAGES - 1)), lbnd=-1) / 2
 """The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
 _MATRIX = legendre.legvander(_POINTS, _STAGES) @ _INTEGRALS
@@ -74,13 +69,10 @@ def _equations(scene: Scene) -> Rates:
     unit = mass * radius**2
     push, beta = scene.drive / mass / radius, scene.load.moment / mass / radius
     base, depth, bottom = oscillator.base / unit, oscillator.depth / unit, oscillator.bottom
-    linear, quadratic, cubic = (each / unit for each in scene.damping_law.coefficients)
-    air = scene.drag * radius / mass
+    law, air = Damping(*(each / unit for each in scene.damping_law.coefficients)), scene.drag * radius / mass
 
     def rates(phi: np.ndarray, phi_dot: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        size, roll_dot = np.abs(slip), phi_dot + slip
-        torque = slip * (linear + size * (quadratic + size * cubic))
-        steep = linear + size * (2 * quadratic + size * 3 * cubic)
+        torque, steep, roll_dot = law.torque(slip), law.slope(slip), phi_dot + slip
         drag, steep_drag = air * roll_dot * np.abs(roll_dot), 2 * air * np.abs(roll_dot)
         arm, lean, square, turned = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot, phi - bottom
         inertia, open_arm = base + lean * lean, 1 - arm

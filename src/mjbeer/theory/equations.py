@@ -20,9 +20,11 @@ class Coordinates:
     time: np.ndarray
     """Time [s]."""
     u: np.ndarray
-    """Place of the axis along the incline [m], positive downhill; see `Trajectory` for its origin."""
+    """Place of the axis along the incline [m], positive downhill. At time 0 it is b sin(phi0) for a sliding load, whose
+    centre of mass starts at s = u - b sin(phi) = 0 (eq. 12), and a phi0 for a frozen one (eq. 50)."""
     phi: np.ndarray
-    """Angle of the load's flat surface to the incline [rad]."""
+    """Angle of the load to the incline [rad]: 0 where its centre of mass is nearest to the incline, and growing as the
+    can rolls downhill."""
     u_dot: np.ndarray
     """Velocity of the axis down the incline [m/s]."""
     phi_dot: np.ndarray
@@ -78,6 +80,23 @@ def accelerations(
     return (scene.drive + swung + along) / scene.effective_mass, phi_ddot  # eq. (46)
 
 
+def axis(
+    scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: tuple[float, ...]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return u [m] and u_dot [m/s] of rolling without damping and drag, from phi at times [s] since the `start`.
+
+    The start is phi, phi_dot, u and u_dot. A frozen load has u = a phi, eq. (50). With a sliding load
+    M_e u_dot - m b cos(phi) phi_dot - (m + m_can) g sin(alpha) t is conserved, the integral of eq. (46).
+    """
+    if scene.attachment == "frozen":
+        return scene.can.radius * phi, scene.can.radius * phi_dot
+    phi0, phi_dot0, u0, u_dot0 = start
+    arm, pull = scene.load.moment / scene.effective_mass, scene.drive / scene.effective_mass
+    place, speed = u0 - arm * math.sin(phi0), u_dot0 - arm * math.cos(phi0) * phi_dot0
+    u = arm * np.sin(phi) + (place + speed * time + pull * time**2 / 2)
+    return u, arm * np.cos(phi) * phi_dot + (speed + pull * time)
+
+
 def dissipation(
     scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
@@ -114,11 +133,6 @@ def rolling_forces(
     if scene.damping_law:
         friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
     return Forces(normal, friction)
-
-
-def energy(scene: Scene, motion: Coordinates) -> np.ndarray:
-    """Return the kinetic and potential energy [J] of can and load at each sample, whether they roll or not."""
-    return kinetic_energy(scene, motion) + potential_energy(scene, motion)
 
 
 def potential_energy(scene: Scene, motion: Coordinates) -> np.ndarray:

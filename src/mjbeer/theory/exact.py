@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory import damped, motion
+from mjbeer.theory.equations import axis
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, angle_distance
 
@@ -13,11 +14,8 @@ from mjbeer.theory.trajectory import Trajectory, angle_distance
 def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> Trajectory:
     """Return the exact motion of a scene that starts with `phi0` [rad] and `phi_dot0` [rad/s] at time 0.
 
-    `time` [s] has the times of the samples, in any order, none before 0. For a sliding load the axis starts at
-    u = b sin(phi0) with u_dot = b cos(phi0) phi_dot0, so that the load's centre of mass is at s = 0 and at rest
-    along the incline; for a frozen load it starts at u = a phi0 with u_dot = a phi_dot0.
-
-    A start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant.
+    `time` [s] has the times of the samples, in any order, none before 0. `Scene.start` has u and u_dot at time 0. A
+    start beyond a whole turn gives an `AngleWarning`, as degrees may have been meant.
 
     Raises:
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e4 and 1e4
@@ -41,7 +39,7 @@ def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Tr
                 phi, phi_dot, u, u_dot = damped.solve(scene, time, phi0, phi_dot0)
             else:
                 phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
-                u, u_dot = _axis(scene, time, phi, phi_dot, scene.start(phi0, phi_dot0))
+                u, u_dot = axis(scene, time, phi, phi_dot, (phi0, phi_dot0, *scene.start(phi0, phi_dot0)))
             roll, roll_dot = u / radius, u_dot / radius
     except ParameterError:
         raise
@@ -54,22 +52,6 @@ def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Tr
     names = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot")
     arrays = zip(names, (time, u, phi, u_dot, phi_dot, roll, roll_dot, still, still), strict=True)
     return Trajectory(scene=scene, phi0=phi0, phi_dot0=phi_dot0, **dict(arrays))
-
-
-def _axis(
-    scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: tuple[float, float]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return u [m] and u_dot [m/s] of the axis, which is at `start` at time 0.
-
-    A frozen load has u = a phi, eq. (50). With a sliding load M_e u_dot - m b cos(phi) phi_dot -
-    (m + m_can) g sin(alpha) t is conserved, the integral of eq. (46); for a massless can this is eq. (12) with eq. (1).
-    """
-    if scene.attachment == "frozen":
-        return scene.can.radius * phi, scene.can.radius * phi_dot
-    rolling, moment = scene.can.effective_mass, scene.load.moment
-    momentum = scene.drive * time + rolling * start[1]
-    u = scene.drive * time**2 / 2 + moment * np.sin(phi) + rolling * (start[0] + start[1] * time)
-    return u / scene.effective_mass, (momentum + moment * np.cos(phi) * phi_dot) / scene.effective_mass
 
 
 def phi_error(trajectory: Trajectory, relative: bool = False) -> float:

@@ -171,11 +171,7 @@ def liquid_in(
     viscosity: float | None = None,
     gravity: float = GRAVITY,
 ) -> Liquid:
-    """Return what `liquid` uses for the same arguments: density, viscosity, law and damping.
-
-    Raises:
-      ParameterError: as `liquid`.
-    """
+    """Return what `liquid` uses for the same arguments, with the same errors."""
     own = LIQUIDS[require.choice("liquid", name, NAMES)]
     density = own.density if density is None else require.positive("density", density, "kg/m^3")
     nu = own.viscosity if viscosity is None else require.positive("viscosity", viscosity, "m^2/s")

@@ -42,13 +42,7 @@ _FEW, _BATCH = 8, 256
 
 
 def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return phi [rad] and phi_dot [rad/s] at the times `time` [s], none of them negative.
-
-    Raises:
-      ParameterError: if the motion makes more turns or swings until then than are followed.
-      NoLibrationError: if the start is so near a separatrix that its rounding decides how the motion goes on.
-      ToleranceError: if sizes, masses, gravity or speeds are of too many different orders of magnitude.
-    """
+    """Return phi [rad] and phi_dot [rad/s] at the times `time` [s], none of them negative; the errors are `exact`'s."""
     start, latest = Start.at(oscillator, phi0, phi_dot0), float(np.max(time, initial=0.0))
     if start.stays(phi0):
         return np.full_like(time, phi0), np.zeros_like(time)
@@ -72,13 +66,7 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
 
 
 def period(oscillator: Oscillator, amplitude: float) -> float:
-    """Return the period [s] of the swing released from rest `amplitude` [rad] from the equilibrium.
-
-    Raises:
-      NoLibrationError: if `amplitude` is at or beyond the separatrix, or so near it that its rounding changes the
-        period.
-      ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
-    """
+    """Return the period [s] of a swing of an `amplitude` [rad], with the errors of `Scene.period`."""
     rest = oscillator.equilibrium()
     low, high = (end - rest for end in oscillator.separatrix())
     if not low < amplitude < high:
@@ -200,10 +188,8 @@ class Start:
     def move(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
         """Return how far phi has turned [rad] and phi_dot [rad/s] at the times [s], and the `margin` [J].
 
-        The margin is the energy by which the motion passes or misses a crest, the least of all.
-
-        Raises:
-          NoLibrationError: if the motion comes to rest on a crest, for ever.
+        The margin is the least energy by which the motion passes or misses a crest. A motion that comes to rest on one
+        for ever is a NoLibrationError.
         """
         swing = _swing(self) if self.swings else None
         latest, legs = float(np.max(time, initial=0.0)), cycle(swing) if swing else _roll(self)

@@ -181,19 +181,16 @@ class Oscillator:
         return (torque - inertia_slope * phi_dot**2 / 2) / self.inertia(phi)
 
     def equilibrium(self) -> float:
-        """Return the angle of stable equilibrium [rad]: eq. (53) for a frozen load.
+        """Return the angle of stable equilibrium [rad], where |slope| <= depth: eq. (53) for a frozen load.
 
         Raises:
-          NoEquilibriumError: if the load is balanced about the axis, there is no gravity, or the incline is steeper
-            than the load can hold.
+          NoEquilibriumError: if the load is balanced about the axis, or there is no gravity.
         """
         if self.depth == 0:
             raise NoEquilibriumError(
                 "nothing restores the load: it is balanced about the axis (offset 0 m) or gravity is 0 m/s^2, "
                 "so no angle is a stable equilibrium"
             )
-        if abs(self.slope) > self.depth:
-            raise NoEquilibriumError("the incline is steeper than the load can hold")
         return self.sign * self.crest.rest
 
     def frequency(self) -> float:
@@ -202,10 +199,10 @@ class Oscillator:
 
     def separatrix(self) -> tuple[float, float]:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
-        crest, behind = self.crest, TURN - self.crest.well
-        # As high as the barrier, on the downhill side of the one before it, which is a step higher.
-        past = root(lambda x: float(crest.below(x)) - crest.step, 0, behind)
-        low, high = crest.rest - behind + past, math.pi + crest.offset
+        crest = self.crest
+        barrier = float(crest.below(-crest.well))  # above the equilibrium; `root` finds where V is as high behind it
+        behind = root(lambda distance: float(crest.below(distance)) - barrier, 0, TURN - crest.well)
+        low, high = crest.rest - behind, math.pi + crest.offset
         return (low, high) if self.sign > 0 else (-high, -low)
 
 

@@ -78,14 +78,10 @@ class Clock:
         self._rates = rates[:, order].reshape(-1, len(_NODES))
         self._lows, self._halves = np.tile(starts[order], passages), np.tile(halves[order], passages)
         self._times = np.concatenate([[0.0], np.cumsum(self._rates @ _WEIGHTS * self._halves)])
+        self.duration = float(self._times[-1])  # of all passages together [s]
         lows, halves = self._lows[:, None], self._halves[:, None]
         self._known_times = (self._times[:-1, None] + halves * (self._rates @ _TO_TIMES)).ravel()
         self._known_phases = (lows + halves * (1 + _POINTS)).ravel()
-
-    @property
-    def duration(self) -> float:
-        """Return the time that all passages take together [s]."""
-        return float(self._times[-1])
 
     def time(self, psi: float, passage: int = 0) -> float:
         """Return the time [s] at which the motion is at `psi` in a `passage`, of which the first one is 0."""

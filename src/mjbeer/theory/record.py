@@ -42,9 +42,7 @@ class Record:
         self.axis_drift = 0.0  # largest distance of the axis from where its momentum has it [m]; 0 with damping or drag
         self.fastest_slip = 0.0  # largest rate between can and load with damping or drag, |u_dot/a - phi_dot| [rad/s]
         self.no_lump_at = math.inf  # when the wall of a can with a liquid is first too fast for a lump [s]
-        self.lowest_normal = (
-            math.inf
-        )  # smallest N that rolling needed [N]; negative where the incline would have to pull
+        self.lowest_normal = math.inf  # smallest N that rolling needed [N]; below 0 the incline would have to pull
         self.needed = 0.0  # largest friction coefficient that rolling needed; infinite where N < 0
         self.fails_at = math.inf  # when N < 0 or |F| > friction N for the first time, interpolated [s]
         self._kinetic = self._energy = self._energy_change = self._work = 0.0
@@ -76,17 +74,15 @@ class Record:
         kinetic = equations.kinetic_energy(scene, motion)
         energy = kinetic + equations.potential_energy(scene, motion)
         if self._first is None or self._last is None:
-            self._first = self._last = part(motion, [0])
-            self._energy = float(energy[0])
+            self._first, self._last, self._energy = part(motion, [0]), part(motion, [0]), float(energy[0])
         first, last, self._last = self._first, self._last, part(motion, [-1])
         self.slip = _largest(self.slip, motion.u - first.u - scene.can.radius * (motion.roll - first.roll))
         self.lift = _largest(self.lift, motion.lift)
         self.turned = _largest(self.turned, motion.phi - first.phi)
         self.rolled = _largest(self.rolled, motion.u - first.u)
         self.fastest = _largest(self.fastest, motion.phi_dot)
-        covered = np.abs(np.diff(motion.phi, prepend=last.phi))
+        covered, swing = np.abs(np.diff(motion.phi, prepend=last.phi)), form.inertia(motion.phi) * motion.phi_dot**2 / 2
         self.path += float(covered.sum())
-        swing = form.inertia(motion.phi) * motion.phi_dot**2 / 2
         self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
         if scene.dissipates:
             self.fastest_slip = _largest(self.fastest_slip, slip_rate(scene, motion.phi_dot, motion.u_dot))
@@ -113,7 +109,7 @@ class Record:
         forces = equations.rolling_forces(self.scene, phi, phi_dot, u_dot)
         self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
         self.needed = _largest(self.needed, forces.needed)
-        if not math.isinf(self.fails_at):
+        if math.isfinite(self.fails_at):
             return
         margin = forces.normal
         if math.isfinite(self.friction):
@@ -203,17 +199,14 @@ def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str
 
 
 def axis_drift(scene: Scene, motion: Coordinates, start: Coordinates) -> np.ndarray:
-    """Return u less the value that the momentum at the start implies [m], at each sample: eq. (46), integrated twice.
+    """Return u less the value that the momentum at the start implies [m], at each sample.
 
-    With a sliding load M_e u - m b sin(phi) - (m + m_can) g sin(alpha) t^2 / 2 grows linearly in time, whatever the
-    can. A frozen load conserves no such momentum: there u = a phi, the drift is 0, and slip shows an error instead.
+    A frozen load conserves no such momentum: there the drift is 0, and slip shows an error instead.
     """
     if scene.attachment == "frozen":
         return np.zeros_like(motion.time)
-    time, mass, arm = motion.time - start.time, scene.effective_mass, scene.load.moment / scene.effective_mass
-    moved = motion.u - arm * np.sin(motion.phi) - (start.u - arm * np.sin(start.phi))
-    speed = start.u_dot - arm * np.cos(start.phi) * start.phi_dot
-    return moved - speed * time - scene.drive / mass * time**2 / 2
+    begin = tuple(float(each[0]) for each in (start.phi, start.phi_dot, start.u, start.u_dot))
+    return motion.u - equations.axis(scene, motion.time - start.time, motion.phi, motion.phi_dot, begin)[0]
 
 
 def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:

@@ -41,6 +41,9 @@ class Scene:
     Raises:
       ParameterError: if a parameter is outside the domain, the load outside the can, a frozen load damped, or nothing
         has inertia at phi = 0.
+      NoEquilibriumError: by what needs a load at rest, if the incline is too steep for that or nothing restores the
+        load. The message names the largest incline.
+      DissipationError: by what has a meaning only with damping or drag, or only without them.
     """
 
     can: Can
@@ -100,9 +103,8 @@ class Scene:
 
     def _made(self) -> tuple[Callable[..., "Scene"], dict[str, Any]]:
         """Return what makes the scene, and with which arguments."""
-        if self.made_by:
-            return self.made_by
-        return type(self), {each.name: getattr(self, each.name) for each in dataclasses.fields(self) if each.init}
+        own = {each.name: getattr(self, each.name) for each in dataclasses.fields(self) if each.init}
+        return self.made_by or (type(self), own)
 
     def __repr__(self) -> str:
         """Return the call that makes the scene, without what it would have anyway."""
@@ -115,16 +117,13 @@ class Scene:
         return f"{getattr(make, '__name__', '')}({', '.join(told)})"
 
     def _repr_html_(self) -> str:
-        """Return the parameters of the scene as a table, for a notebook."""
+        """Return a table for a notebook."""
         return pictures[0]().scene_html(self)
 
     def replace(self, **changes: Any) -> "Scene":
         """Return the scene with some of its fields changed, or of the arguments of the function that made it.
 
         `sliding().replace(fill=0.4)` is `sliding(fill=0.4)`: the load is made anew, and so is a liquid's damping.
-
-        Raises:
-          ParameterError: if nothing has such a name, or a value is not allowed.
         """
         make, given = self._made()
         own, fields = inspect.signature(make).parameters, inspect.signature(type(self)).parameters
@@ -181,9 +180,6 @@ class Scene:
         """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
 
         A sliding load starts with s = 0 and s_dot = 0 (eq. 12), a frozen one without slip from u = a phi (eq. 50).
-
-        Raises:
-          ParameterError: if the start is not allowed, as in `exact`.
         """
         phi0, phi_dot0 = require.start(phi0, phi_dot0)
         if self.attachment == "frozen":
@@ -195,9 +191,6 @@ class Scene:
 
         For a sliding load it is the angle at which the can accelerates steadily, tan phi =
         (A - g sin(alpha)) / (g cos(alpha)) with A of footnote 4. With damping or drag it is `terminal_tilt`.
-
-        Raises:
-          NoEquilibriumError: if there is none; the message names the largest incline that has one.
         """
         if self.dissipates:
             return self.terminal_tilt()
@@ -228,7 +221,6 @@ class Scene:
         With damping or drag it is the imaginary part of the swing's `modes`, whose real part is the decay.
 
         Raises:
-          NoEquilibriumError: if there is no equilibrium.
           NoLibrationError: if the damping is such that the load creeps back without a swing.
         """
         if not self.dissipates:
@@ -244,10 +236,8 @@ class Scene:
         """Return the period [s] of the swing released from rest `amplitude` [rad] away from the equilibrium.
 
         Raises:
-          NoEquilibriumError: if there is no equilibrium.
           NoLibrationError: if `amplitude` is at or beyond the separatrix, or within the rounding of it.
           ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
-          DissipationError: if the scene has damping or drag, so that no swing is like the one before.
         """
         amplitude = require.number("amplitude", amplitude, "rad")
         require_no_dissipation(self, "no period")
@@ -255,12 +245,7 @@ class Scene:
         return motion.period(self.oscillator, amplitude)
 
     def separatrix(self) -> tuple[float, float]:
-        """Return the two angles phi between which the largest swing about the equilibrium stays [rad].
-
-        Raises:
-          NoEquilibriumError: if there is no equilibrium.
-          DissipationError: if the scene has damping or drag, so that no swing lasts.
-        """
+        """Return the two angles phi between which the largest swing about the equilibrium stays [rad]."""
         require_no_dissipation(self, "no largest swing")
         self.equilibrium()
         return self.oscillator.separatrix()
@@ -293,10 +278,6 @@ class Scene:
         """Return the speed of the axis down the incline [m/s] at which a can with damping or drag rolls steadily.
 
         Its load then stands still at `terminal_tilt`. Linear damping alone gives m_t g sin(alpha) a^2/c.
-
-        Raises:
-          DissipationError: if the scene has neither damping nor drag.
-          NoEquilibriumError: if there is no steady rolling; above the largest incline the message names that.
         """
         return self.can.radius * self._steady_rolling()[0]
 
@@ -304,9 +285,6 @@ class Scene:
         """Return the angle phi [rad] at which the load of a can with damping or drag stands still, once it does.
 
         Without drag it is that of eq. (53) with the can's mass included, whatever the damping.
-
-        Raises:
-          DissipationError, NoEquilibriumError: as `terminal_speed`.
         """
         _, torque, stiffness = self._steady_rolling()
         return math.atan2(torque, stiffness) - self.incline
@@ -337,10 +315,8 @@ class Scene:
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
 
-        The load may stand still, or loop; then the variance of the slip rate is D times the load's mean rate.
-
-        Raises:
-          DissipationError: if the damping is not linear, or there is none, or there is drag.
+        The load may stand still, or loop; then the variance of the slip rate is D times the load's mean rate. It needs
+        linear damping without drag.
         """
         linear, *others = self.damping_law.coefficients
         if not linear > 0 or any(others) or self.drag > 0:

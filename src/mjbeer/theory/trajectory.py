@@ -27,12 +27,9 @@ the range of phi. Four samples a period of a small swing have 0.007, three have 
 class Trajectory(Coordinates):
     """A motion of a scene, with the energy, forces and warnings that follow from it.
 
-    The coordinates are those of Fig. 3 of the paper. `phi` is the angle of the load to the incline [rad]: 0 where its
-    centre of mass is nearest to the incline, and growing as the can rolls downhill. `u` is the place of the can's axis
-    along the incline [m]. It starts at b sin(phi0) for a sliding load, whose centre of mass starts at
-    s = u - b sin(phi) = 0 (eq. 12), and at a phi0 for a frozen one (eq. 50): `distance` is counted from the start.
-    `roll` is the angle by which the can itself has turned [rad], u/a as long as it does not slip, and `lift` its height
-    above the incline [m]. `u_dot`, `phi_dot`, `roll_dot` and `lift_dot` are their rates.
+    `u` is the place of the axis [m], which does not start at 0; `distance` is counted from the start. `phi` is the
+    angle of the load to the incline, and `roll` that by which the can has turned [rad]; `lift` is the can's height
+    above the incline [m]. `u_dot`, `phi_dot`, `roll_dot` and `lift_dot` are their rates. `Coordinates` has more.
 
     Raises:
       ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
@@ -76,7 +73,7 @@ class Trajectory(Coordinates):
     @cached_property
     def energy(self) -> np.ndarray:
         """Return the kinetic and potential energy of can and load together [J], at each sample."""
-        return equations.energy(self.scene, self)
+        return equations.kinetic_energy(self.scene, self) + equations.potential_energy(self.scene, self)
 
     @cached_property
     def record(self) -> Record:
@@ -147,7 +144,7 @@ class Trajectory(Coordinates):
         least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
         swing = part(self, slice(int(np.flatnonzero(np.abs(self.phi_dot) > least).max(initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
-        _, change = accelerations(scene, phi, rate, swing.u_dot)
+        change = accelerations(scene, phi, rate, swing.u_dot)[1]
         turns = _zeros(time, rate, change)
         if len(turns) < 3:
             raise MjbeerError(
@@ -184,23 +181,13 @@ class Trajectory(Coordinates):
         return pictures[0]().plot(self, *names, theory=theory)
 
     def video(
-        self,
-        path: str | os.PathLike[str] | None = None,
-        width: int = 640,
-        height: int = 360,
-        fps: float = 30,
-        speed: float = 1.0,
-        camera: str = "auto",
-        progress: bool = True,
+        self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
     ) -> Any:
         """Return a video of the motion, which a notebook shows, and write it to `path` (.mp4) if there is one.
 
-        The other arguments are those of `mjbeer.render`.
-
-        Raises:
-          ParameterError, RenderingError, OutputError: as `mjbeer.render`.
+        `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        return pictures[0]().video(self, path, width, height, fps, speed, camera, progress)
+        return pictures[0]().video(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
@@ -234,7 +221,7 @@ class Trajectory(Coordinates):
         )
 
     def _repr_html_(self) -> str:
-        """Return the motion's key figures, and what it says about itself, for a notebook."""
+        """Return key figures for a notebook."""
         return pictures[0]().trajectory_html(self)
 
 
