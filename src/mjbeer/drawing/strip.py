@@ -30,7 +30,7 @@ _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
 }  # fmt: skip
-_EARTH = 9.81
+EARTH = 9.81
 """Gravity on earth [m/s^2]."""
 _INTERVALS = 200
 """Number of intervals of a motion over which forces are averaged."""
@@ -66,8 +66,6 @@ class Chart:
     """Largest value that it has room for; the blow of a landing goes beyond."""
     least: float = 0.0
     """Least range of values that it shows: a straight line is not to look like a crooked one."""
-    tells: bool = True
-    """Whether theory's lines are there from the beginning, and tell what will be."""
 
 
 def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
@@ -82,9 +80,14 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
         if theory is not None:
             lines.append(Line("theory", theory.time, values(theory.scene, theory), possible=theory.rolls_until()))
-        level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
-        drawn.append(Chart(title if trajectory.scene.incline else level, lines, **limits))
+        drawn.append(Chart(heading(title, trajectory.scene), lines, **limits))
     return drawn
+
+
+def heading(title: str, scene: Scene) -> str:
+    """Return a chart's title, which speaks of the ground where it is level."""
+    level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
+    return title if scene.incline else level
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:
@@ -134,7 +137,7 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
 
 def weight(scene: Scene) -> float:
     """Return the weight of can and load [N], in which forces are drawn; without gravity, that on earth."""
-    return scene.mass * (scene.gravity or _EARTH)
+    return scene.mass * (scene.gravity or EARTH)
 
 
 def _ahead(scene: Scene, motion: Coordinates) -> np.ndarray:
@@ -152,7 +155,7 @@ def _slip(scene: Scene, motion: Coordinates) -> np.ndarray:
 Quantity = tuple[str, Callable[[Scene, Coordinates], np.ndarray], dict[str, Any]]
 QUANTITIES: dict[str, Quantity] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("way down the incline, u [m]", lambda _, motion: motion.u, {}),
+    "u": ("distance down the incline, u [m]", lambda _, motion: motion.u, {}),
     "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
     "ahead": ("ahead of even acceleration [mm]", _ahead, {}),
     "normal": ("normal force, N [weights]", _normal, {"low": -1.0, "high": 4.0}),
@@ -203,7 +206,7 @@ class Strip:
             if not possible.all():
                 style |= {"linestyle": ":", "linewidth": 0.25 * unit}
                 panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style)
-            if line.colour is not None or not chart.tells:
+            if line.colour is not None:
                 drawn += shown
         panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
