@@ -48,10 +48,7 @@ def test_at_the_finish_a_can_is_at_the_line(scene: Scene, phi0: float) -> None:
 
 def test_a_race_lasts_until_the_last_can_and_hurries_when_only_that_is_left() -> None:
     """With the hurry of 4, a second of the motion takes a quarter of the pictures; the plates have all times."""
-    cans = [
-        run(sliding(INCLINE, can=METAL), duration=8.0),
-        run(sliding(INCLINE, can=METAL, damping=1e-2), duration=8.0),
-    ]
+    cans = [run(sliding(INCLINE, can=METAL)), run(frozen(INCLINE, fill=1.0))]
     first, last = (can.finish(1.0) for can in cans)
     race = Race("a race", lambda: cans, length=1.0, speed=0.5, told=str, still=0.0, after=0.1, hurry=4)
     reel = race.reel()
