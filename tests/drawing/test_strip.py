@@ -82,12 +82,12 @@ def test_a_simulation_has_theory_beside_it_and_theory_has_not() -> None:
 
 @pytest.mark.parametrize("make", [frozen, sliding])
 def test_forces_of_a_rolling_can_are_those_that_rolling_needs(make) -> None:
-    """The mean over a width w is off by N'' w^2/24: N changes by a weight at up to 50 rad/s, and w is 5 ms, so 3e-3."""
+    """The mean over a width w is off by N'' w^2/24: at 50 rad/s and a w of 20 ms by 0.04 of a weight."""
     motion = exact(make(can=Can.sheet_metal()), SECOND, 1.0)
     normal, friction = strip.forces(motion.scene, motion)
     weight, inner = motion.scene.mass * 9.81, slice(20, -20)
-    assert np.abs(normal - motion.forces.normal)[inner].max() < 3e-3 * weight
-    assert np.abs(friction - motion.forces.friction)[inner].max() < 3e-3 * weight
+    assert np.abs(normal - motion.forces.normal)[inner].max() < 0.04 * weight
+    assert np.abs(friction - motion.forces.friction)[inner].max() < 0.04 * weight
 
 
 def test_a_can_in_the_air_has_no_forces_and_a_slipping_one_mu_times_n() -> None:

@@ -103,7 +103,7 @@ class Race:
     """A function that says what is seen, in whole sentences, for the text beside the film."""
     still: float
     after: float = 0.0
-    """How long the race goes on after the last can has finished, in seconds of the motion [s]."""
+    """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
     hurry: float = 1.0
     """How many times faster time runs once all cans but the last have finished."""
     facts: str = ""
@@ -130,7 +130,7 @@ class Race:
         if self.strips:
             end = min(float(runner.trajectory.time[-1]) for runner in runners)
             return Reel(0.0, end, self.speed, pictures)
-        return Reel(0.0, self.finishes(runners)[-1] + self.after, self.speed, pictures, self.pace(runners))
+        return Reel(0.0, self.finishes(runners)[-1] + self.after * self.hurry, self.speed, pictures, self.pace(runners))
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
