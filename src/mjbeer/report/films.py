@@ -33,7 +33,7 @@ FILMS: dict[str, Race | Take] = {
         told=races.told_of_liquids,
         still=2.2,
         after=0.2,
-        hurry=24,
+        hurry=15,
         facts="all cans ¾ full, let go with a level surface",
     ),
     "sliding": Take(

@@ -28,7 +28,7 @@ _STEEPER = math.radians(7.1)
 honey, the thickest of the liquids, from 7.38."""
 _ICE = 917.0
 """Density of ice [kg/m^3]."""
-_END = 26.5
+_END = 24.5
 """When the can with honey is out of the picture [s]."""
 
 
