@@ -229,6 +229,8 @@ class Course:
         lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
         if self.finish and time >= self.finish[number]:
             lines.append((self.results[number], 1.05 * unit, INK, True))
+        elif time >= self.pace[0]:
+            lines.append((f"now sped up {self.pace[1]:.3g} times", 1.05 * unit, INK, True))
         boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
         left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
         corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
