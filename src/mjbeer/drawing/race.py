@@ -103,7 +103,7 @@ class Race:
     """A function that says what is seen, in whole sentences, for the text beside the film."""
     still: float
     after: float = 0.0
-    """How long the race goes on after the last can has finished, in seconds of the motion [s]."""
+    """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
     hurry: float = 1.0
     """How many times faster time runs once all cans but the last have finished."""
     facts: str = ""
@@ -130,7 +130,7 @@ class Race:
         if self.strips:
             end = min(float(runner.trajectory.time[-1]) for runner in runners)
             return Reel(0.0, end, self.speed, pictures)
-        return Reel(0.0, self.finishes(runners)[-1] + self.after, self.speed, pictures, self.pace(runners))
+        return Reel(0.0, self.finishes(runners)[-1] + self.after * self.hurry, self.speed, pictures, self.pace(runners))
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
@@ -229,6 +229,8 @@ class Course:
         lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
         if self.finish and time >= self.finish[number]:
             lines.append((self.results[number], 1.05 * unit, INK, True))
+        elif time >= self.pace[0]:
+            lines.append((f"now sped up {self.pace[1]:.3g} times", 1.05 * unit, INK, True))
         boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
         left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
         corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]

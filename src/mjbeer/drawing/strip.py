@@ -32,7 +32,7 @@ _STYLE: dict[Any, Any] = {
 }  # fmt: skip
 EARTH = 9.81
 """Gravity on earth [m/s^2]."""
-_INTERVALS = 200
+_INTERVALS = 50
 """Number of intervals of a motion over which forces are averaged."""
 _SMOOTH = 1500
 """Times at which theory's lines are computed."""
@@ -50,7 +50,7 @@ class Line:
     colour: tuple[float, float, float] | None = None
     """Its colour; None for theory's line, which is seen from the beginning."""
     possible: float = math.inf
-    """Time [s] from which the line is dotted, because the motion is not possible."""
+    """Time [s] from which the line is dotted, because the motion is possible only if the incline can pull."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +76,13 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
             theory = solution(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
-    for title, values, limits in (QUANTITIES[name] for name in names):
+    for name in names:
+        title, values, limits = QUANTITIES[name]
         lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
         if theory is not None:
             lines.append(Line("theory", theory.time, values(theory.scene, theory), possible=theory.rolls_until()))
+        if name == "normal" and trajectory.rolling == "contact":
+            title += f", mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
         drawn.append(Chart(heading(title, trajectory.scene), lines, **limits))
     return drawn
 
@@ -116,9 +119,9 @@ def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
 def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
     """Return the normal and the friction force [N] that act in a motion, also while the can slips or is in the air.
 
-    They follow from the change of the momentum of can and load. Each is the mean force over a two hundredth of the
-    motion: a stiff contact trembles, which a single step would show and an eye would not. The friction is positive up
-    the incline.
+    They follow from the change of the momentum of can and load. Each is the mean force over a fiftieth of the motion: a
+    can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre, and each
+    landing is a blow. The friction is positive up the incline.
     """
     load, heavy = scene.load.moment, scene.mass * scene.gravity
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
@@ -178,11 +181,12 @@ class Strip:
             sides = {"left": 4.5 * unit / width, "right": 1 - 2 * unit / width}
             figure.subplots_adjust(**sides, top=0.84, bottom=0.27, wspace=10 * unit / (width / len(charts)))
             drawn = [self._draw(panel, chart) for panel, chart in zip(panels, charts, strict=True)]
+            panels[0].set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()
                 named = dict(zip(names, handles, strict=True))
                 figure.legend(
-                    named.values(), named, loc="lower right", bbox_to_anchor=(1 - unit / width, 0), ncols=2,
+                    named.values(), named, loc="lower right", bbox_to_anchor=(1 - unit / width, 0), ncols=4,
                     borderaxespad=0.1, borderpad=0, handlelength=1.5, columnspacing=1.2,
                 )  # fmt: skip
             canvas.draw()
@@ -205,7 +209,8 @@ class Strip:
             shown = panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
             if not possible.all():
                 style |= {"linestyle": ":", "linewidth": 0.25 * unit}
-                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style)
+                label = f"{line.name}, if it could not lift off"
+                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style, label=label)
             if line.colour is not None:
                 drawn += shown
         panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
@@ -213,7 +218,6 @@ class Strip:
         low, high = panel.get_ylim()
         room = max(0.0, chart.least - (high - low)) / 2
         panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
-        panel.set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return drawn
 

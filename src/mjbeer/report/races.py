@@ -28,8 +28,8 @@ _STEEPER = math.radians(7.1)
 honey, the thickest of the liquids, from 7.38."""
 _ICE = 917.0
 """Density of ice [kg/m^3]."""
-_END, _HONEY = 3.0, 22.0
-"""How long the motions last [s]: until all cans but that with honey are out of the picture, and until honey is in."""
+_END = 24.5
+"""When the can with honey is out of the picture [s]."""
 
 
 def of_beer() -> Sequence[Runner]:
@@ -73,10 +73,10 @@ def with_ice() -> Scene:
 def of_liquids() -> Sequence[Runner]:
     """Return the cans of the race of water, oil, honey and ice, all let go with a level surface."""
     cans = (
-        ("water", with_liquid("water"), _END, (0.08, 0.40, 0.72), (0.36, 0.66, 0.93)),
-        ("olive oil", with_liquid("olive oil"), _END, (0.42, 0.45, 0.05), (0.78, 0.76, 0.20)),
-        ("honey", with_liquid("honey"), _HONEY, (0.72, 0.38, 0.0), (0.88, 0.52, 0.05)),
-        ("ice", with_ice(), _END, (0.40, 0.42, 0.55), (0.84, 0.93, 0.98)),
+        ("water", with_liquid("water"), 1.6, (0.08, 0.40, 0.72), (0.36, 0.66, 0.93)),
+        ("olive oil", with_liquid("olive oil"), 2.1, (0.42, 0.45, 0.05), (0.78, 0.76, 0.20)),
+        ("honey", with_liquid("honey"), _END, (0.72, 0.38, 0.0), (0.88, 0.52, 0.05)),
+        ("ice", with_ice(), 2.5, (0.40, 0.42, 0.55), (0.84, 0.93, 0.98)),
     )
     return [
         Runner(name, simulate(scene, end, -_STEEPER, tolerance=1e-9), colour, load)
@@ -86,7 +86,7 @@ def of_liquids() -> Sequence[Runner]:
 
 def by_theory(scene: Scene) -> Runner:
     """Return a can of the race of liquids that moves as exact theory says."""
-    return Runner("theory", exact(scene, np.array([0.0, _HONEY]), -_STEEPER), (0.0, 0.0, 0.0))
+    return Runner("theory", exact(scene, np.array([0.0, _END]), -_STEEPER), (0.0, 0.0, 0.0))
 
 
 @cache
