@@ -216,7 +216,7 @@ def draw_inertia(path: pathlib.Path) -> None:
         for angle, value, text, offset in (
             (90, 0.5, "half full: 1/2", (6, 10)),
             (90, segment.eq_37(math.pi / 2), "half full: 0.32", (10, -8)),
-            (degrees[least], axial[least], f"least: {axial[least]:.3f}", (4, -12)),
+            (degrees[least], axial[least], f"least: {axial[least]:.3f}", (0, 19)),
         ):
             axes.plot(angle, value, "k.")
             note(axes, text, (angle, value), offset, color="black")
