@@ -39,7 +39,7 @@ LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
 SKID = partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=MU)
 """The motions of films: a light hoop is pushed with the weight on top, in contact with level ground."""
-_HOOP = f"{in_words(hoop(), {'load'})}; M: mass of the hoop, m: mass of the weight"
+_HOOP = "hoop of mass M with a weight m on its rim, level ground; rolling from rest"
 _JUMP = 3.0
 """Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
 _FROM_TOP = "angle of the weight from the top [°]"
@@ -64,7 +64,7 @@ def draw_rocking(path: pathlib.Path) -> None:
     scene, times = run.scene, run.time
     title = "A can of frozen beer rocks about its equilibrium and stays"
     subtitle = f"{in_words(scene)}; let go at φ = 0"
-    with chart(path, 2, 1, width=9, height=7, title=title, subtitle=subtitle) as (angle, error):
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as (angle, error):
         truth = exact(scene, times, run.phi0).phi
         printed = footnote_8_as_printed(scene, times, run.phi0)
         angle.plot(times, np.degrees(truth), label="exact theory, eq. (52)", **THEORY)
@@ -85,7 +85,7 @@ def draw_roll_down(path: pathlib.Path) -> None:
     scene, parts = run.scene, exact(run.scene, times, math.pi).rolls_until()
     rolls, pulled = times <= parts, times >= parts
     title, subtitle = "Frozen beer let go on top rolls down in jerks", f"{in_words(scene)}; let go at φ = 180°"
-    with chart(path, 2, 1, width=9, height=7, title=title, subtitle=subtitle) as panels:
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
         angle, normal = panels
         even = scene.acceleration() / scene.can.radius * times**2 / 2
         angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
@@ -118,7 +118,7 @@ def draw_slip_and_hop(path: pathlib.Path) -> None:
     parts = rolling.rolls_until()
     title = f"On an incline with μ = {_MU:g}, the can slips before it hops"
     subtitle = f"{in_words(contact.scene)}; let go at φ = 180°"
-    with chart(path, 2, 1, width=9, height=7, title=title, subtitle=subtitle) as panels:
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
         friction, moved = panels
         needed = np.where((rolling.forces.needed < 2.5) & (times < parts), rolling.forces.needed, np.nan)
         friction.plot(times, needed, label="needed to roll, exact theory", color="black")
@@ -132,7 +132,7 @@ def draw_slip_and_hop(path: pathlib.Path) -> None:
         note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
         label(friction, "", "friction / normal force", "Friction that rolling needs", ylim=(0, 2.2))
         label(moved, "time t [s]", "distance [mm]", "What the can does")
-        name_below(panels, 3)
+        name_below(panels, 2)
 
 
 def contact_at_equilibrium(part: float) -> Trajectory:
@@ -145,9 +145,9 @@ def draw_friction(path: pathlib.Path) -> None:
     """Draw how far a can slides at its equilibrium, with friction coefficients about tan(alpha)."""
     runs = {part: contact_at_equilibrium(part) for part in (1.02, 0.98, 0.85, 0.7)}
     scene = runs[0.7].scene
-    title = "At its equilibrium the can stays if μ is more than tan α, and slides off if not"
+    title = "A can at its equilibrium stays if μ is more than tan α"
     subtitle = f"{in_words(scene)}, tan α = {math.tan(scene.incline):.3f}"
-    with chart(path, width=9, height=5, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
         for part, run in runs.items():
             axes.plot(run.time, 1e3 * np.abs(run.u - run.u[0]), label=f"μ = {part:g} tan α")
         label(axes, "time t [s]", "distance down the incline, MuJoCo [mm]")
@@ -199,13 +199,13 @@ def draw_normal(path: pathlib.Path) -> None:
     """Draw the normal force that rolling hoops need."""
     angles = np.linspace(1, 179, 400)
     ratios = ((1e-3, "1/1000"), (RATIO, "1/20"), (1 / 13, "1/13"), (0.2, "1/5"))
-    title = "Why a light hoop hops: to keep rolling, the ground would have to pull it"
-    with chart(path, width=9, height=5.4, title=title, subtitle=f"{_HOOP}; rolling from rest, theory") as (axes,):
+    title = "Why a light hoop hops: the ground would have to pull it"
+    with chart(path, width=7.5, height=5.4, title=title, subtitle=_HOOP) as (axes,):
         for (ratio, name), colour in zip(ratios, COLOURS, strict=False):
             values = np.array([hopping.normal(ratio, math.pi - math.radians(angle)) for angle in angles])
             negative = np.flatnonzero(values < 0)
             end = negative[0] if len(negative) else len(angles)
-            axes.plot(angles[:end], values[:end], color=colour, label=f"hoop / weight: M/m = {name}")
+            axes.plot(angles[:end], values[:end], color=colour, label=f"theory, M/m = {name}")
             axes.plot(angles[end:], values[end:], ":", color=colour)
         axes.plot([], [], label="after it would have hopped", **UNPHYSICAL)
         axes.axhline(0, **REFERENCE)
@@ -242,7 +242,7 @@ def draw_lift_off(path: pathlib.Path) -> None:
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
     title = "Before a hoop lifts off, it skids"
-    with chart(path, width=9, height=5.6, title=title, subtitle=f"{_HOOP}; rolling from rest") as (axes,):
+    with chart(path, width=7.5, height=5.6, title=title, subtitle=_HOOP) as (axes,):
         axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
         axes.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
         for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
@@ -262,8 +262,8 @@ def draw_skid(path: pathlib.Path) -> None:
     run = SKID()
     starts = exact(run.scene, run.time, run.phi0, run.phi_dot0).rolls_until(MU)
     title = "A pushed hoop skids, then hops"
-    subtitle = f"{in_words(run.scene)}, μ = {MU:g}; pushed at φ = {in_degrees(run.phi0)} with {run.phi_dot0:g} rad/s"
-    with chart(path, 2, 1, width=9, height=7, title=title, subtitle=subtitle) as panels:
+    subtitle = f"{in_words(run.scene, {'load'})}, M/m = 1/20, μ = {MU:g}; pushed at {run.phi_dot0:g} rad/s"
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
         slid, high = panels
         slid.plot(run.time, 1e3 * run.slip, label="MuJoCo", **SIMULATED)
         high.plot(run.time, 1e3 * run.lift, **SIMULATED)

@@ -82,7 +82,7 @@ def draw_hesitation(path: pathlib.Path) -> None:
     # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2 omega t) is -1.
     printed = b * (-(_SWING**2) / 4 - _SWING**2 * np.cos(2 * scene.frequency() * times) / 2)
     title, start = "The can hesitates once in every swing of its beer", f"beer let go at φ₀ = {in_degrees(_SWING)}"
-    with chart(path, width=9, height=5, title=title, subtitle=f"{in_words(scene)}; {start}") as (axes,):
+    with chart(path, width=7.5, height=5, title=title, subtitle=f"{in_words(scene)}; {start}") as (axes,):
         axes.plot(times, 1e3 * (exact(scene, times, _SWING).u - even), label="exact theory: b sin φ", **THEORY)
         axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
         axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice a swing", **PRINTED)
@@ -102,7 +102,7 @@ def draw_release(path: pathlib.Path) -> None:
     runs = [level_start(degrees) for degrees in (5.0, 20.0, 40.0, 70.0)]
     subtitle = f"{in_words(runs[0].scene, {'incline'})}; beer let go with a level surface, φ = −α"
     title = "The steeper the incline, the slower the beer swings for its can"
-    with chart(path, width=9, height=5, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
         small = np.linspace(0, 3, 601)
         axes.plot(small, -np.cos(2 * math.pi * small), label="theory of small swings, eq. (24)", **THEORY)
         for run in runs:
@@ -150,8 +150,8 @@ def draw_ripples(path: pathlib.Path) -> None:
     rates = np.array([turn.rate for turn in turns])
     line = np.geomspace(rates[0], rates[-1], 50)
     lifts = loop(scene, float(brentq(least_push, SLOW, 2 * SLOW, xtol=1e-3))).rate
-    title = "Looping beer turns unevenly: one ripple dies out as it turns faster, and one stays"
-    with chart(path, width=9.5, height=5.6, title=title, subtitle=in_words(scene)) as (axes,):
+    title = "One ripple of looping beer dies out with its rate, and one stays"
+    with chart(path, width=7.5, height=5.6, title=title, subtitle=in_words(scene)) as (axes,):
         axes.axvspan(lifts, 1.1 * rates[-1], color="#EFEFEF", zorder=0)
         axes.plot(
             line, np.degrees(oscillation.epsilon_28(c, line)), label="once in a turn: eq. (28), printed", **PRINTED
@@ -170,7 +170,7 @@ def draw_ripples(path: pathlib.Path) -> None:
         label(axes, "mean rate Ω of the beer [rad/s]", "amplitude of the ripple of φ [°]", xlim=limits)
         ticks(axes.xaxis, (30, 50, 100, 200, 300))
         ticks(axes.yaxis, (0.1, 0.3, 1, 3, 10, 30))
-        name_below([axes], 3)
+        name_below([axes], 2)
 
 
 def _beer(fills: Sequence[float] | np.ndarray, can: Can) -> list[Scene]:
@@ -185,19 +185,19 @@ def draw_accelerations(path: pathlib.Path) -> None:
     full = sliding().gravity * math.sin(sliding().incline)
     title = "The fuller the can, the faster it runs down, unless its beer is frozen"
     subtitle = "beer that does not swing; the same on every incline"
-    with chart(path, width=9, height=5.4, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5.4, title=title, subtitle=subtitle) as (axes,):
         levels = ((1.0, "mass that slides", 7), (2 / 3, "solid cylinder: 2/3", -8), (0.5, "hoop: 1/2", 7))
         for level, name, offset in levels:
             axes.axhline(level, **REFERENCE)
             note(axes, name, (1.0, level), (0, offset), ha="right")
         for name, can in _CANS.items():
             theory = [scene.acceleration() / full for scene in _beer(fills, can)]
-            (line,) = axes.plot(fills, theory, label=f"beer sliding, {name}: exact theory")
+            (line,) = axes.plot(fills, theory, label=f"sliding, {name}")
             runs = [simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853) for scene in _beer(few, can)]
             axes.plot(few, [mean_acceleration(run) / full for run in runs], "o", color=line.get_color())
         ice = [frozen(fill=float(fill)).acceleration() / full for fill in fills]
-        axes.plot([], [], "o", color=GREY, label="MuJoCo")
-        axes.plot(fills, ice, "--", label="beer frozen, massless can: theory as if it were balanced")
+        axes.plot([], [], "o", color=GREY, label="MuJoCo (lines: exact theory)")
+        axes.plot(fills, ice, "--", label="frozen, massless can, as if it were balanced")
         label(axes, _FILL, "acceleration / g sin α", ylim=(0.45, 1.08))
         name_below([axes], 2)
 
@@ -208,7 +208,7 @@ def draw_inertia(path: pathlib.Path) -> None:
     degrees, axial = np.degrees(half_angles), segment.eq_36(half_angles)
     least = int(axial.argmin())
     title, subtitle = "Moments of inertia of the beer", "beer of mass m in a can of radius a"
-    with chart(path, width=9, height=5.6, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5.6, title=title, subtitle=subtitle) as (axes,):
         axes.plot(degrees, axial, label="about the can's axis, eq. (36)")
         printed = segment.middle_36(half_angles, 8)
         axes.plot(degrees, printed, label="the same, third line of (36) as printed, …/8", **PRINTED)
@@ -216,7 +216,7 @@ def draw_inertia(path: pathlib.Path) -> None:
         for angle, value, text, offset in (
             (90, 0.5, "half full: 1/2", (6, 10)),
             (90, segment.eq_37(math.pi / 2), "half full: 0.32", (10, -8)),
-            (degrees[least], axial[least], f"least: {axial[least]:.3f}", (0, 19)),
+            (degrees[least], axial[least], f"least: {axial[least]:.3f}", (16, 19)),
         ):
             axes.plot(angle, value, "k.")
             note(axes, text, (angle, value), offset, color="black")
@@ -255,7 +255,7 @@ def draw_tilt(path: pathlib.Path) -> None:
 def draw_steepest(path: pathlib.Path) -> None:
     """Draw the steepest incline on which a can with frozen beer stays, over the fill."""
     title, subtitle = "A can with mass and frozen beer stays only on gentler slopes", "beer frozen, at its equilibrium"
-    with chart(path, width=9, height=5, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
         for name, can in _CANS.items():
             scenes = [frozen(fill=float(fill), can=can) for fill in _FILLS]
             axes.plot(_FILLS, [math.degrees(scene.largest_incline()) for scene in scenes], label=name)
