@@ -3,7 +3,7 @@
 import contextlib
 import pathlib
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -71,7 +71,7 @@ def _write(orders: Sequence[Order], most: int, begin: Callable[[str], None]) -> 
 
 
 @contextlib.contextmanager
-def _swept(orders: Sequence[Order]) -> Iterator[None]:
+def _swept(orders: Sequence[Order]) -> Generator[None]:
     """Remove the hidden files at the end that a process leaves which is ended while it writes."""
     try:
         yield
