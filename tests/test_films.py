@@ -33,9 +33,11 @@ def test_nothing_turns_so_fast_that_the_eye_is_deceived(name: str) -> None:
     film, fps = ALL[name]
     assert isinstance(film, Race | Take)
     motions = [runner.trajectory for runner in film.runners()] if isinstance(film, Race) else [film.trajectory()]
+    hurry, faster = film.reel().later
     for motion in motions:
-        fastest = max(np.abs(motion.roll_dot).max(), np.abs(motion.phi_dot).max())
-        assert fastest * film.speed / fps < TURN
+        speed = np.where(motion.time < hurry, film.speed, faster)
+        fastest = np.maximum(np.abs(motion.roll_dot), np.abs(motion.phi_dot))
+        assert (fastest * speed).max() / fps < TURN
 
 
 def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
@@ -43,7 +45,7 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     cans = {can.name: can for can in races.of_liquids()}
     finish = {name: can.finish(races.LENGTH) for name, can in cans.items()}
     assert sorted(finish, key=lambda name: finish[name]) == ["water", "olive oil", "ice", "honey"]
-    assert finish["honey"] == np.inf
+    assert finish["honey"] < np.inf
     way, speed = cans["honey"].positions(np.array([finish["ice"]]))[0, 0], races.with_liquid("honey").terminal_speed()
     told = races.told_of_liquids()
     honey = liquid_in("honey", cans["honey"].trajectory.scene.incline, 0.75, races.METAL)
@@ -52,13 +54,13 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
         f"Water wins after {finish['water']:.2f} s",
         f"oil follows after {finish['olive oil']:.2f} s",
         f"finishes after {finish['ice']:.2f} s",
-        f"it has come {100 * way:.0f} cm",
-        f"creeps with {100 * speed:.1f} cm/s, at which a metre takes {1 / speed:.0f} s",
+        f"it has come {100 * way:.0f} cm, and needs {finish['honey']:.2f} s",
+        f"creeps with {100 * speed:.1f} cm/s",
     ):
         assert words in told
     own = LIQUIDS["honey"].viscosity
     for viscosity in (own / 2, 2 * own):
-        assert races.by_theory(races.with_liquid("honey", viscosity)).way_of_theory(finish["ice"]) < 0.4
+        assert races.by_theory(races.with_liquid("honey", viscosity)).distance_of_theory(finish["ice"]) < 0.4
     assert all(can.trajectory.trusted for can in cans.values())
 
 

@@ -38,31 +38,6 @@ def test_plumb_lines_are_plumb_and_level_lines_level(x: float, y: float, low: fl
     assert level[0, 1] == pytest.approx(level[1, 1], abs=ROUNDING * 2000)
 
 
-def test_what_is_behind_is_smaller_and_nearer_to_the_eye() -> None:
-    ring = np.insert(circle(0.033), 1, 0.0, axis=1)
-    near, far = (VIEW.pixel(np.array([0.4, y, 0.1]) + ring) for y in (CENTRE[1], CENTRE[1] + 0.5))
-    assert np.ptp(far[:, 0]) == pytest.approx(np.ptp(near[:, 0]) * 2.0 / 2.5)
-    eye = VIEW.pixel(np.array([VIEW.eye[0], 0.0, VIEW.eye[2]]))
-    distances = [np.hypot(*(ends.mean(axis=0) - eye)) for ends in (near, far)]
-    assert distances[1] == pytest.approx(distances[0] * 2.0 / 2.5, rel=1e-3)  # the mean of a ring repeats one point
-
-
-@settings(max_examples=50, deadline=None, derandomize=True)
-@given(PLACES, PLACES, PLACES, st.integers(0, 700), st.integers(0, 400))
-def test_a_crop_shows_the_same_at_the_same_place(x: float, y: float, z: float, left: int, top: int) -> None:
-    point = np.array([x, y, z])
-    crop = VIEW.crop(left, top, left + 300, top + 200)
-    assert crop.pixels == (300, 200)
-    assert crop.pixel(point) == pytest.approx(VIEW.pixel(point) - [left, top], abs=1e-7)
-
-
-def test_a_box_holds_what_it_is_asked_for_and_nothing_outside_of_the_picture() -> None:
-    ring = CENTRE + np.insert(circle(0.0999), 1, 0.0, axis=1)
-    assert VIEW.box(ring) == (600, 250, 1000, 650)
-    assert VIEW.box(ring, margin=2.5) == (597, 247, 1003, 653)
-    assert VIEW.box(ring + np.array([0.4, 0, 0])) == (1400, 250, 1600, 650)
-
-
 @pytest.mark.parametrize("pixels", [(400, 300), (300, 400), (1200, 100)])
 def test_a_view_towards_points_just_holds_them(pixels: tuple[int, int]) -> None:
     points = np.random.default_rng(1).uniform(-1, 1, (50, 3))

@@ -1,7 +1,6 @@
 """The pictures show what theory says: where beer, can and mark are, at any size and before every camera."""
 
 import math
-import weakref
 from collections.abc import Callable, Sequence
 from contextlib import closing
 
@@ -151,14 +150,6 @@ def test_one_sample_is_drawn() -> None:
     still = exact(frozen(), np.array([0.0]), 1.0)
     assert coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
     assert video.frame(still, 0.0, 320, 180).shape == (180, 320, 3)
-
-
-@pytest.mark.draws
-def test_drawn_frames_are_never_all_held() -> None:
-    made: list[weakref.ref] = []
-    for picture in film.draw(motion(), PLAIN, 1.0, np.linspace(0, 0.4, 5), 64, 36):
-        made.append(weakref.ref(picture))
-        assert sum(each() is not None for each in made) <= 2
 
 
 @pytest.mark.draws

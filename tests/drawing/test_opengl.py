@@ -90,18 +90,6 @@ def test_a_hang_is_survived(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @linux
-def test_what_is_lacking_is_what_would_be_raised(monkeypatch: pytest.MonkeyPatch) -> None:
-    _failing(monkeypatch, "egl")
-    assert opengl.problem() is None
-    opengl.backend.cache_clear()
-    _failing(monkeypatch, "egl", "osmesa")
-    lacking = opengl.problem()
-    with pytest.raises(RenderingError) as caught:
-        opengl.context(16, 16)
-    assert lacking == str(caught.value)
-
-
-@linux
 @pytest.mark.parametrize(
     ("everything", "status", "said"),
     [
@@ -159,3 +147,31 @@ def test_context_is_drawn_with() -> None:
     context.free()
     if sys.platform == "linux":
         assert os.environ["PYOPENGL_PLATFORM"] == opengl.backend()
+
+
+RASTERIZERS = """
+import pathlib
+from mjbeer.drawing import opengl
+context = opengl.context(64, 64)
+context.make_current()
+from OpenGL import GL
+threads = [(task / "comm").read_text() for task in pathlib.Path("/proc/self/task").iterdir()]
+print(sum(name.startswith("llvmpipe") for name in threads), GL.glGetString(GL.GL_RENDERER).decode())
+"""
+
+
+@pytest.mark.draws
+@linux
+def test_mesa_draws_in_the_thread_that_calls_it_unless_the_user_says_otherwise() -> None:
+    def rasterizers(**said: str) -> tuple[int, str]:
+        given = {name: value for name, value in os.environ.items() if name != "LP_NUM_THREADS"} | said
+        done = subprocess.run(
+            [sys.executable, "-c", RASTERIZERS], env=given, capture_output=True, text=True, check=True
+        )
+        count, renderer = done.stdout.split(maxsplit=1)
+        return int(count), renderer
+
+    count, renderer = rasterizers()
+    assert count == 0
+    if "llvmpipe" in renderer:  # on a graphics card there are none whatever is said
+        assert rasterizers(LP_NUM_THREADS="2")[0] == 2

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
 from mjbeer.drawing.camera import Shot, View, on_incline, scale
 from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides
 from mjbeer.drawing.scene import Display, coordinates
@@ -92,21 +92,10 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     # Friction is positive up the incline, which is to the left.
     assert differ(direction(np.array([start, end])), math.pi * (friction > 0) - motion.scene.incline) < ROUNDING
     lengths = np.hypot(*(head - tail)), np.hypot(*(end - start))
-    assert lengths[1] / lengths[0] == pytest.approx(abs(friction) / normal, rel=0.02)  # means over 2.5 ms
+    assert lengths[1] / lengths[0] == pytest.approx(abs(friction) / normal, rel=0.02)  # means over 10 ms
     radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
     assert lengths[0] <= LONGEST * radius * (1 + 1e-9)
     assert sheet.words == ["N", "F"]
-
-
-def test_in_the_air_there_are_no_forces() -> None:
-    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, times=np.linspace(0, 1, 1001))
-    flying = run.time[np.argmax(run.lift)]
-    positions = coordinates(run, TIMES)
-    view = Shot.fit(run.scene, "fixed", run.time, run.u, run.lift, PLANE, PIXELS).view(0.0)
-    sheet = Recorder(*PIXELS)
-    Marks(run, ("forces",), PLANE, TIMES, positions).draw(sheet, view, 0, flying, coordinates(run, [flying])[0])
-    assert sheet.arrows == []
-    assert sheet.words == []
 
 
 def test_the_ghost_is_where_even_acceleration_has_it() -> None:

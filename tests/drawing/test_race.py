@@ -7,7 +7,7 @@ import pytest
 
 from mjbeer import Can, exact, frozen, simulate, sliding
 from mjbeer.drawing.race import Course, Race, Runner
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.strip import wrapped
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 
@@ -46,40 +46,41 @@ def test_at_the_finish_a_can_is_at_the_line(scene: Scene, phi0: float) -> None:
     assert runner.finish(0.7) == pytest.approx(time, abs=SIMULATED)
 
 
-def test_a_can_that_does_not_finish_is_followed_until_the_others_have() -> None:
-    """What honey does not reach has no time, and the table has how far it came."""
-    fast, slow = run(sliding(INCLINE, can=METAL)), run(sliding(INCLINE, can=METAL, damping=1e-2), duration=1.8)
-    assert slow.finish(1.0) == slow.finish_of_theory(1.0) == math.inf
-    race = Race("a race", lambda: [fast, slow], length=1.0, speed=1.0, told=str, still=0.0, after=0.1)
-    end = fast.finish(1.0)
-    assert race.reel().end == end + 0.1
-    results = Course(race, [fast, slow], 320, 180)
-    (first, by_theory), (second, second_by_theory) = results.words
-    assert first == by_theory == f"{end:.2f} s"
-    assert second == second_by_theory == f"{slow.way_of_theory(end):.2f} m"
+def test_a_race_lasts_until_the_last_can_and_hurries_when_only_that_is_left() -> None:
+    """With the hurry of 4, a second of the motion takes a quarter of the pictures; the plates have all times."""
+    cans = [run(sliding(INCLINE, can=METAL)), run(frozen(INCLINE, fill=1.0))]
+    first, last = (can.finish(1.0) for can in cans)
+    race = Race("a race", lambda: cans, length=1.0, speed=0.5, told=str, still=0.0, after=0.1, hurry=4)
+    reel = race.reel()
+    assert reel.end == pytest.approx(last + 4 * 0.1)
+    times = reel.times(10)
+    assert len(times) == round(10 * ((first + 0.1) / 0.5 + (last - first + 0.3) / 2))
+    assert np.diff(times[times < first + 0.1]) == pytest.approx(0.05)
+    assert np.diff(times[times > first + 0.1]) == pytest.approx(0.2)
+    assert Course(race, cans, 320, 180).results == [
+        f"1st: {first:.2f} s, theory {first:.2f} s",
+        f"2nd: {last:.2f} s, theory {last:.2f} s",
+    ]
 
 
-def test_runs_that_are_too_short_are_errors() -> None:
-    fast, short = run(sliding(INCLINE, can=METAL)), run(frozen(INCLINE, fill=1.0), duration=0.3)
-    with pytest.raises(
-        ParameterError, match=r"a can rolls 0\.0\d+ m to t = 0\.3 s, and the race is over 1 m and lasts"
-    ):
-        Race("a race", lambda: [fast, short], 1.0, 1.0, told=str, still=0.0).reel()
-    with pytest.raises(ParameterError, match="no can finishes: none rolls 1 m while its motion lasts"):
-        Race("a race", lambda: [short], 1.0, 1.0, told=str, still=0.0).reel()
+def test_a_can_that_does_not_finish_is_an_error() -> None:
+    short = run(frozen(INCLINE, fill=1.0), duration=0.3)
+    assert short.finish(1.0) == short.finish_of_theory(1.0) == math.inf
+    race = Race("a race", lambda: [run(sliding(INCLINE, can=METAL)), short], 1.0, 1.0, told=str, still=0.0)
+    with pytest.raises(ParameterError, match=r"a can rolls 0\.0\d+ m to t = 0\.3 s, and the race is over 1 m"):
+        race.reel()
 
 
-def test_the_chart_of_a_race_does_not_tell_who_wins() -> None:
-    """Theory's line is there at the end, and at the start only in the legend."""
-    cans = [run(sliding(INCLINE, can=METAL))]
-    race = Race("a race", lambda: cans, 1.0, 1.0, told=str, still=0.0)
-    course, counts = Course(race, cans, 640, 360), []
-    for time in (0.0, cans[0].finish(1.0)):
-        sheet = Sheet(640, 360)
-        course.strip.draw(sheet, time, 0)
-        grey = np.abs(sheet.picture().astype(int) - [180, 188, 200]).max(axis=2) < 12
-        counts.append(grey.sum())
-    assert 0 < counts[0] < 0.3 * counts[1]
+def test_cans_side_by_side_have_charts_and_last_as_long_as_all_their_motions() -> None:
+    cans = [run(sliding(INCLINE, can=METAL), 1.0, 2.0), run(frozen(INCLINE, fill=1.0), duration=1.5)]
+    race = Race("a comparison", lambda: cans, 0.5, 1.0, told=str, still=0.0, strips=("phi", "ahead"))
+    assert race.reel().end == 1.5
+    course = Course(race, cans, 320, 180)
+    assert course.results == []
+    angles, _ = course.charts()
+    for line, can in zip(angles.lines, cans, strict=True):
+        assert line.values == pytest.approx(wrapped(can.trajectory.phi))
+        assert line.colour == can.colour
 
 
 @pytest.mark.draws

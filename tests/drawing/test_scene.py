@@ -105,13 +105,6 @@ def test_each_can_has_a_label_and_a_load_of_its_colours() -> None:
     assert 0 < foam[0] == foam[2] < 1
 
 
-def test_hidden_cans_are_out_of_sight() -> None:
-    display = Display.of([sliding(), frozen()], 0, 1, apart=0.2)
-    display.hide()
-    for name in ("can", "1-can"):
-        assert display.data.body(name).xpos[2] > 100
-
-
 @pytest.mark.parametrize("radius", [1e-4, 1e-3, 1.0, 50.0])
 def test_size_does_not_show(radius: float) -> None:
     """The same geoms and vertices for a can of 0.1 mm as for one of 50 m."""

@@ -45,20 +45,6 @@ def test_a_text_is_in_its_box(anchor: tuple[float, float]) -> None:
     assert sheet.boxes == [(left, top, right, bottom)]
 
 
-def test_a_text_over_the_edge_is_cut_off() -> None:
-    sheet = Sheet(40, 30)
-    sheet.text((-10, -5), "long text that does not fit", 20, "black")
-    assert len(dark(sheet)[0]) > 20
-
-
-def test_a_halo_makes_a_text_readable_on_black() -> None:
-    sheet = Sheet(100, 40)
-    sheet.put(np.zeros((40, 100, 3), np.uint8))
-    sheet.text((10, 20), "N", 24, "black", halo=True)
-    assert (sheet.picture() > 200).any()
-    assert (sheet.picture()[:, 60:] == 0).all()
-
-
 def test_nothing_is_drawn_outside_of_a_clip() -> None:
     sheet = Sheet(60, 40)
     sheet.clip((20, 10, 40, 30))

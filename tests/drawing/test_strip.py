@@ -58,18 +58,6 @@ def test_an_angle_that_jumps_is_not_joined() -> None:
     assert not np.isnan(unbroken(np.zeros(3))).any()
 
 
-def test_a_small_range_is_not_made_large() -> None:
-    """A dot for 0 and one for 0.01 are at the same height, where at least 10 is shown."""
-    heights = []
-    for value in (0.0, 0.01):
-        values = np.where(TIME > 1, value, 0.0)
-        shown = Strip([Chart("rest", [Line("MuJoCo", TIME, values, RED)], least=10.0)], *SIZE)
-        sheet = Sheet(*SIZE)
-        shown.draw(sheet, 1.5, 0)
-        heights.append(red(sheet.picture())[0].mean())
-    assert heights[0] == pytest.approx(heights[1], abs=0.5)
-
-
 def test_a_simulation_has_theory_beside_it_and_theory_has_not() -> None:
     run = simulate(frozen(), 0.5, 1.0)
     (chart,) = charts(run, ["phi"])
@@ -82,12 +70,12 @@ def test_a_simulation_has_theory_beside_it_and_theory_has_not() -> None:
 
 @pytest.mark.parametrize("make", [frozen, sliding])
 def test_forces_of_a_rolling_can_are_those_that_rolling_needs(make) -> None:
-    """The mean over a width w is off by N'' w^2/24: N changes by a weight at up to 50 rad/s, and w is 5 ms, so 3e-3."""
+    """The mean over a width w is off by N'' w^2/24: at 50 rad/s and a w of 20 ms by 0.04 of a weight."""
     motion = exact(make(can=Can.sheet_metal()), SECOND, 1.0)
     normal, friction = strip.forces(motion.scene, motion)
     weight, inner = motion.scene.mass * 9.81, slice(20, -20)
-    assert np.abs(normal - motion.forces.normal)[inner].max() < 3e-3 * weight
-    assert np.abs(friction - motion.forces.friction)[inner].max() < 3e-3 * weight
+    assert np.abs(normal - motion.forces.normal)[inner].max() < 0.04 * weight
+    assert np.abs(friction - motion.forces.friction)[inner].max() < 0.04 * weight
 
 
 def test_a_can_in_the_air_has_no_forces_and_a_slipping_one_mu_times_n() -> None:
@@ -119,10 +107,6 @@ def test_a_damped_can_is_behind_the_one_that_accelerates_evenly() -> None:
     even = strip.even(damped, motion, SECOND)
     assert even == pytest.approx(strip.even(free, without, SECOND), abs=1e-12)
     assert even[-1] - motion.u[-1] > 0.2
-
-
-def test_angles_are_between_plus_and_minus_180_degrees() -> None:
-    assert strip.wrapped(np.radians([0, 179, 181, -181, 540.5])) == pytest.approx([0, 179, -179, 179, -179.5])
 
 
 def test_slip_begins_at_zero_and_is_what_the_can_did_not_roll() -> None:

@@ -217,3 +217,16 @@ def test_a_frame_outside_of_the_trajectory_is_an_error(tmp_path: pathlib.Path) -
         video.frame(motion(), 0.6)
     with pytest.raises(ParameterError, match=r"must end in \.png"):
         video.save_frame(motion(), 0.1, tmp_path / "can.jpg")
+
+
+@pytest.mark.draws
+def test_an_animation_has_all_pictures_and_runs_forever(tmp_path: pathlib.Path) -> None:
+    video.write_webp(reel(motion()), tmp_path / "can.webp", 160, 90, 10)
+    with Image.open(tmp_path / "can.webp") as image:
+        assert (getattr(image, "n_frames", 1), image.info["loop"], image.size) == (5, 0, (160, 90))
+        image.seek(3)
+        shown = np.asarray(image.convert("RGB")).astype(int)
+        assert image.info["duration"] == 100
+    drawn = list(reel(motion()).draw(np.arange(5) / 10, 160, 90))
+    off = [np.abs(shown - picture).mean() for picture in drawn]
+    assert np.argmin(off) == 3

@@ -88,17 +88,6 @@ def test_a_notebook_shows_whether_a_run_is_trusted() -> None:
     assert "<th>incline</th><td>10 degrees</td>" in good.scene._repr_html_()
 
 
-def test_a_plot_of_a_damped_run_has_exact_theory_beneath() -> None:
-    run = simulate(sliding(damping=1e-3), 0.5, 1.0, tolerance=1e-9)
-    above, below = run.plot(theory=True)
-    for axes, values in ((above, np.degrees(run.phi)), (below, run.u)):
-        theory = axes.get_lines()[0]
-        at_samples = np.interp(run.time, np.asarray(theory.get_xdata()), np.asarray(theory.get_ydata()))
-        assert at_samples == pytest.approx(values, abs=1e-6)
-    assert above.figure.get_suptitle() == "half-full massless can, beer sliding, damping 0.001 N m s, incline 10°"
-    plt.close(above.figure)
-
-
 def test_a_damped_run_is_drawn_with_its_speed_and_without_a_ghost() -> None:
     for scene in (sliding(damping=1e-3), sliding(drag=1e-3)):
         look = Look.usual(simulate(scene, 0.1, 1.0))

@@ -59,6 +59,7 @@ FAULTS = {
     "'one' and 'other' overlap": lambda axes: [axes.text(1.2, 1.6, word) for word in ("one", "other")],
     "'on it' lies on a line": lambda axes: axes.text(1.5, 1.5, "on it", ha="center", va="center"),
     "'the legend' lies on a line": lambda axes: axes.legend(loc="center"),
+    "'small' is too small": lambda axes: axes.text(1.2, 1.6, "small", fontsize=9),
 }
 
 

@@ -81,7 +81,7 @@ def test_a_report_has_the_table_and_the_films(
     last = err.partition(f"the report is in {folder / 'index.html'}\n")[2]
     assert re.fullmatch(SENTENCE.format(2, 2, 0, 0), last)
     story = [] if quick else ["told.mp4", "told-still.png"]
-    assert set(os.listdir(folder / "paper")) == {"letters.svg", "letters.png", "stories.md", "told.svg", *story}
+    assert set(os.listdir(folder / "paper")) == {"letters.svg", "stories.md", "told.svg", *story}
     films = [call for call in calls if call["path"].parent == folder]
     assert [call["path"].stem for call in films] == list(FILMS)
     assert {call["width"] for call in films} == {640 if quick else 1280}

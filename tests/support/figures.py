@@ -16,6 +16,8 @@ SPELLED = re.compile(r"\b(phi|alpha|omega|mu|beta|delta|epsilon|tau|zeta)(?![a-z
 """Letters of the formulas, with or without an index, and degrees."""
 _HAS_UNIT = re.compile(r"\[[^\]]+\]|.+ [/×] .+|share|number of")
 """A unit in brackets, or the name of something without one: a ratio, a product, a share or a number of things."""
+_SMALLEST = 8 / 0.85
+"""Least size of a text [points]: the page shows a plot with at least 0.85 pixels a point, and letters of 8 pixels."""
 _TOUCHING = 1.0
 """Overlap [pixels] of boxes that counts as touching: letters do not fill their boxes."""
 
@@ -38,6 +40,9 @@ def faults(figure: Figure) -> list[str]:
     """Return a sentence for each fault of a figure that was saved, which has laid it out."""
     boxes = _texts(figure)
     found = [f"{text!r} spells out a letter or a unit" for text, _ in boxes if SPELLED.search(text)]
+    found += [
+        f"{text.get_text()!r} is too small" for text in figure.findobj(Text) if float(text.get_fontsize()) < _SMALLEST
+    ]
     whole = figure.bbox.padded(0.5)
     found += [
         f"{text!r} is cut off"

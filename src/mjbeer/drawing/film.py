@@ -1,5 +1,6 @@
 """A film of a motion: its pictures one after the other, how fast it is shown, and its caption."""
 
+import math
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.drawing.camera import Shot, scale
-from mjbeer.drawing.overlay import Board, Look, Marks, guides, header, header_height
+from mjbeer.drawing.overlay import STRIP, Board, Look, Marks, guides, header, header_height
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import UNITS, Sheet, whole
 from mjbeer.drawing.strip import Strip, charts
@@ -20,8 +21,6 @@ from mjbeer.theory.trajectory import Trajectory
 
 _MOST_FRAMES = 1e6
 """Largest number of frames of a video: nine hours at 30 frames per second."""
-_STRIP = 10
-"""Height of the charts below a picture, in units."""
 _NARROW = 24
 """Width up to which a picture has no charts below, in units."""
 _FINE = 2000
@@ -40,24 +39,28 @@ class Reel:
     """Playback speed: 1 is real time, 0.5 is half as fast."""
     draw: Callable[[np.ndarray, int, int], Generator[np.ndarray]]
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height, width, 3), uint8."""
+    later: tuple[float, float] = (math.inf, 1.0)
+    """A time [s] from which on the playback speed is another, and that speed."""
 
     def times(self, fps: float) -> np.ndarray:
         """Return the times [s] of the pictures at `fps` frames per second of the video.
 
-        The video lasts as long as the motion, divided by `speed`.
+        The video lasts as long as the motion, divided by the playback speed.
 
         Raises:
           ParameterError: if `fps` or `speed` is not greater than 0, or the video would have too many frames.
         """
         fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", self.speed)
-        duration = self.end - self.start
-        count = duration * fps / speed
+        duration, turn = self.end - self.start, min(self.end, self.later[0])
+        before = (turn - self.start) / speed
+        count = (before + (self.end - turn) / self.later[1]) * fps
         if count > _MOST_FRAMES:
             raise ParameterError(
                 f"a video must have at most {_MOST_FRAMES:g} frames, got {duration:g} s at {fps:g} frames per second "
                 f"and a speed of {speed:g}, which are {count:.3g}"
             )
-        return self.start + speed / fps * np.arange(max(1, round(count)))
+        seconds = np.arange(max(1, round(count))) / fps
+        return np.where(seconds <= before, self.start + speed * seconds, turn + self.later[1] * (seconds - before))
 
 
 class Film(Protocol):
@@ -156,7 +159,7 @@ class Stage:
         scene, unit = trajectory.scene, height / UNITS
         top = header_height(look, unit)
         has_room = len(trajectory.time) > 1 and width > _NARROW * unit
-        below = round(_STRIP * unit) if has_room and look.strips else 0
+        below = round(STRIP * unit) if has_room and look.strips else 0
         fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
         positions = coordinates(trajectory, fine)
         plane = -scene.can.length / scene.can.radius * RADIUS / 2

@@ -19,9 +19,9 @@ from mjbeer.theory.named import in_words
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-Mark = Literal["phi", "paths", "forces", "ghost"]
+Mark = Literal["phi", "paths", "forces", "ghost", "skid"]
 """phi: the angle of the load. paths: of a point on the rim and of the load's centre of mass. forces: N and F. ghost: a
-can that accelerates evenly."""
+can that accelerates evenly. skid: the track that is left on the incline where the can slips."""
 _TITLES = {
     "sliding": "Beer that slides in its can without friction",
     "frozen": "Beer frozen to its can",
@@ -43,6 +43,8 @@ class Look:
     """What is drawn to explain the motion."""
     camera: Camera = "auto"
     """How the camera moves."""
+    facts: str = ""
+    """What is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title."""
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
@@ -61,13 +63,15 @@ class Look:
 
 HEIGHT = 4.1
 """Height of the first two lines."""
+STRIP = 10
+"""Height of the charts below a picture."""
 _LEGEND = 1.5
 """Height of the third line, which tells what the marks mean, if they need it."""
 _FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7
 """Where each of them is."""
 _GREY = "#52606d"
-_RIM, _CENTRE, _GHOST = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45)
-"""Colours of the path of a point on the rim, of that of the centre of mass, and of the ghost."""
+_RIM, _CENTRE, _GHOST, _SKID = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
+"""Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of the track."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)
 """Colours of the forces."""
 _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
@@ -75,6 +79,7 @@ _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
     "paths": (("—", _RIM, "path of a point on the rim"), ("—", _CENTRE, "path of the centre of mass")),
     "forces": (("→", _NORMAL, "normal force N"), ("→", _FRICTION, "friction F")),
     "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
+    "skid": (("—", _SKID, "where the {} slips"),),
 }
 """What the marks are: a sign, its colour, and its meaning."""
 
@@ -88,7 +93,8 @@ def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed:
     """Draw the lines above a picture as they are at a `time` [s]."""
     duration = float(trajectory.time[-1] - trajectory.time[0])
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
-    head(sheet, (look.title, in_words(trajectory.scene)), time, speed, unit, digits)
+    words = in_words(trajectory.scene) + (f"; {look.facts}" if look.facts else "")
+    head(sheet, (look.title, words), time, speed, unit, digits)
     sheet.blank(0, round(HEIGHT * unit), sheet.width, header_height(look, unit))
     body, column = "can" if looks.name(trajectory.scene) in ("sliding", "frozen") else "wheel", 1.2 * unit
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
@@ -105,7 +111,7 @@ def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, unit: 
     sheet.text((1.2 * unit, _SECOND * unit), words[1], 1.1 * unit, _GREY)
     right = sheet.width - 1.2 * unit
     sheet.text((right, _FIRST * unit), f"t = {time:.{digits}f} s", 1.45 * unit, anchor=(1, 0.5))
-    sheet.text((right, _SECOND * unit), "real time" if speed == 1 else pace, 1.1 * unit, _GREY, anchor=(1, 0.5))
+    sheet.text((right, _SECOND * unit), "real time" if speed == 1 else pace, 1.1 * unit, _GREY, (1, 0.5), speed > 1)
 
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
@@ -120,6 +126,8 @@ _LETTER = 1.35
 """Least height of a letter, in units of the sheet."""
 _FAINT = 0.05
 """Least length of an arrow that is drawn."""
+_SLOW = 0.02
+"""Speed from which on a foot slips, over that of a fall from the radius: the contact of a can that rolls creeps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +147,9 @@ class Marks:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        drawn = {"ghost": self._ghost, "paths": self._paths, "forces": self._forces, "phi": self._phi}
+        drawn = {
+            "skid": self._skid, "ghost": self._ghost, "paths": self._paths, "forces": self._forces, "phi": self._phi,
+        }  # fmt: skip
         for kind, draw in drawn.items():
             if kind in self.kinds:
                 draw(pen, time, now)
@@ -151,6 +161,15 @@ class Marks:
         centre, turned = np.array([roll, 1.0]), np.array([math.sin(roll), math.cos(roll)])
         pen.line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
         pen.line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
+
+    def _skid(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        until = np.searchsorted(self.fine, time, side="right")
+        (u, _, roll, lift), radius = self.positions.T, self.trajectory.scene.can.radius
+        slip = np.gradient(u - radius * roll, self.fine)
+        fall = math.sqrt(2 * (self.trajectory.scene.gravity or strip.EARTH) * radius)
+        slips = (np.abs(slip) > _SLOW * fall) & (lift < _SLOW * radius)
+        foot = np.stack([np.where(slips, u / radius, np.nan), np.full(len(u), -WALL)], axis=1)[:until]
+        pen.line(foot, 0.12, _SKID)
 
     def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         until = np.searchsorted(self.fine, time, side="right")

@@ -1,4 +1,4 @@
-"""The film of a race: cans let go together on one incline, and the order in which they reach its end."""
+"""The film of several cans let go together on one incline: a race, or two motions to be compared with charts."""
 
 import math
 from collections.abc import Callable, Generator, Sequence
@@ -9,35 +9,32 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from mjbeer.drawing.camera import View, circle, on_incline
+from mjbeer.drawing.camera import View, on_incline
 from mjbeer.drawing.film import Reel
-from mjbeer.drawing.overlay import HEIGHT, head
+from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, coordinates
-from mjbeer.drawing.sheet import UNITS, Sheet, whole
-from mjbeer.drawing.strip import Chart, Line, Strip
+from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, whole
+from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.exact import exact
-from mjbeer.theory.load import segment
 from mjbeer.theory.named import in_degrees
 from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225
 """Distance from lane to lane as drawn [m]; a can is 0.12 m long."""
-_STRIP = 11
-"""Height of chart and table, in units of the picture."""
-_CHART = 0.5
-"""Width of the chart, in widths of the picture."""
-_NAMES = 0.26
-"""Room for the names on the board before the start [m]."""
+_BEFORE = 0.4
+"""Room for the names on the board before the start, in lengths of the race."""
 _MARGIN = 0.01
 """Margin around what must be seen, in widths of the picture."""
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
 _FAR = 6.0
 """Distance of the eye, in lengths of the race."""
-_SMOOTH = 400
-"""Number of points of a line in the chart."""
+_LINE = 1.5
+"""Height of a line on a plate, in units of the picture."""
+_PLACES = ("1st", "2nd", "3rd")
+_WHITE = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,9 +44,11 @@ class Runner:
     name: str
     trajectory: Trajectory
     colour: tuple[float, float, float]
-    """Colour of its label, its name and its line."""
+    """Colour of its label, its name and its lines."""
     load: tuple[float, float, float] | None = None
     """Colour of what is in it; None is that of beer, or of ice if it is frozen."""
+    note: str = ""
+    """What else is to be known of it, such as "μ = 0.35"; it stands below the name."""
 
     @cached_property
     def distance(self) -> np.ndarray:
@@ -64,14 +63,14 @@ class Runner:
 
     def finish_of_theory(self, length: float) -> float:
         """Return when exact theory has the can at a `length` [m] from the start [s]; infinite where `finish` is."""
-        if self.way_of_theory(self.trajectory.time[-1]) < length:
+        if self.distance_of_theory(self.trajectory.time[-1]) < length:
             return math.inf
-        return self._when(lambda time: self.way_of_theory(time) - length)
+        return self._when(lambda time: self.distance_of_theory(time) - length)
 
     def _when(self, ahead: Callable[[float], float]) -> float:
         return float(brentq(ahead, 1e-3, self.trajectory.time[-1], xtol=1e-12))
 
-    def way_of_theory(self, time: float) -> float:
+    def distance_of_theory(self, time: float) -> float:
         """Return how far exact theory has the can from the start at a `time` [s], in metres."""
         motion = self.trajectory
         theory = exact(motion.scene, np.array([0.0, time]), motion.phi0, motion.phi_dot0)
@@ -88,19 +87,29 @@ class Runner:
 
 @dataclass(frozen=True)
 class Race:
-    """A film of several cans of one size, let go together on one incline."""
+    """A film of several cans of one size, let go together on one incline.
+
+    Without `strips` it is a race: it lasts until all have reached the finish, and each then has its time by its name.
+    With them, the cans are compared by charts below the picture, for as long as all of their motions last.
+    """
 
     title: str
     runners: Callable[[], Sequence[Runner]]
     """A function that computes the motions, and that can be pickled."""
     length: float
-    """Distance from start to finish [m]."""
+    """Distance from start to finish, or that is seen from the start on [m]."""
     speed: float
     told: Callable[[], str]
     """A function that says what is seen, in whole sentences, for the text beside the film."""
     still: float
     after: float = 0.0
-    """How long the film goes on after the last can has finished, in seconds of the motion [s]."""
+    """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
+    hurry: float = 1.0
+    """How many times faster time runs once all cans but the last have finished."""
+    facts: str = ""
+    """What holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title."""
+    strips: tuple[str, ...] = ()
+    """Names of the quantities in the charts."""
 
     @property
     def caption(self) -> str:
@@ -110,75 +119,76 @@ class Race:
     def reel(self) -> Reel:
         """Compute the motions, and return what is needed to draw them.
 
-        A can that does not finish is followed until the others have.
-
         Raises:
-          ParameterError: if no can finishes, or the motion of one that does not ends before that of the film.
+          ParameterError: if a can of a race does not finish.
         """
         runners = self.runners()
-        end = _last(runners, self.length) + self.after
-        for runner in runners:
-            if runner.finish(self.length) == math.inf and not runner.trajectory.time[-1] >= end:
-                raise ParameterError(
-                    f"{runner.name} rolls {runner.distance[-1]:.3g} m to t = {runner.trajectory.time[-1]:.3g} s, and "
-                    f"the race is over {self.length:g} m and lasts {end:.3g} s"
-                )
 
         def pictures(times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
             return Course(self, runners, whole("width", width), whole("height", height)).draw(times)
 
-        return Reel(0.0, end, self.speed, pictures)
+        if self.strips:
+            end = min(float(runner.trajectory.time[-1]) for runner in runners)
+            return Reel(0.0, end, self.speed, pictures)
+        return Reel(0.0, self.finishes(runners)[-1] + self.after * self.hurry, self.speed, pictures, self.pace(runners))
 
+    def finishes(self, runners: Sequence[Runner]) -> list[float]:
+        """Return the times [s] at which the cans finish, in increasing order.
 
-def _last(runners: Sequence[Runner], length: float) -> float:
-    """Return when the last of those cans finishes that do finish a race over a `length` [m], as a time [s].
+        Raises:
+          ParameterError: if one does not.
+        """
+        for runner in runners:
+            if runner.distance[-1] < self.length:
+                raise ParameterError(
+                    f"{runner.name} rolls {runner.distance[-1]:.3g} m to t = {runner.trajectory.time[-1]:.3g} s, and "
+                    f"the race is over {self.length:g} m"
+                )
+        return sorted(runner.finish(self.length) for runner in runners)
 
-    Raises:
-      ParameterError: if none does.
-    """
-    times = [time for runner in runners if (time := runner.finish(length)) < math.inf]
-    if not times:
-        raise ParameterError(f"no can finishes: none rolls {length:g} m while its motion lasts")
-    return max(times)
+    def pace(self, runners: Sequence[Runner]) -> tuple[float, float]:
+        """Return the time [s] from which on the film hurries, and how fast it then is."""
+        if self.hurry == 1:
+            return math.inf, self.speed
+        return self.finishes(runners)[-2] + self.after, self.speed * self.hurry
 
 
 class Course:
-    """What the pictures of a race are drawn with: board and lanes, names, the chart of the ways, and the table."""
+    """What the pictures of a race are drawn with: board and lanes, plates with names and times, charts."""
 
     def __init__(self, race: Race, runners: Sequence[Runner], width: int, height: int) -> None:
         length, self.unit = race.length, height / UNITS
         self.race, self.runners, self.sheet = race, runners, Sheet(width, height)
-        self.top, below = round(HEIGHT * self.unit), round(_STRIP * self.unit)
-        scenes = [runner.trajectory.scene for runner in runners]
-        self.display = Display.of(scenes, -_NAMES, length, _APART, lines=(0.0, length))
+        self.top, below = round(HEIGHT * self.unit), round(STRIP * self.unit) if race.strips else 0
+        scenes, before = [runner.trajectory.scene for runner in runners], -_BEFORE * length
+        lines = (0.0,) if race.strips else (0.0, length)
+        self.display = Display.of(scenes, before, length, _APART, lines)
         self.display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
-        ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_NAMES, length)]
+        ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (before, length)]
         outlines = [self.display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
         points = np.concatenate(outlines)
         eye = points.mean(axis=0) + _FAR * length * _EYE
         self.view = View.towards(eye, points, (width, height - self.top - below), _MARGIN)
-        self.end = _last(runners, length)
-        self.strip = Strip([self._chart()], round(_CHART * width), below)
-        self.finish = [runner.finish(length) for runner in runners]
-        self.words = [self._words(runner) for runner in runners]
-        """What the table has of each can once it has finished, or all have: by MuJoCo, and by theory."""
+        self.strip = Strip(self.charts(), width, below) if race.strips else None
+        self.pace = (math.inf, race.speed) if race.strips else race.pace(runners)
+        self.finish = [] if race.strips else [runner.finish(length) for runner in runners]
+        self.results = [
+            f"{_PLACES[place] if place < len(_PLACES) else f'{place + 1}th'}: {finish:.2f} s, "
+            f"theory {runner.finish_of_theory(length):.2f} s"
+            for runner, finish in zip(runners, self.finish, strict=False)
+            for place in [sorted(self.finish).index(finish)]
+        ]
+        """What each can's plate says once it has finished."""
 
-    def _chart(self) -> Chart:
-        """Return the chart of the ways of all cans from start to finish; who looks on is to guess who wins."""
-        lines = []
-        for runner in self.runners:
-            motion = runner.trajectory
-            times = np.linspace(0, min(runner.finish(self.race.length), self.end), _SMOOTH)
-            lines.append(Line("MuJoCo", times, runner.positions(times)[:, 0], runner.colour))
-            theory = exact(motion.scene, times, motion.phi0, motion.phi_dot0)
-            lines.append(Line("theory", times, theory.u - theory.u[0]))
-        return Chart("way [m]", lines, tells=False)
-
-    def _words(self, runner: Runner) -> tuple[str, str]:
-        """Return when a can has finished, or how far it has come when the last of the others has."""
-        if (time := runner.finish(self.race.length)) < math.inf:
-            return f"{time:.2f} s", f"{runner.finish_of_theory(self.race.length):.2f} s"
-        return f"{runner.positions(np.array([self.end]))[0, 0]:.2f} m", f"{runner.way_of_theory(self.end):.2f} m"
+    def charts(self) -> list[Chart]:
+        """Return the charts of some quantities, with a line for each can."""
+        drawn = []
+        for name in self.race.strips:
+            title, values, limits = QUANTITIES[name]
+            motions = [(runner, runner.trajectory, runner.trajectory.scene) for runner in self.runners]
+            lines = [Line(runner.name, run.time, values(scene, run), runner.colour) for runner, run, scene in motions]
+            drawn.append(Chart(heading(title, motions[0][2]), lines, **limits))
+        return drawn
 
     def draw(self, times: np.ndarray) -> Generator[np.ndarray]:
         """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
@@ -198,50 +208,33 @@ class Course:
         return np.concatenate([runner.positions(np.array([time])) for runner in self.runners])
 
     def explain(self, time: float) -> None:
-        """Draw title, names before the start, chart and table at a `time` [s]."""
-        sheet, unit, below = self.sheet, self.unit, self.top + self.view.pixels[1]
-        incline = self.display.scenes[0].incline
-        x, z = on_incline(self.display.scenes[0], -1.6 * RADIUS, 0.0)
-        for runner, lane in zip(self.runners, self.display.lanes, strict=True):
-            place = self.view.pixel(np.array([x, lane, z])) + np.array([0, self.top])
-            sheet.text(place, runner.name, 1.05 * unit, runner.colour, anchor=(1, 0.5), halo=True)
-        scene = f"{self.race.length:g} m, incline {in_degrees(incline)}"
-        head(sheet, (self.race.title, scene), time, self.race.speed, unit)
-        self.strip.draw(sheet, time, below)
-        self._table(time, (round(_CHART * sheet.width), below))
+        """Draw title, plates and charts at a `time` [s]."""
+        scene = self.display.scenes[0]
+        facts = [f"{self.race.length:g} m"] * (not self.race.strips) + [f"incline {in_degrees(scene.incline)}"]
+        facts += [self.race.facts] * bool(self.race.facts)
+        hurries = time >= self.pace[0]
+        speed = self.pace[1] if hurries else self.race.speed
+        head(self.sheet, (self.race.title, ", ".join(facts)), time, speed, self.unit)
+        x, z = on_incline(scene, -1.6 * RADIUS, 0.0)
+        for number, lane in enumerate(self.display.lanes):
+            column, row = self.view.pixel(np.array([x, lane, z])) + np.array([0, self.top])
+            self._plate(number, time, column, row)
+        if self.strip is not None:
+            self.strip.draw(self.sheet, time, self.top + self.view.pixels[1])
 
-    def _table(self, time: float, corner: tuple[int, int]) -> None:
-        """Draw each can from its end, and when it has finished; `corner` is the table's upper left one."""
-        sheet, unit, (left, top) = self.sheet, self.unit, corner
-        sheet.blank(*corner, sheet.width, sheet.height)
-        columns = left + unit * np.array([1.6, 3.6, 19.5, 25.0])
-        for column, by in zip(columns[2:], ("MuJoCo", "theory"), strict=True):
-            sheet.text((column, top + 1.2 * unit), by, 0.95 * unit, "#52606d", anchor=(0.5, 0.5))
-        order, table = (
-            sorted(self.finish),
-            zip(self.runners, self.finish, self.words, self.positions(time), strict=True),
-        )
-        for row, (runner, finish, words, position) in enumerate(table):
-            middle = top + (2.9 + 2.25 * row) * unit
-            _section(sheet, np.array([columns[0], middle]), 0.95 * unit, runner, position)
-            sheet.text((columns[1], middle), runner.name, 1.05 * unit, bold=time >= finish == order[0])
-            if time >= finish:
-                place = f"{order.index(finish) + 1}."
-                sheet.text((columns[2] - 3.6 * unit, middle), place, 1.05 * unit, runner.colour, (1, 0.5), bold=True)
-            if time >= min(finish, self.end):
-                for column, number in zip(columns[2:], words, strict=True):
-                    sheet.text((column, middle), number, 1.05 * unit, anchor=(0.5, 0.5))
-
-
-def _section(sheet: Sheet, centre: np.ndarray, radius: float, runner: Runner, position: np.ndarray) -> None:
-    """Draw a can as seen along its axis, with its beer: a close-up of what is small in the picture."""
-    scene, (_, phi, roll, _) = runner.trajectory.scene, position
-    fill, tilt = scene.load.fill or 0.0, phi + scene.incline
-    if fill > 1e-3:
-        half = segment(fill).half_angle
-        angles = tilt + np.linspace(-half, half, 40)
-        usual = (0.92, 0.58, 0.06) if scene.attachment == "sliding" else (0.62, 0.78, 0.90)
-        sheet.area(centre + radius * np.stack([-np.sin(angles), np.cos(angles)], axis=1), runner.load or usual)
-    sheet.line(centre + circle(radius), 0.14 * radius, runner.colour)
-    turned = np.array([math.sin(roll + scene.incline), -math.cos(roll + scene.incline)])
-    sheet.line(centre + radius * np.array([[0.72], [1.0]]) * turned, 0.2 * radius, "#c0272d")
+    def _plate(self, number: int, time: float, right: float, middle: float) -> None:
+        """Draw a plate with a can's name, its note, and its times once it has finished, at its right edge's middle."""
+        runner, sheet, unit = self.runners[number], self.sheet, self.unit
+        lines: list[tuple[str, float, Colour, bool]] = [(runner.name, 1.2 * unit, runner.colour, True)]
+        lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
+        if self.finish and time >= self.finish[number]:
+            lines.append((self.results[number], 1.05 * unit, INK, True))
+        elif time >= self.pace[0]:
+            lines.append((f"now sped up {self.pace[1]:.3g} times", 1.05 * unit, INK, True))
+        boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
+        left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
+        corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
+        sheet.area(np.array(corners), _WHITE, alpha=0.9)
+        for line, (words, size, colour, bold) in enumerate(lines):
+            row = middle + (line - (len(lines) - 1) / 2) * _LINE * unit
+            sheet.text((left + 0.6 * unit, row), words, size, colour, bold=bold)

@@ -33,9 +33,9 @@ _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
 }
-_EARTH = 9.81
+EARTH = 9.81
 """Gravity on earth [m/s^2]."""
-_INTERVALS = 200
+_INTERVALS = 50
 """Number of intervals of a motion over which forces are averaged."""
 _SMOOTH = 1500
 """Times at which theory's lines are computed."""
@@ -53,7 +53,7 @@ class Line:
     colour: tuple[float, float, float] | None = None
     """Its colour; None for theory's line, which is seen from the beginning."""
     possible: float = math.inf
-    """Time [s] from which the line is dotted, because the motion is not possible."""
+    """Time [s] from which the line is dotted, because the motion is possible only if the incline can pull."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +69,6 @@ class Chart:
     """Largest value that it has room for; the blow of a landing goes beyond."""
     least: float = 0.0
     """Least range of values that it shows: a straight line is not to look like a crooked one."""
-    tells: bool = True
-    """Whether theory's lines are there from the beginning, and tell what will be."""
 
 
 def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
@@ -81,13 +79,21 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
             theory = solution(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
-    for title, values, limits in (QUANTITIES[name] for name in names):
+    for name in names:
+        title, values, limits = QUANTITIES[name]
         lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
         if theory is not None:
             lines.append(Line("theory", theory.time, values(theory.scene, theory), possible=theory.rolls_until()))
-        level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
-        drawn.append(Chart(title if trajectory.scene.incline else level, lines, **limits))
+        if name == "normal" and trajectory.rolling == "contact":
+            title += f", mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
+        drawn.append(Chart(heading(title, trajectory.scene), lines, **limits))
     return drawn
+
+
+def heading(title: str, scene: Scene) -> str:
+    """Return a chart's title, which speaks of the ground where it is level."""
+    level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
+    return title if scene.incline else level
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:
@@ -116,9 +122,9 @@ def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
 def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
     """Return the normal and the friction force [N] that act in a motion, also while the can slips or is in the air.
 
-    They follow from the change of the momentum of can and load. Each is the mean force over a two hundredth of the
-    motion: a stiff contact trembles, which a single step would show and an eye would not. The friction is positive up
-    the incline.
+    They follow from the change of the momentum of can and load. Each is the mean force over a fiftieth of the motion: a
+    can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre, and each
+    landing is a blow. The friction is positive up the incline.
     """
     load, heavy = scene.load.moment, scene.mass * scene.gravity
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
@@ -137,7 +143,7 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
 
 def weight(scene: Scene) -> float:
     """Return the weight of can and load [N], in which forces are drawn; without gravity, that on earth."""
-    return scene.mass * (scene.gravity or _EARTH)
+    return scene.mass * (scene.gravity or EARTH)
 
 
 def _ahead(scene: Scene, motion: Coordinates) -> np.ndarray:
@@ -155,7 +161,7 @@ def _slip(scene: Scene, motion: Coordinates) -> np.ndarray:
 Quantity = tuple[str, Callable[[Scene, Coordinates], np.ndarray], dict[str, Any]]
 QUANTITIES: dict[str, Quantity] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("way down the incline, u [m]", lambda _, motion: motion.u, {}),
+    "u": ("distance down the incline, u [m]", lambda _, motion: motion.u, {}),
     "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
     "ahead": ("ahead of even acceleration [mm]", _ahead, {}),
     "normal": ("normal force, N [weights]", _normal, {"low": -1.0, "high": 4.0}),
@@ -178,11 +184,12 @@ class Strip:
             sides = {"left": 4.5 * unit / width, "right": 1 - 2 * unit / width}
             figure.subplots_adjust(**sides, top=0.84, bottom=0.27, wspace=10 * unit / (width / len(charts)))
             drawn = [self._draw(panel, chart) for panel, chart in zip(panels, charts, strict=True)]
+            panels[0].set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()
                 named = dict(zip(names, handles, strict=True))
                 room = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.5, "columnspacing": 1.2}
-                corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0), "ncols": 2}
+                corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0), "ncols": 4}
                 figure.legend(named.values(), named, **corner, **room)
             canvas.draw()
             self._complete = np.array(canvas.buffer_rgba())
@@ -204,15 +211,15 @@ class Strip:
             shown = panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
             if not possible.all():
                 style |= {"linestyle": ":", "linewidth": 0.25 * unit}
-                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style)
-            if line.colour is not None or not chart.tells:
+                label = f"{line.name}, if it could not lift off"
+                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style, label=label)
+            if line.colour is not None:
                 drawn += shown
         panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
         low, high = panel.get_ylim()
         room = max(0.0, chart.least - (high - low)) / 2
         panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
-        panel.set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
         return drawn
 

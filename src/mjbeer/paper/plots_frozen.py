@@ -3,13 +3,12 @@
 import math
 import pathlib
 from functools import partial
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
-from mjbeer.model.setting import DOP853, FRICTION
+from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import (
     COLOURS,
     GREY,
@@ -33,15 +32,14 @@ from mjbeer.theory.named import frozen, hoop, in_degrees, in_words, pendulum, sl
 from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_MARGIN = 0.02
-"""Relative difference of footnote 7's two friction coefficients from tan(alpha)."""
 _MU = 1.0
 """Friction coefficient of the incline from which the can lifts off."""
 ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853)
 LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=_MU)
-HOP = partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4)
+PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
+SKID = partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=MU)
 """The motions of films: a light hoop is pushed with the weight on top, in contact with level ground."""
-_HOOP = f"{in_words(hoop(), {'load'})}; M: mass of the hoop, m: mass of the weight"
+_HOOP = "hoop of mass M with a weight m on its rim, level ground; rolling from rest"
 _JUMP = 3.0
 """Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
 _FROM_TOP = "angle of the weight from the top [°]"
@@ -66,7 +64,7 @@ def draw_rocking(path: pathlib.Path) -> None:
     scene, times = run.scene, run.time
     title = "A can of frozen beer rocks about its equilibrium and stays"
     subtitle = f"{in_words(scene)}; let go at φ = 0"
-    with chart(path, 2, 1, width=9, height=7, title=title, subtitle=subtitle) as (angle, error):
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as (angle, error):
         truth = exact(scene, times, run.phi0).phi
         printed = footnote_8_as_printed(scene, times, run.phi0)
         angle.plot(times, np.degrees(truth), label="exact theory, eq. (52)", **THEORY)
@@ -81,40 +79,59 @@ def draw_rocking(path: pathlib.Path) -> None:
 
 
 def draw_roll_down(path: pathlib.Path) -> None:
-    """Draw the roll-down of frozen beer: how far it turns, what rolling needs, and how high the can hops."""
-    contact = LIFT_OFF()
-    scene, times = contact.scene, np.linspace(0, 1, 1001)
-    run = simulate(scene, times[-1], math.pi, integrator=DOP853, times=times)
-    parts = exact(scene, times, math.pi).rolls_until()
+    """Draw the roll-down of frozen beer: how far it turns, and how hard the incline would have to push."""
+    times = np.linspace(0, 1, 1001)
+    run = simulate(frozen(), times[-1], math.pi, integrator=DOP853, times=times)
+    scene, parts = run.scene, exact(run.scene, times, math.pi).rolls_until()
     rolls, pulled = times <= parts, times >= parts
-    title = "Frozen beer let go on top: it rolls down in jerks, until its can leaves the incline"
-    subtitle = f"{in_words(scene)}; let go at φ = 180°"
-    with chart(path, 4, 1, width=9, height=11, title=title, subtitle=subtitle) as panels:
-        angle, normal, friction, lift = panels
+    title, subtitle = "Frozen beer let go on top rolls down in jerks", f"{in_words(scene)}; let go at φ = 180°"
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
+        angle, normal = panels
         even = scene.acceleration() / scene.can.radius * times**2 / 2
         angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
         printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
         angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **PRINTED)
-        needed = np.where((run.forces.needed < 2) & (run.forces.normal > 0), run.forces.needed, np.nan)
-        push = run.forces.normal / (scene.mass * scene.gravity)
-        for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, push), (friction, needed)):
+        for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, _in_weights(run))):
             axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)
             axes.plot(times[pulled], values[pulled], label="the same, if the incline could pull the can", **UNPHYSICAL)
-        name = f"MuJoCo, can on an incline with μ = {_MU:g}: slips and hops"
-        hops: dict[str, Any] = {"color": COLOURS[2], "label": name}
-        angle.plot(contact.time, np.degrees(contact.phi - math.pi), **hops)
-        lift.plot(contact.time, 1e3 * contact.lift, **hops)
-        normal.axhline(0, **REFERENCE)
-        friction.axhline(_MU, **REFERENCE)
-        note(friction, f"μ = {_MU:g}", (0, _MU), (0, 7))
-        label(angle, "", "φ − 180° [°]", "How far the can has turned")
-        label(normal, "", "normal force / weight", "What rolling needs: the incline's push, or pull below 0")
-        label(friction, "", "friction |F| / N", "What rolling needs: friction", ylim=(0, 2))
-        label(lift, "time t [s]", "height [mm]", "How high a can that is free to leave it is above the incline")
-        for axes in panels:
-            axes.set_xlim(0, times[-1])
             axes.axvline(parts, **REFERENCE)
-        note(lift, f"N = 0 at {parts:.3f} s", (parts, 1e3 * contact.lift.max() * 0.8), (-6, 0), ha="right")
+            axes.set_xlim(0, times[-1])
+        normal.axhline(0, **REFERENCE)
+        note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
+        label(angle, "", "φ − 180° [°]", "How far the can has turned")
+        label(
+            normal, "time t [s]", "normal force / weight", "How hard the incline pushes; below 0 it would have to pull"
+        )
+        name_below(panels, 2)
+
+
+def _in_weights(run: Trajectory) -> np.ndarray:
+    """Return the normal force that rolling needs, over the weight of can and load."""
+    return run.forces.normal / (run.scene.mass * run.scene.gravity)
+
+
+def draw_slip_and_hop(path: pathlib.Path) -> None:
+    """Draw the friction that frozen beer's rolling down needs, and how a can with less of it slips and hops."""
+    contact = LIFT_OFF()
+    times = np.linspace(0, 1, 1001)
+    rolling = exact(contact.scene, times, math.pi)
+    parts = rolling.rolls_until()
+    title = f"On an incline with μ = {_MU:g}, the can slips before it hops"
+    subtitle = f"{in_words(contact.scene)}; let go at φ = 180°"
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
+        friction, moved = panels
+        needed = np.where((rolling.forces.needed < 2.5) & (times < parts), rolling.forces.needed, np.nan)
+        friction.plot(times, needed, label="needed to roll, exact theory", color="black")
+        friction.axhline(_MU, **REFERENCE)
+        note(friction, f"all that there is: μ = {_MU:g}", (0, _MU), (6, 8))
+        moved.plot(contact.time, 1e3 * contact.slip, color=COLOURS[1], label="slid instead of rolled, MuJoCo")
+        moved.plot(contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo")
+        for axes in panels:
+            axes.axvline(parts, **REFERENCE)
+            axes.set_xlim(0, times[-1])
+        note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
+        label(friction, "", "friction / normal force", "Friction that rolling needs", ylim=(0, 2.2))
+        label(moved, "time t [s]", "distance [mm]", "What the can does")
         name_below(panels, 2)
 
 
@@ -126,18 +143,15 @@ def contact_at_equilibrium(part: float) -> Trajectory:
 
 def draw_friction(path: pathlib.Path) -> None:
     """Draw how far a can slides at its equilibrium, with friction coefficients about tan(alpha)."""
-    runs = {part: contact_at_equilibrium(part) for part in (1 + _MARGIN, 1 - _MARGIN, 0.7)}
+    runs = {part: contact_at_equilibrium(part) for part in (1.02, 0.98, 0.85, 0.7)}
     scene = runs[0.7].scene
-    title = "At rest on its equilibrium, the can stays if μ > tan α, and slides off if not"
+    title = "A can at its equilibrium stays if μ is more than tan α"
     subtitle = f"{in_words(scene)}, tan α = {math.tan(scene.incline):.3f}"
-    with chart(path, 1, 2, width=11, height=4.8, title=title, subtitle=subtitle) as panels:
-        for axes, parts in zip(panels, ((1 + _MARGIN, 1 - _MARGIN), (1 + _MARGIN, 0.7)), strict=True):
-            for part in parts:
-                run, colour = runs[part], COLOURS[list(runs).index(part)]
-                axes.plot(run.time, 1e3 * np.abs(run.u - run.u[0]), color=colour, label=f"MuJoCo, μ = {part:g} tan α")
-            about = f"{100 * (1 - min(parts)):.0f} % less friction than it takes"
-            label(axes, "time t [s]", "distance slid [mm]", about)
-        name_below(panels, 3)
+    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
+        for part, run in runs.items():
+            axes.plot(run.time, 1e3 * np.abs(run.u - run.u[0]), label=f"μ = {part:g} tan α")
+        label(axes, "time t [s]", "distance down the incline, MuJoCo [mm]")
+        name_below([axes], 4)
 
 
 def draw_period(path: pathlib.Path) -> None:
@@ -181,41 +195,27 @@ def _draw_range(axes: Axes) -> None:
     label(axes, "incline α [°]", ylabel, about, ylim=(-190, 190), yticks=range(-180, 181, 60))
 
 
-def _draw_hop(axes: Axes, friction: float, slips: bool) -> None:
-    """Draw the height of a pushed hoop, how far it has slid if asked for, and what theory foresees."""
-    run = HOP(friction=friction)
-    rolling = exact(run.scene, np.linspace(0, 0.06, 6001), run.phi0, run.phi_dot0)
-    if slips:
-        axes.plot(run.time, 1e3 * run.slip, color=COLOURS[2], label="slip: distance less the arc turned, MuJoCo")
-    axes.plot(run.time, 1e3 * run.lift, color="black", label="height above the ground, MuJoCo")
-    skids, parts = rolling.rolls_until(friction), rolling.rolls_until()
-    style: dict[str, Any] = {"color": GREY, "linewidth": 1.2}
-    axes.axvline(skids, label="theory: it skids from here on", linestyle="--", **style)
-    axes.axvline(parts, label="theory: here N = 0 if it still rolled", linestyle=":", **style)
-    about = f"Pushed: φ = {in_degrees(run.phi0)}, {run.phi_dot0:g} rad/s, M/m = 1/20, μ = {friction:g}"
-    label(axes, "time t [s]", "distance [mm]" if slips else "height [mm]", about)
-
-
 def draw_normal(path: pathlib.Path) -> None:
-    """Draw the normal force that rolling hoops need, and a hoop that hops."""
+    """Draw the normal force that rolling hoops need."""
     angles = np.linspace(1, 179, 400)
     ratios = ((1e-3, "1/1000"), (RATIO, "1/20"), (1 / 13, "1/13"), (0.2, "1/5"))
-    title = "Why a hoop hops: the ground would have to pull"
-    with chart(path, 1, 2, width=12, height=5.4, title=title, subtitle=_HOOP) as (push, hops):
+    title = "Why a light hoop hops: the ground would have to pull it"
+    with chart(path, width=7.5, height=5.4, title=title, subtitle=_HOOP) as (axes,):
         for (ratio, name), colour in zip(ratios, COLOURS, strict=False):
             values = np.array([hopping.normal(ratio, math.pi - math.radians(angle)) for angle in angles])
             negative = np.flatnonzero(values < 0)
             end = negative[0] if len(negative) else len(angles)
-            push.plot(angles[:end], values[:end], color=colour, label=f"M/m = {name}")
-            push.plot(angles[end:], values[end:], ":", color=colour)
-        push.plot([], [], label="after it would have hopped", **UNPHYSICAL)
-        push.axhline(0, **REFERENCE)
-        push.axvline(90, **REFERENCE)
-        note(push, "weight level\nwith the axis", (90, 2.6), (-6, 0), ha="right")
-        ylabel, spread = "normal force / weight on the rim, N / m g", range(0, 181, 30)
-        label(push, _FROM_TOP, ylabel, "Rolling from rest, theory", ylim=(-1.5, 4), xticks=spread)
-        _draw_hop(hops, FRICTION, slips=False)
-        name_below([push, hops], 3)
+            axes.plot(angles[:end], values[:end], color=colour, label=f"theory, M/m = {name}")
+            axes.plot(angles[end:], values[end:], ":", color=colour)
+        axes.plot([], [], label="after it would have hopped", **UNPHYSICAL)
+        axes.axhline(0, **REFERENCE)
+        axes.axvline(90, **REFERENCE)
+        note(axes, "weight level\nwith the axis", (90, 2.6), (-6, 0), ha="right")
+        note(axes, "the ground pushes", (0, 0), (0, 8))
+        note(axes, "the ground would have to pull", (0, 0), (0, -9))
+        ylabel = "normal force / weight on the rim, N / m g"
+        label(axes, _FROM_TOP, ylabel, ylim=(-1.2, 4), xticks=range(0, 181, 30))
+        name_below([axes], 3)
 
 
 def skids(ratios: np.ndarray, mu: float) -> tuple[np.ndarray, np.ndarray]:
@@ -234,25 +234,41 @@ def skids(ratios: np.ndarray, mu: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def draw_lift_off(path: pathlib.Path) -> None:
-    """Draw where a hoop lifts off and where it skids over its mass, and one that skids and hops."""
+    """Draw where a hoop lifts off and where it skids, over its mass."""
     # The angle of lift-off rises like a square root just below 1/13, so that the points are denser there.
     ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 60), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
     found = [fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP).takeoff() for ratio in few]
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
-    with chart(path, 1, 2, width=12, height=5.6, title="Before a hoop lifts off, it skids", subtitle=_HOOP) as panels:
-        where, hops = panels
-        where.plot(ratios, lifts, color=COLOURS[0], label="lifts off, theory")
-        where.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
-        for mu, colour in ((0.5, COLOURS[4]), (MU, COLOURS[1]), (2.0, COLOURS[3])):
-            where.plot(*skids(ratios, mu), "--", color=colour, label=f"skids, theory, μ = {mu:g}")
-        where.axhline(90, **REFERENCE)
-        where.axvline(1 / 13, **REFERENCE)
-        note(where, "Littlewood: 90°", (0.01, 90), (4, -8))
-        note(where, "M/m = 1/13", (1 / 13, 75), (-4, 0), ha="right")
-        where.set_xscale("log")
-        label(where, "mass of the hoop / weight on its rim, M / m", _FROM_TOP, "Rolling from rest")
-        ticks(where.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05))
-        _draw_hop(hops, MU, slips=True)
-        name_below(panels, 3)
+    title = "Before a hoop lifts off, it skids"
+    with chart(path, width=7.5, height=5.6, title=title, subtitle=_HOOP) as (axes,):
+        axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
+        axes.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
+        for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
+            axes.plot(*skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
+        axes.axhline(90, **REFERENCE)
+        axes.axvline(1 / 13, **REFERENCE)
+        note(axes, "Littlewood: 90°", (0.01, 90), (4, -8))
+        note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
+        axes.set_xscale("log")
+        label(axes, "mass of the hoop / weight on its rim, M / m", _FROM_TOP)
+        ticks(axes.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05))
+        name_below([axes], 2)
+
+
+def draw_skid(path: pathlib.Path) -> None:
+    """Draw how a pushed hoop skids and hops, over time."""
+    run = SKID()
+    starts = exact(run.scene, run.time, run.phi0, run.phi_dot0).rolls_until(MU)
+    title = "A pushed hoop skids, then hops"
+    subtitle = f"{in_words(run.scene, {'load'})}, M/m = 1/20, μ = {MU:g}; pushed at {run.phi_dot0:g} rad/s"
+    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
+        slid, high = panels
+        slid.plot(run.time, 1e3 * run.slip, label="MuJoCo", **SIMULATED)
+        high.plot(run.time, 1e3 * run.lift, **SIMULATED)
+        for axes in panels:
+            axes.axvline(starts, label="theory: from here on it skids", color=GREY, linestyle="--", linewidth=1.2)
+        label(slid, "", "distance [mm]", "How far it has slid instead of rolled")
+        label(high, "time t [s]", "height [mm]", "How high it is above the ground")
+        name_below(panels, 2)

@@ -17,7 +17,6 @@ from mjbeer.output.plots import (
     REFERENCE,
     SIMULATED,
     THEORY,
-    UNPHYSICAL,
     chart,
     label,
     name_below,
@@ -36,11 +35,10 @@ from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
 from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory, mean_acceleration
 
-_SWING = math.radians(30)
-"""Amplitude [rad] of the swing that shows the hesitation: wide enough to be seen in the can's way."""
-HESITATION = partial(simulate, sliding(), 1.0, _SWING, integrator=DOP853, times=np.linspace(0, 1, 501))
+_SWING = math.radians(60)
+"""Amplitude [rad] of the swing that shows the hesitation: wide enough for the can to be seen to slow down."""
+HESITATION = partial(simulate, sliding(), 0.8, _SWING, integrator=DOP853, times=np.linspace(0, 0.8, 401))
 LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
-WIDE_PENDULUM = partial(simulate, pendulum(), 1.5, 1.0, integrator=DOP853)
 """The motions of films: beer loops so slowly here that its can stays on the incline."""
 _FILL = "fill: height of the beer / can's diameter"
 _METAL, _HOOP = Can.sheet_metal(), Can.hoop(mass=0.05)
@@ -52,9 +50,9 @@ _CANS = {
 """Cans that the plots compare, by the name in their legends."""
 
 
-def let_go(degrees: float) -> Trajectory:
-    """Return one second of beer let go at an angle to the incline."""
-    return simulate(sliding(), 1.0, math.radians(degrees), integrator=DOP853, timestep=1e-3)
+def let_go(degrees: float, duration: float = 1.0) -> Trajectory:
+    """Return the motion of beer let go at an angle to the incline, for a `duration` [s]."""
+    return simulate(sliding(), duration, math.radians(degrees), integrator=DOP853, timestep=1e-3)
 
 
 def draw_trivial(path: pathlib.Path) -> None:
@@ -84,7 +82,7 @@ def draw_hesitation(path: pathlib.Path) -> None:
     # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2 omega t) is -1.
     printed = b * (-(_SWING**2) / 4 - _SWING**2 * np.cos(2 * scene.frequency() * times) / 2)
     title, start = "The can hesitates once in every swing of its beer", f"beer let go at φ₀ = {in_degrees(_SWING)}"
-    with chart(path, width=9, height=5, title=title, subtitle=f"{in_words(scene)}; {start}") as (axes,):
+    with chart(path, width=7.5, height=5, title=title, subtitle=f"{in_words(scene)}; {start}") as (axes,):
         axes.plot(times, 1e3 * (exact(scene, times, _SWING).u - even), label="exact theory: b sin φ", **THEORY)
         axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
         axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice a swing", **PRINTED)
@@ -104,7 +102,7 @@ def draw_release(path: pathlib.Path) -> None:
     runs = [level_start(degrees) for degrees in (5.0, 20.0, 40.0, 70.0)]
     subtitle = f"{in_words(runs[0].scene, {'incline'})}; beer let go with a level surface, φ = −α"
     title = "The steeper the incline, the slower the beer swings for its can"
-    with chart(path, width=9, height=5, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
         small = np.linspace(0, 3, 601)
         axes.plot(small, -np.cos(2 * math.pi * small), label="theory of small swings, eq. (24)", **THEORY)
         for run in runs:
@@ -128,23 +126,20 @@ def draw_looping(path: pathlib.Path) -> None:
     phase = np.linspace(0, 2 * math.pi, 201)
     x = np.degrees(phase)
     title = "Beer that loops in its can does not turn evenly"
-    subtitle = f"{in_words(scene)};  ε of eq. (28), δ = ½ m b² / (½ m b² + I) = {c.spread:.2f}"
-    with chart(path, 1, 2, width=11, height=5.2, title=title, subtitle=subtitle) as both:
-        for axes, start in zip(both, (SLOW, 400.0), strict=True):
+    with chart(path, 1, 2, width=11, height=5.2, title=title, subtitle=in_words(scene)) as both:
+        for axes, start, about in zip(both, (SLOW, 400.0), ("Slowly", "Fast, in a can held down"), strict=True):
             turn = loop(scene, start)
             phi = sum(turn.phi[k] * np.sin(k * phase) for k in range(1, 40))
-            printed = oscillation.epsilon_28(c, turn.rate) * np.sin(phase)
-            right = oscillation.corrected_28(c, turn.rate) * np.sin(phase) + c.spread / 4 * np.sin(2 * phase)
-            name = "(1 − ⅜ δ) ε sin Ωt + ¼ δ sin 2Ωt: right to first order in δ"
-            axes.plot(x[::5], np.degrees(right[::5]), "k.", label=name)
-            axes.plot(x, np.degrees(printed), label="ε sin Ωt, eqs. (26) and (28)", **PRINTED)
-            free, held = "MuJoCo, a free can", "MuJoCo, a can that is held down: a free one would lift off"
-            name, style = (free, SIMULATED) if least_push(start) > 0 else (held, UNPHYSICAL)
-            axes.plot(x, np.degrees(phi), label=name, **style)
-            about = f"{start:g} rad/s at the bottom, Ω = {turn.rate:.0f} rad/s in the mean"
+            once = oscillation.corrected_28(c, turn.rate) * np.sin(phase)
+            corrected = np.degrees(once + c.spread / 4 * np.sin(2 * phase))
+            printed = np.degrees(oscillation.epsilon_28(c, turn.rate) * np.sin(phase))
+            axes.plot(x, printed, label="one ripple in a turn: eqs. (26) and (28) as printed", **PRINTED)
+            axes.plot(x[::5], corrected[::5], "k.", label="with a second ripple, twice in a turn: corrected")
+            axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
             ylabel = "beer ahead of even turning, φ − Ωt [°]"
-            label(axes, "even turning, Ωt [°]", ylabel, about, xticks=range(0, 361, 90))
-        name_below(both, 2)
+            rate = f"{about}: Ω = {turn.rate:.0f} rad/s in the mean"
+            label(axes, "even turning, Ωt [°]", ylabel, rate, xticks=range(0, 361, 90))
+        name_below(both, 3)
 
 
 def draw_ripples(path: pathlib.Path) -> None:
@@ -155,26 +150,27 @@ def draw_ripples(path: pathlib.Path) -> None:
     rates = np.array([turn.rate for turn in turns])
     line = np.geomspace(rates[0], rates[-1], 50)
     lifts = loop(scene, float(brentq(least_push, SLOW, 2 * SLOW, xtol=1e-3))).rate
-    title = "Looping beer turns unevenly: a ripple that dies with Ω, and one that stays"
-    with chart(path, width=9.5, height=5.6, title=title, subtitle=in_words(scene)) as (axes,):
+    title = "One ripple of looping beer dies out with its rate, and one stays"
+    with chart(path, width=7.5, height=5.6, title=title, subtitle=in_words(scene)) as (axes,):
         axes.axvspan(lifts, 1.1 * rates[-1], color="#EFEFEF", zorder=0)
-        axes.plot(line, np.degrees(oscillation.epsilon_28(c, line)), label="ε, eq. (28)", **PRINTED)
-        axes.plot(line, np.degrees(oscillation.corrected_28(c, line)), label="(1 − ⅜ δ) ε", color=COLOURS[0])
+        axes.plot(
+            line, np.degrees(oscillation.epsilon_28(c, line)), label="once in a turn: eq. (28), printed", **PRINTED
+        )
+        corrected = np.degrees(oscillation.corrected_28(c, line))
+        axes.plot(line, corrected, label="once in a turn: corrected", color=COLOURS[0])
         stays = np.full_like(line, math.degrees(c.spread / 4))
-        axes.plot(line, stays, label="¼ δ, not in the paper", color=COLOURS[2])
-        for harmonic, name, marker, colour in ((1, "Ω", "o", COLOURS[0]), (2, "2Ω", "s", COLOURS[2])):
+        axes.plot(line, stays, label="twice in a turn: not in the paper", color=COLOURS[2])
+        for harmonic, name, marker, colour in ((1, "once", "o", COLOURS[0]), (2, "twice", "s", COLOURS[2])):
             amplitudes = [math.degrees(turn.phi[harmonic]) for turn in turns]
-            axes.plot(rates, amplitudes, marker, label=f"MuJoCo, at {name}", color=colour)
-        letters = f"ε = m g b cos α / (Ω² (½ m b² + I))\nδ = ½ m b² / (½ m b² + I) = {c.spread:.2f}"
-        note(axes, letters, (110, 12), (0, 0), color="black")
-        held = f"from Ω = {lifts:.0f} rad/s on only in a can that is held down:\na free one would lift off the incline"
+            axes.plot(rates, amplitudes, marker, label=f"MuJoCo, {name} in a turn", color=colour)
+        held = f"from {lifts:.0f} rad/s on only in a can that is held down:\na free one would lift off the incline"
         note(axes, held, (lifts, 0.17), (8, 0))
         axes.set(xscale="log", yscale="log")
         limits = (rates[0] / 1.1, 1.1 * rates[-1])
-        label(axes, "mean rate Ω [rad/s]", "amplitude of the ripple of φ [°]", xlim=limits)
+        label(axes, "mean rate Ω of the beer [rad/s]", "amplitude of the ripple of φ [°]", xlim=limits)
         ticks(axes.xaxis, (30, 50, 100, 200, 300))
         ticks(axes.yaxis, (0.1, 0.3, 1, 3, 10, 30))
-        name_below([axes], 3)
+        name_below([axes], 2)
 
 
 def _beer(fills: Sequence[float] | np.ndarray, can: Can) -> list[Scene]:
@@ -189,85 +185,87 @@ def draw_accelerations(path: pathlib.Path) -> None:
     full = sliding().gravity * math.sin(sliding().incline)
     title = "The fuller the can, the faster it runs down, unless its beer is frozen"
     subtitle = "beer that does not swing; the same on every incline"
-    with chart(path, width=9, height=5.4, title=title, subtitle=subtitle) as (axes,):
+    with chart(path, width=7.5, height=5.4, title=title, subtitle=subtitle) as (axes,):
         levels = ((1.0, "mass that slides", 7), (2 / 3, "solid cylinder: 2/3", -8), (0.5, "hoop: 1/2", 7))
         for level, name, offset in levels:
             axes.axhline(level, **REFERENCE)
             note(axes, name, (1.0, level), (0, offset), ha="right")
         for name, can in _CANS.items():
             theory = [scene.acceleration() / full for scene in _beer(fills, can)]
-            (line,) = axes.plot(fills, theory, label=f"beer sliding, {name}: exact theory")
+            (line,) = axes.plot(fills, theory, label=f"sliding, {name}")
             runs = [simulate(scene, 0.5, scene.equilibrium(), integrator=DOP853) for scene in _beer(few, can)]
             axes.plot(few, [mean_acceleration(run) / full for run in runs], "o", color=line.get_color())
         ice = [frozen(fill=float(fill)).acceleration() / full for fill in fills]
-        axes.plot([], [], "o", color=GREY, label="MuJoCo")
-        axes.plot(fills, ice, "--", label="beer frozen, massless can: theory as if it were balanced")
+        axes.plot([], [], "o", color=GREY, label="MuJoCo (lines: exact theory)")
+        axes.plot(fills, ice, "--", label="frozen, massless can, as if it were balanced")
         label(axes, _FILL, "acceleration / g sin α", ylim=(0.45, 1.08))
         name_below([axes], 2)
 
 
-_BETA = np.linspace(0.02, math.pi, 181)
-
-
-def _draw_inertia(path: pathlib.Path, title: str, lines: dict[str, np.ndarray], notes: tuple) -> None:
-    """Draw inertia over half angles: the right line and misprints, by name.
-
-    `notes` have an angle [degrees], a value, a text and its offset [points] each.
-    """
-    with chart(path, width=8, height=5, title=title, subtitle="beer of mass m in a can of radius a") as (axes,):
-        for (name, values), line, colour in zip(lines.items(), ("-", "--"), COLOURS, strict=False):
-            axes.plot(np.degrees(_BETA), values, line, color=colour, label=name)
-        for angle, value, text, offset in notes:
+def draw_inertia(path: pathlib.Path) -> None:
+    """Draw the figures of eqs. (36) and (37)."""
+    half_angles = np.linspace(0.02, math.pi, 181)
+    degrees, axial = np.degrees(half_angles), segment.eq_36(half_angles)
+    least = int(axial.argmin())
+    title, subtitle = "Moments of inertia of the beer", "beer of mass m in a can of radius a"
+    with chart(path, width=7.5, height=5.6, title=title, subtitle=subtitle) as (axes,):
+        axes.plot(degrees, axial, label="about the can's axis, eq. (36)")
+        printed = segment.middle_36(half_angles, 8)
+        axes.plot(degrees, printed, label="the same, third line of (36) as printed, …/8", **PRINTED)
+        axes.plot(degrees, segment.eq_37(half_angles), label="about its own centre of mass, eq. (37)", color=COLOURS[2])
+        for angle, value, text, offset in (
+            (90, 0.5, "half full: 1/2", (6, 10)),
+            (90, segment.eq_37(math.pi / 2), "half full: 0.32", (10, -8)),
+            (degrees[least], axial[least], f"least: {axial[least]:.3f}", (16, 19)),
+        ):
             axes.plot(angle, value, "k.")
             note(axes, text, (angle, value), offset, color="black")
         xlabel = "β, half the angle under which the beer is seen from the axis [°]"
-        highest = max(values.max() for values in lines.values())
-        label(axes, xlabel, "moment of inertia / m a²", xticks=range(0, 181, 30), ylim=(0, 1.05 * highest))
+        label(axes, xlabel, "moment of inertia / m a²", xticks=range(0, 181, 30), ylim=(0, 1.05))
         above = axes.secondary_xaxis("top")
         above.set_xticks([0, 60, 90, 120, 180], ["0", "¼", "½", "¾", "1"])
         above.set_xlabel(_FILL)
         name_below([axes], 2)
 
 
-def draw_axial(path: pathlib.Path) -> None:
-    """Draw the figure of eq. (36)."""
-    right = segment.eq_36(_BETA)
-    least = int(right.argmin())
-    lowest = (math.degrees(_BETA[least]), right[least], f"least: {right[least]:.3f}", (4, -12))
-    printed = "eq. (36), third line as printed, …/8"
-    lines = {"eq. (36), first and last line": right, printed: segment.middle_36(_BETA, 8)}
-    notes = (90, 0.5, "half full: 1/2", (6, 10)), lowest
-    _draw_inertia(path, "Moment of inertia of the beer about the can's axis", lines, notes)
-
-
-def draw_own(path: pathlib.Path) -> None:
-    """Draw the figure of eq. (37)."""
-    notes = ((90, segment.eq_37(math.pi / 2), "half full: 0.32", (10, -8)),)
-    title = "Moment of inertia of the beer about its own centre of mass"
-    _draw_inertia(path, title, {"eq. (37)": segment.eq_37(_BETA)}, notes)
+_FILLS = (1 - np.cos(np.linspace(0.03, 0.98 * math.pi, 181))) / 2
+"""Fills of curves that are steep near 0 and near 1, where they are denser."""
 
 
 def draw_tilt(path: pathlib.Path) -> None:
-    """Draw the tilt of beer at rest in its can, its frequency, and the steepest incline, over the fill."""
-    fills = (1 - np.cos(np.linspace(0.03, 0.98 * math.pi, 181))) / 2
-    title = "What the mass of the can does to its beer"
-    subtitle = f"beer sliding on an incline of {in_degrees(INCLINE)} (left and middle), beer frozen (right)"
-    with chart(path, 1, 3, width=13, height=4.8, title=title, subtitle=subtitle) as (angle, rate, limit):
+    """Draw the tilt of beer at rest in its can, and the frequency of its small swings, over the fill."""
+    title, subtitle = (
+        "What the mass of a can does to beer that slides in it",
+        f"beer sliding on an incline of {in_degrees(INCLINE)}",
+    )
+    with chart(path, 1, 2, width=11, height=5, title=title, subtitle=subtitle) as (angle, rate):
         for name, can in _CANS.items():
-            beer, ice = _beer(fills, can), [frozen(fill=float(fill), can=can) for fill in fills]
-            angle.plot(fills, [math.degrees(scene.equilibrium()) for scene in beer], label=name)
-            rate.plot(fills, [scene.frequency() for scene in beer])
-            limit.plot(fills, [math.degrees(scene.largest_incline()) for scene in ice])
-        rest = "φ at rest, beer's surface to the incline [°]"
-        label(angle, _FILL, rest, "Tilt of beer that does not swing")
+            scenes = _beer(_FILLS, can)
+            angle.plot(_FILLS, [math.degrees(scene.equilibrium()) for scene in scenes], label=name)
+            rate.plot(_FILLS, [scene.frequency() for scene in scenes])
+        note(angle, "level", (1, -math.degrees(INCLINE)), (0, 8), ha="right")
+        note(angle, "parallel to the incline", (1, 0), (0, 8), ha="right")
+        angle.axhline(-math.degrees(INCLINE), **REFERENCE)
+        tilt = "φ, beer's surface to the incline [°]"
+        label(angle, _FILL, tilt, "Tilt of beer that does not swing", ylim=(-10.8, 0.9))
         label(rate, _FILL, "ω [rad/s]", "Frequency of its small swings", ylim=(0, 80))
-        label(limit, _FILL, "α [°]", "Steepest incline on which it stays")
         name_below([angle], 3)
+
+
+def draw_steepest(path: pathlib.Path) -> None:
+    """Draw the steepest incline on which a can with frozen beer stays, over the fill."""
+    title, subtitle = "A can with mass and frozen beer stays only on gentler slopes", "beer frozen, at its equilibrium"
+    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
+        for name, can in _CANS.items():
+            scenes = [frozen(fill=float(fill), can=can) for fill in _FILLS]
+            axes.plot(_FILLS, [math.degrees(scene.largest_incline()) for scene in scenes], label=name)
+        label(axes, _FILL, "steepest incline on which it stays, α [°]", ylim=(0, 90))
+        name_below([axes], 3)
 
 
 def draw_pendulum(path: pathlib.Path) -> None:
     """Draw a wide swing of the pendulum, and the frequency of small ones over the mass of its bob."""
-    run = WIDE_PENDULUM()
+    run = simulate(pendulum(), 1.5, 1.0, integrator=DOP853)
     scene, ratio = run.scene, run.scene.load.mass / run.scene.can.mass
     title = "A wheel with a pendulum: a wide swing, and how the bob's mass changes small ones"
     with chart(path, 1, 2, width=12, height=5.4, title=title, subtitle=in_words(scene, {"load"})) as (swing, rate):

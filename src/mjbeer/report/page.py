@@ -32,8 +32,8 @@ _SMALL = 1e-3
 """A smaller share is a power of ten and not a percentage."""
 _WIDE = 690.0
 """Width [points] from which a plot takes the width of the page, so that its letters can be read."""
-_HEAD = 23.0
-"""Height of the title of a plot [points], which the page has as a heading: that of `output.plots`."""
+_TITLE, _SUBTITLE = 23.0, 17.3
+"""Heights of a plot's title, which the page has as a heading, and of the line below it [points]: see `output.plots`."""
 _KINDS = {".mp4": "video/mp4", ".svg": "image/svg+xml", ".webp": "image/webp"}
 _FAILED = re.compile(r"\*\*(.+?)\*\*")
 
@@ -49,14 +49,18 @@ class Plot:
     """Width [points]."""
 
     @classmethod
-    def of(cls, path: pathlib.Path) -> "Plot":
-        """Read a plot and its title, which is its name if it has none."""
+    def of(cls, path: pathlib.Path, captioned: bool = False) -> "Plot":
+        """Read a plot and its title, which is its name if it has none.
+
+        The line below the title is cut off as well where the page has it as a caption.
+        """
         svg = path.read_text(encoding="utf-8")
         svg = re.sub(r"(?s)<metadata>.*</metadata>", "", svg[svg.index("<svg") :])
         title = re.search(r"<title>([^<]*)</title>", svg.partition("<g")[0])
         corner, top, width, height = map(float, re.findall(r"[-\d.]+", svg.partition('viewBox="')[2])[:4])
         if title:
-            top, height = top + _HEAD, height - _HEAD
+            head = _TITLE + _SUBTITLE * captioned
+            top, height = top + head, height - head
         size = f'viewBox="{corner:g} {top:g} {width:g} {height:g}"'
         svg = re.sub(r'viewBox="[^"]*"', size, re.sub(r' (?:width|height)="[\d.]+pt"', "", svg, count=2), count=1)
         return cls(path.stem, str(Markup(title[1]).unescape()) if title else path.stem, svg, width)
@@ -123,7 +127,7 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
     figures = [
         Shown(plot.name, plot.title, figure.caption, maps["command"], plot)
         for name, figure in stiff_maps.FIGURES.items()
-        for plot in [Plot.of(folder / "plots" / f"{name}.svg")]
+        for plot in [Plot.of(folder / "plots" / f"{name}.svg", captioned=True)]
     ]
     room = LIMIT - sum(len(film.video) + len(film.poster) for film in films.values())
     room -= sum(len(plot.svg) for plot in errors) + sum(len(each.plot.picture) for each in figures if each.plot)

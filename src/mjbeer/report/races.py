@@ -28,19 +28,22 @@ _STEEPER = math.radians(7.1)
 honey, the thickest of the liquids, from 7.38."""
 _ICE = 917.0
 """Density of ice [kg/m^3]."""
-_END = 2.5
-"""When the can with honey, which does not finish, has been followed for long enough [s]."""
+_END = 24.5
+"""When the can with honey is out of the picture [s]."""
 
 
 def of_beer() -> Sequence[Runner]:
     """Return the cans of the race of beer that slides, frozen beer, and none."""
     cans = (
-        ("beer slides, ¾ full", sliding(_GENTLE, can=METAL, fill=_FILL), math.radians(30), (0.80, 0.45, 0.0)),
-        ("beer frozen, ¾ full", frozen(_GENTLE, can=METAL, fill=_FILL), math.pi, (0.15, 0.45, 0.75)),
-        ("beer frozen, full", frozen(_GENTLE, can=METAL, fill=1.0), 0.0, (0.40, 0.25, 0.60)),
-        ("empty", sliding(_GENTLE, can=METAL, fill=_EMPTY), 0.0, (0.35, 0.38, 0.42)),
+        ("beer slides", sliding(_GENTLE, can=METAL, fill=_FILL), 30, (0.75, 0.38, 0.0), "¾ full, starts at φ = 30°"),
+        ("beer frozen", frozen(_GENTLE, can=METAL, fill=_FILL), 180, (0.15, 0.42, 0.72), "¾ full, starts upside down"),
+        ("beer frozen, full", frozen(_GENTLE, can=METAL, fill=1.0), 0, (0.40, 0.25, 0.60), ""),
+        ("empty", sliding(_GENTLE, can=METAL, fill=_EMPTY), 0, (0.30, 0.33, 0.37), ""),
     )
-    return [Runner(name, simulate(scene, 2.3, phi0, tolerance=1e-9), colour) for name, scene, phi0, colour in cans]
+    return [
+        Runner(name, simulate(scene, 2.35, math.radians(phi0), tolerance=1e-9), colour, note=note)
+        for name, scene, phi0, colour, note in cans
+    ]
 
 
 def told_of_beer() -> str:
@@ -70,10 +73,10 @@ def with_ice() -> Scene:
 def of_liquids() -> Sequence[Runner]:
     """Return the cans of the race of water, oil, honey and ice, all let go with a level surface."""
     cans = (
-        ("water", with_liquid("water"), 1.7, (0.08, 0.40, 0.72), (0.36, 0.66, 0.93)),
+        ("water", with_liquid("water"), 1.6, (0.08, 0.40, 0.72), (0.36, 0.66, 0.93)),
         ("olive oil", with_liquid("olive oil"), 2.1, (0.42, 0.45, 0.05), (0.78, 0.76, 0.20)),
         ("honey", with_liquid("honey"), _END, (0.72, 0.38, 0.0), (0.88, 0.52, 0.05)),
-        ("ice", with_ice(), _END, (0.40, 0.42, 0.55), (0.84, 0.93, 0.98)),
+        ("ice", with_ice(), 2.5, (0.40, 0.42, 0.55), (0.84, 0.93, 0.98)),
     )
     return [
         Runner(name, simulate(scene, end, -_STEEPER, tolerance=1e-9), colour, load)
@@ -89,20 +92,20 @@ def by_theory(scene: Scene) -> Runner:
 @cache
 def told_of_liquids() -> str:
     """Return what is seen in the race of liquids, with the numbers of exact theory."""
-    scenes = {"water": with_liquid("water"), "oil": with_liquid("olive oil"), "ice": with_ice()}
-    times = {name: by_theory(scene).finish_of_theory(LENGTH) for name, scene in scenes.items()}
     honey = with_liquid("honey")
+    scenes = {"water": with_liquid("water"), "oil": with_liquid("olive oil"), "ice": with_ice(), "honey": honey}
+    times = {name: by_theory(scene).finish_of_theory(LENGTH) for name, scene in scenes.items()}
     carried = liquid_in("honey", _STEEPER, _FILL, METAL).carried
-    way, speed = by_theory(honey).way_of_theory(times["ice"]), honey.terminal_speed()
+    way, speed = by_theory(honey).distance_of_theory(times["ice"]), honey.terminal_speed()
     return (
         "Predict first, then look. Four equal cans, three quarters full of water, olive oil, honey and ice, are let go "
         f"together on an incline of {in_degrees(_STEEPER)}, each with its surface level. They differ in how hard the "
         "load rubs against the can: water hardly does, and ice not at all, since it turns with the can. Water wins "
         f"after {times['water']:.2f} s, and oil follows after {times['oil']:.2f} s. The ice hesitates with its load "
         f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The honey "
-        f"is last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither "
-        "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: it creeps with "
-        f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Of "
+        f"is last: it has come {100 * way:.0f} cm, and needs {times['honey']:.2f} s. It is between water and ice, yet "
+        "slower than both. It neither slides freely nor turns with its can, and as it rubs it takes all that the "
+        f"incline gives: it creeps with {100 * speed:.1f} cm/s. Each liquid is one lump here. Of "
         f"real honey the wall carries up to {100 * carried:.0f} % round with it, so that its speed is an estimate, but "
         "with half or twice the viscosity it is last as well."
     )
