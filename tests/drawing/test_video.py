@@ -18,7 +18,6 @@ from mjbeer import Trajectory, exact, frozen
 from mjbeer.drawing import film, video
 from mjbeer.drawing.film import reel
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
-from mjbeer.output import terminal
 
 pytestmark = pytest.mark.slow
 
@@ -108,19 +107,6 @@ def test_frames_are_never_all_held(undrawn: list[int], tmp_path: pathlib.Path) -
     video.render(motion(2.0), tmp_path / "can.mp4", fps=30, progress=False, **SIZE)
     assert len(undrawn) == 60
     assert max(undrawn) <= 2
-
-
-def test_a_bar_shows_the_progress(
-    undrawn: list[int], tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(terminal, "STDERR", terminal.Console(stderr=True, force_terminal=True))
-    video.render(motion(), tmp_path / "can.mp4", fps=20, **SIZE)
-    shown = capsys.readouterr()
-    assert "drawing can.mp4" in shown.err
-    assert "10/10" in shown.err
-    assert shown.out == ""
-    video.render(motion(), tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
-    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize(
