@@ -147,9 +147,8 @@ class Marks:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        drawn = {
-            "skid": self._skid, "ghost": self._ghost, "paths": self._paths, "forces": self._forces, "phi": self._phi,
-        }  # fmt: skip
+        drawn = {"skid": self._skid, "ghost": self._ghost, "paths": self._paths}
+        drawn |= {"forces": self._forces, "phi": self._phi}
         for kind, draw in drawn.items():
             if kind in self.kinds:
                 draw(pen, time, now)
