@@ -93,7 +93,7 @@ def test_reduction_is_the_lagrangian_s(scene: Scene, phi: float, swing: float) -
     assert abs(form.acceleration(phi, rate) - acceleration) <= ROUNDING * scale
     # V only ever appears as a difference.
     fall = values(scene, 0.5)[3] - potential
-    known = taylor.coefficients(scene)  # of the other tests' witnesses; 30 digits less those that a difference loses
+    known = taylor.letters(scene)  # of the other tests' witnesses; 30 digits less those that a difference loses
     assert abs(taylor.inertia(known, mp.mpf(phi)) - inertia) <= 1e-20 * inertia
     assert abs(taylor.fall(known, mp.mpf(0.5), mp.mpf(phi)) - fall) <= 1e-20 * torque * (1 + abs(phi))
     assert abs(form.drop(phi, 0.5) - fall) <= ROUNDING * torque * (1 + abs(phi))
