@@ -5,15 +5,18 @@ VENV := .venv
 BIN := $(VENV)/bin
 PACKAGE := $(VENV)/.package
 TOOLS := $(VENV)/.tools
+# A process that has nothing left to do takes tests from another.
+PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 # What is not compiled when it is installed is compiled when it is first used: a sixth less disk, and sooner done.
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
-.PHONY: help report test quick search portability renders lint clean
+.PHONY: help report test quick everything search portability renders lint clean
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
-	@echo "make test         installs the tools of the tests as well, then lints and runs all tests (minutes)"
+	@echo "make test         installs the tools of the tests as well, then lints and runs the tests (minutes)"
 	@echo "make quick        runs the tests that take no time"
+	@echo "make everything   runs the costly tests: real films, notebooks, a browser, windows, a wheel, a cluster (minutes)"
 	@echo "make lint         runs ruff, the type checker, and import-linter"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
@@ -24,10 +27,13 @@ report: $(PACKAGE)
 	$(BIN)/mjbeer report --output report
 
 test: $(TOOLS) lint
-	$(BIN)/python -m pytest -n auto
+	$(PYTEST) -m "not costly"
 
 quick: $(TOOLS)
-	$(BIN)/python -m pytest -n auto -m "not slow"
+	$(PYTEST) -m "not costly and not slow"
+
+everything: $(TOOLS)
+	$(PYTEST) -m costly
 
 # -s shows the table.
 search: $(TOOLS)

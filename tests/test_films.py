@@ -23,6 +23,7 @@ TURN = 0.6
 """Largest turn from picture to picture [rad]: a tenth of a circle. From half a circle on, the eye sees it backwards."""
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", ALL)
 def test_no_text_covers_what_moves_or_another_text(name: str) -> None:
     assert faults(ALL[name][0]) == []

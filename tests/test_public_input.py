@@ -184,7 +184,7 @@ def extreme(draw: st.DrawFn) -> Scene:
         reject()
 
 
-SEARCH = settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+SEARCH = settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
 @pytest.mark.slow

@@ -101,6 +101,7 @@ def test_what_is_lacking_is_what_would_be_raised(monkeypatch: pytest.MonkeyPatch
     assert lacking == str(caught.value)
 
 
+@pytest.mark.costly
 @linux
 @pytest.mark.parametrize(
     ("everything", "status", "said"),
@@ -139,6 +140,7 @@ def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
     assert "phi at the end" in out
 
 
+@pytest.mark.costly
 @linux
 def test_a_library_that_crashes_when_it_is_loaded(crashing: dict[str, str], tmp_path: pathlib.Path) -> None:
     """The video is not begun, and the message has the remedy."""

@@ -89,6 +89,7 @@ def test_a_film_whose_process_dies_is_drawn_once_more(tmp_path: pathlib.Path) ->
     assert (tmp_path / "films/a.mp4").read_bytes() == (tmp_path / "films/b.mp4").read_bytes()
 
 
+@pytest.mark.costly
 @pytest.mark.draws
 def test_a_film_that_stands_still_is_drawn_once_more(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (still, whole, _) = fragile(tmp_path, 1, None)
@@ -107,6 +108,7 @@ def test_a_film_that_stands_still_is_drawn_once_more(tmp_path: pathlib.Path, mon
     assert still.path.read_bytes() == whole.path.read_bytes()
 
 
+@pytest.mark.costly
 @pytest.mark.draws
 @pytest.mark.parametrize(
     ("signal", "told"),

@@ -275,7 +275,7 @@ def test_templates_have_the_sensors_of_the_models(name: str) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=40, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-4, 4), st.floats(-5, 5), st.sampled_from([0.0, 1e-3, 1.0]))
 def test_no_can_goes_farther_than_the_bound(scene: Scene, phi0: float, swing: float, damping: float) -> None:
     rate = math.sqrt(scene.gravity / scene.can.radius)
@@ -300,6 +300,7 @@ def test_a_board_is_as_long_as_ten_seconds_and_as_graphics_can_draw() -> None:
 # What others make of portable exports
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", FAITHFUL)
 def test_others_load_portable_exports_and_move_them_exactly(name: str) -> None:
     other = wanted_or_skip(name)
@@ -310,6 +311,7 @@ def test_others_load_portable_exports_and_move_them_exactly(name: str) -> None:
     assert not wrong
 
 
+@pytest.mark.costly
 def test_mujoco_3_refuses_what_is_not_portable() -> None:
     """Or `--portable` would not be needed."""
     found = others.errors(wanted_or_skip("MuJoCo 3.3"), portable=False)

@@ -86,6 +86,7 @@ def test_every_equation_of_a_motion_is_derived() -> None:
     assert not [number for number in numbers if f"({number})" not in named]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
 def test_derived(row: Row) -> None:
     """No term of it vanishes by itself, so that none could be left out; and a misprint does not follow."""
@@ -115,7 +116,7 @@ def test_small_oscillations() -> None:
         assert (sp.diff(sum(terms(Q)), phi).subs(phi, 0) == 0) is right
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_fast_loops() -> None:
     """Eqs. (26)-(29) to first order in delta: J phi_dot^2/2 = E, then with a little potential.
 

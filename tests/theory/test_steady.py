@@ -137,7 +137,7 @@ def test_modes_of_weak_and_strong_damping() -> None:
 def test_mean_slip() -> None:
     """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
     scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033
-    motion = exact(scene, [7.0, 8.0], 0.0, 112.7)
+    motion = exact(scene, [1.0, 2.0], 0.0, 112.7)
     momentum = scene.mass * motion.u_dot - scene.load.mass * scene.load.offset * np.cos(motion.phi) * motion.phi_dot
     slipped = np.diff(motion.u)[0] / a - np.diff(motion.phi)[0]
     assert slipped + np.diff(momentum)[0] * a / c == pytest.approx(scene.slip_rate(), rel=1e-11)  # 18 turns a second

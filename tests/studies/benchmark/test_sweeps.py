@@ -8,7 +8,7 @@ from mjbeer.studies.benchmark import peers, sweeps
 from mjbeer.studies.benchmark.sweeps import TOLERANCE, Sample
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_all_that_is_timed_keeps_the_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweeps, "Sample", lambda count: Sample(8))
     ways = sweeps.compare(quick=True)["ways"]

@@ -103,7 +103,7 @@ def test_the_result_is_the_same_in_processes() -> None:
             mjbeer.sweep(lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=pool)
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_the_result_is_the_same_on_a_dask_cluster(monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
     here = sweep_of_sliding()
