@@ -92,27 +92,6 @@ def test_all_grows_with_the_can(name: str, radius: float) -> None:
     assert other.mat("grid").texrepeat * times == pytest.approx(one.mat("grid").texrepeat, rel=1e-6)
 
 
-@pytest.mark.parametrize("length", [1e-4, 0.01, 0.12, 1.0])
-def test_ends_stay_ends(length: float) -> None:
-    model, data = shown(sliding(can=Can.sheet_metal(length=length)), "equality")
-
-    def y(name: str) -> tuple[float, float]:
-        if model.geom(name).type == mujoco.mjtGeom.mjGEOM_MESH:
-            there = vertices(model, data, name)[:, 1]
-            return float(there.min()), float(there.max())
-        middle, half = float(data.geom(name).xpos[1]), float(np.abs(data.geom(name).xmat[3:6]) @ model.geom(name).size)
-        return middle - half, middle + half
-
-    assert y("can_wall") == pytest.approx((-length / 2, length / 2), abs=SINGLE * RADIUS)
-    for end in ("can_end", "can_tab", "can_mouth"):
-        assert length / 2 - 0.25 * min(RADIUS, length) < y(end)[0] < y(end)[1] < length / 2
-    assert y("can_tab")[0] < y("can_mouth")[0] < y("can_end")[1]
-    assert -length / 2 < y("can_label")[0] < 0 < y("can_label")[1] < length / 2
-    assert y("can_spot")[0] < -length / 2 < y("can_spot")[1] < -0.4 * length
-    assert y("board")[1] == pytest.approx(length / 2 + 0.015)
-    assert data.camera("side").xpos[1] == pytest.approx(-length / 2 - 0.24)
-
-
 @pytest.mark.parametrize("fill", [1e-100, 1e-9, 0.5, 1 - 1e-6, 1.0])
 @pytest.mark.parametrize("radius", [1e-4, 100.0])
 def test_every_fill_can_be_drawn(fill: float, radius: float) -> None:

@@ -133,8 +133,13 @@ def _integrator(attachment: str, corners: bool) -> tuple[list[str], Any]:
         phi_ddot = pull / (at["base"] + at["chord"] * half**2)
         u_ddot = at["a"] * phi_ddot
     else:
-        slip, sides = u_dot / at["a"] - phi_dot, [heyoka.par[len(names) + place] if corners else 1.0 for place in (0, 1)]
-        torque = at["c1"] * slip + sides[0] * at["c2"] * slip**2 + at["c3"] * slip * slip * slip  # heyoka divides by the base of a cube
+        slip, sides = (
+            u_dot / at["a"] - phi_dot,
+            [heyoka.par[len(names) + place] if corners else 1.0 for place in (0, 1)],
+        )
+        torque = (
+            at["c1"] * slip + sides[0] * at["c2"] * slip**2 + at["c3"] * slip * slip * slip
+        )  # heyoka divides by the base of a cube
         drag = torque / at["a"] + sides[1] * at["drag"] * u_dot**2
         along = at["drive"] - drag - at["moment"] * sin * phi_dot**2
         # sine lacks what the axis takes of gravity's torque along cos(phi): it is in J's V, and not in this equation.

@@ -2,7 +2,6 @@
 
 import math
 import warnings
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +9,6 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
-from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL, about_run, liquid_in
 from mjbeer.theory.load import segment
@@ -171,17 +169,3 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     assert "17.8 to 178 rad/s between can and liquid, but 200" in (about_run(scene, 200.0, math.inf) or "")
     assert exact(scene, run.time[:10], 0.0).record.no_lump_at == math.inf
     assert about_run(sliding(damping=1e-3), 1e9, 0.0) is None  # what is no liquid's may be anything
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"name": "Watr"}, r"liquid must be one of .*; got 'Watr': did you mean 'water'\?"),
-        ({"viscosity": -1}, r"viscosity must be greater than 0 \[m\^2/s\], got -1"),
-        ({"viscosity": 1e-8}, "the layer on the wall is turbulent .* got 1e-08 m"),
-        ({"fill": 1.0}, "fill must be less than 1 and gravity more than 0"),
-    ],
-)
-def test_what_is_not_allowed(given: dict[str, Any], message: str) -> None:
-    with pytest.raises(ParameterError, match=message):
-        liquid(**given)

@@ -57,17 +57,6 @@ def test_beside_a_barrier_at_pi(scene: Scene, beside: float) -> None:
         assert error_of_a_fall(scene, phi0, phi, time) < ANGLE
 
 
-@pytest.mark.filterwarnings("ignore::mjbeer.AngleWarning")
-@pytest.mark.parametrize("turns", [-3, 1500])
-def test_beside_a_barrier_many_turns_away(turns: int) -> None:
-    scene = frozen(0.0)
-    phi0 = (2 * turns + 1) * math.pi * (1 + 1e-15)
-    beside = abs(float(mp.mpf(phi0) - (2 * turns + 1) * mp.pi))
-    time = math.sqrt(scene.oscillator.inertia(math.pi) / scene.oscillator.crest.curvature) * math.log(4 / beside)
-    phi = float(exact(scene, [time], phi0).phi[0])
-    assert error_of_a_fall(scene, phi0, phi, time) < ANGLE + math.ulp(phi0)
-
-
 def random_slope(pick: np.random.Generator) -> Scene:
     """A scene whose barrier is where only its own numbers say."""
     can = [Can(), METAL, Can(0.05, 0.1, 10 ** pick.uniform(-3, 2)), Can.hoop(mass=0.1)][pick.integers(4)]
@@ -129,19 +118,6 @@ def test_on_the_top() -> None:
         for top in (-1001 * math.pi, 7 * math.pi):
             assert (exact(scene, [0.0, 9.0], top).phi == top).all()
             assert exact(scene, 1e-3, top + 3 * math.ulp(top)).phi_dot[0] != 0
-
-
-def test_thrown_onto_the_top_of_another_turn() -> None:
-    """Uphill so fast that it all but stops on the barrier three turns further up."""
-    scene, form = frozen(), frozen().oscillator
-    phi0 = scene.equilibrium()
-    needed = float(form.drop(scene.separatrix()[1] - 8 * math.pi, phi0))
-    speed = math.sqrt(-2 * needed / float(form.inertia(phi0)))
-    assert exact(scene, [0.1], phi0, -speed).phi[0] < phi0
-    with pytest.raises(NoLibrationError, match="too near a separatrix"):
-        exact(scene, [10.0], phi0, -speed)
-    for faster in (1 - 1e-9, 1 + 1e-9):
-        exact(scene, [10.0], phi0, -speed * faster)
 
 
 @pytest.mark.parametrize("gap", [1e-15, 1e-13])
