@@ -9,6 +9,7 @@ import mjbeer
 from mjbeer.cli.app import main
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".csv", ".npz", ".nc", ".png", ".svg"])
 def test_the_file_has_what_python_gives(
     ending: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]

@@ -84,6 +84,7 @@ def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     return stepped.model
 
 
+@pytest.mark.slow
 @settings(max_examples=150, deadline=None, derandomize=True)
 @given(any_scene(), st.sampled_from(["reduced", "equality"]), st.floats(-3, 3), st.floats(-5, 5), st.floats(-5, 5))
 def test_skeletons_accelerate_as_theory_says(

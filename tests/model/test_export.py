@@ -120,6 +120,7 @@ def test_cans_of_every_size(
         assert 1 - softness.effective_impedance < 2e-4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("integrator", "incline"), [*((each, -0.7) for each in INTEGRATORS), ("RK4", 1e-17)])
 def test_what_was_asked_for_arrives(integrator: str, incline: float, tmp_path: pathlib.Path) -> None:
     # An incline of 1e-17 needs forces that MuJoCo takes for none and does not write.
@@ -155,6 +156,7 @@ def test_what_cannot_be_written_is_refused(
     assert os.listdir(tmp_path) == ["file"]
 
 
+@pytest.mark.slow
 def test_what_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rewrite = exporting._portable
     losses = {
@@ -173,6 +175,7 @@ def test_what_was_lost_on_the_way_is_found(tmp_path: pathlib.Path, monkeypatch: 
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_an_edited_template_keeps_its_looks(copy: pathlib.Path, tmp_path: pathlib.Path) -> None:
     """Nested frames, lights and classes in a body without a joint: the export itself compares where everything is."""
     template = copy / "frozen.xml"
@@ -194,6 +197,7 @@ def test_an_edited_template_keeps_its_looks(copy: pathlib.Path, tmp_path: pathli
         assert move(tmp_path / "model.xml", frozen()) < TOLERANCE[rolling]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", exporting.PORTABLE)
 @pytest.mark.parametrize("rolling", ROLLINGS)
 def test_every_integrator_of_a_portable_export_is_stable(
@@ -215,6 +219,7 @@ def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[
     return {model.sensor(i).name: float(data.sensor(i).data[0]) for i in range(model.nsensor)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "rolling"), CASES)
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
     """And energies, or none where a constant force stands for a weight."""

@@ -37,6 +37,7 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
         return spec.compile()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("visuals", [False, True])
 @pytest.mark.parametrize("rolling", ROLLINGS)
 def test_a_specification_is_that_of_the_built_model(rolling: str, visuals: bool) -> None:

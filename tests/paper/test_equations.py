@@ -97,6 +97,7 @@ def test_derived(row: Row) -> None:
         assert not vanishes(row.printed(Q), motion)
 
 
+@pytest.mark.slow
 def test_small_oscillations() -> None:
     """Eqs. (4)-(6), (10), (24): the linear part of (16); eq. (55): that of (52)."""
     x, rest = sp.symbols("x phi_0", real=True)

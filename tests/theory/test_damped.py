@@ -12,6 +12,7 @@ from mjbeer import Can, Load, Scene, exact, sliding
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory import damped
 from mjbeer.theory.damping import Damping
+from mjbeer.theory.equations import energy, slip_rate
 from tests.support import taylor
 from tests.support.scenes import METAL, scenes
 
@@ -43,6 +44,7 @@ def require_taylor(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float)
     assert np.abs(found.u_dot - expected[:, 3]).max() < bound * 10 / clock * radius
 
 
+@pytest.mark.slow
 @taylor.NEEDED
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-3, 3), st.floats(-8, 8), st.floats(-3, 3), st.sampled_from([0.0, 0.03]), st.booleans())
@@ -70,6 +72,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @taylor.NEEDED
 @pytest.mark.parametrize(("scene", "phi0", "phi_dot0", "latest"), CASES.values(), ids=CASES.keys())
 def test_motion_is_that_of_a_taylor_series(scene: Scene, phi0: float, phi_dot0: float, latest: float) -> None:
@@ -105,6 +108,34 @@ def test_steady_rolling_stays(c: float) -> None:
     assert motion.u_dot == pytest.approx(np.full(3, scene.terminal_speed()), rel=10 * ROUNDING)
 
 
+@pytest.mark.parametrize(("damping", "drag"), [(2e-3, 0.0), (1.0, 0.01), (Damping(1e-4, 1e-5, 1e-6), 0.01)])
+def test_energy_and_dissipated_work(damping: float | Damping, drag: float) -> None:
+    """What is lost is the work of T(w) w and of the drag, summed by Gauss's rule over 400 short intervals.
+
+    The corners of |w| and |u_dot| are in second derivatives of the loss, and cost 1e-9 of it; without, it is rounding.
+    """
+    scene = sliding(can=METAL, damping=damping, drag=drag)
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    ends = np.concatenate([[0], np.geomspace(1e-6, 1, 400)])
+    halves, middles = np.diff(ends) / 2, (ends[1:] + ends[:-1]) / 2
+    motion = exact(scene, (middles[:, np.newaxis] + halves[:, np.newaxis] * nodes).ravel(), 1.0, -30.0)
+    slip = slip_rate(scene, motion.phi_dot, motion.u_dot)
+    loss = scene.damping_law.torque(slip) * slip + drag * np.abs(motion.u_dot) ** 3
+    work = float((loss.reshape(-1, 12) @ weights) @ halves)
+    begin, end = energy(scene, exact(scene, [0.0, 1.0], 1.0, -30.0))
+    bound = 1e-9 if drag or isinstance(damping, Damping) else 20 * ROUNDING
+    assert work == pytest.approx(begin - end, rel=bound)
+
+
+def test_motion_seen_from_behind_and_without_damping() -> None:
+    scene, time = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5), drag=0.01), np.linspace(0, 1, 5)
+    motion, behind = exact(scene, time, 1.0, 7.0), exact(replace(scene, incline=-0.3), time, -1.0, -7.0)
+    assert (behind.phi == -motion.phi).all()
+    assert (behind.u == -motion.u).all()
+    plain, without = (exact(replace(scene, damping=each, drag=0.0), time, 1.0) for each in (0.0, Damping()))
+    assert (plain.phi == without.phi).all()
+
+
 def test_unstable_balance() -> None:
     """On level ground the top is an equilibrium; beside it rounding decides, and there is an error before it changes
     phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
@@ -132,6 +163,7 @@ def test_a_corner_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     assert np.isfinite(exact(scene, 2.0, 1.0).phi).all()
 
 
+@pytest.mark.slow
 @taylor.NEEDED
 def test_an_axis_that_hardly_moves_keeps_its_digits_under_a_fast_load() -> None:
     """Its speed changes sign in most turns of a load that is a hundred times as fast, whose steps a corner must end."""

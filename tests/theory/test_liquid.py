@@ -94,6 +94,7 @@ def test_a_swing_has_stokes_layers() -> None:
     assert used.damping.linear == pytest.approx(1000 * math.sqrt(1e-6 * omega / 2) * (wall + ends), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_damping_is_continuous_towards_level_ground() -> None:
     """How far water in a metal can still swings in the fifth second. The rest of W_steady, which goes with the incline
     to 2/3, is 1e-6 of the swing's at 1e-9 rad."""
@@ -108,6 +109,7 @@ def test_damping_is_continuous_towards_level_ground() -> None:
         assert abs(kept(incline) / level - 1) < apart
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_damping_goes_one_way_with_the_incline(name: str) -> None:
     """Steady rolling is the faster the steeper, and a step of the incline by 5 % changes the damping by 7 % at most."""

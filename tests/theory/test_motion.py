@@ -72,6 +72,7 @@ def test_period_of_any_swing(scene: Scene, share: float, uphill: bool) -> None:
     assert abs(scene.period(amplitude) / period(scene, amplitude) - 1) < PERIOD
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 def test_period(scene: Scene) -> None:
     low, high = (end - scene.equilibrium() for end in scene.separatrix())
@@ -86,6 +87,7 @@ def test_period(scene: Scene) -> None:
             replace(scene, incline=-scene.incline).period(-amplitude)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [1e-3, 1e-6, 1e-10])
 @pytest.mark.parametrize("degrees", [0, 10])
 def test_period_beside_the_separatrix(degrees: float, gap: float) -> None:

@@ -46,6 +46,7 @@ def error_of_a_fall(scene: Scene, phi0: float, phi: float, time: float) -> float
 NEAR = [5e-15, -1e-10, -1e-2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beside", NEAR)
 @pytest.mark.parametrize("scene", [frozen(0.0), sliding(-0.3), hoop(), frozen(0.0, can=METAL)])
 def test_beside_a_barrier_at_pi(scene: Scene, beside: float) -> None:

@@ -134,6 +134,7 @@ def test_modes_of_weak_and_strong_damping() -> None:
     assert fast.frequency() == pytest.approx(frozen(0.2, can=METAL).frequency(), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_mean_slip() -> None:
     """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
     scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033

@@ -5,6 +5,7 @@
 """
 
 import contextlib
+import functools
 import json
 import math
 import os
@@ -43,7 +44,6 @@ EXAMPLES = os.environ.get("MJBEER_EXAMPLES")
 """How many new runs `make search` asks for."""
 FIXED = 36
 """How many runs `make test` makes: two a region."""
-TRIALS = [random_trial(number) for number in range(1800)]
 CASES = cases()
 SAMPLE = [case for case in CASES if "1 - 1e" not in case.name][::6]
 SAMPLE += [case for case in CASES if case.kind == "found" and case not in SAMPLE]
@@ -110,14 +110,14 @@ def test_tries_know_what_mujoco_has_no_model_of() -> None:
 
 
 def test_a_number_makes_the_same_run_every_time() -> None:
-    assert random_trial(77) == TRIALS[77]
+    assert random_trial(77) == trials()[77]
     assert batch(1, 3) == batch(1, 3)
 
 
 def test_a_run_can_be_pasted() -> None:
     names = {"simulate": lambda scene, **setting: (scene, setting), "np": np, "Can": Can, "Load": Load, "Scene": Scene}
     names |= {each: getattr(mjbeer, each) for each in ("Damping", "sliding", "frozen", "pendulum", "hoop")}
-    for run in TRIALS[:100]:
+    for run in trials()[:100]:
         assert "\n" not in str(run)
         scene, setting = eval(str(run), names)
         assert scene == run.scene
@@ -127,8 +127,13 @@ def test_a_run_can_be_pasted() -> None:
         assert len(setting) == 7
 
 
+@functools.cache
+def trials() -> list[Trial]:
+    return [random_trial(number) for number in range(1800)]
+
+
 def of(region: str) -> list[Trial]:
-    return TRIALS[[each.name for each in REGIONS].index(region) :: len(REGIONS)]
+    return trials()[[each.name for each in REGIONS].index(region) :: len(REGIONS)]
 
 
 def test_every_region_has_all_rollings_integrators_and_tolerances() -> None:
@@ -183,7 +188,7 @@ def test_damping_and_starts_beside_the_separatrix_are_what_they_say() -> None:
 
 def test_no_run_takes_theory_long() -> None:
     """It follows a run if that turns by some thousand radians, or swings some hundred times."""
-    for run in TRIALS:
+    for run in trials():
         assert abs(run.phi_dot0) * run.timestep * run.steps <= 3001
         assert run.steps <= 15_000
     longest = max(of("long"), key=lambda run: run.scene.oscillator.depth * (run.timestep * run.steps) ** 2)

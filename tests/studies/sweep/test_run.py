@@ -56,6 +56,7 @@ def same(one: Sweep, other: Sweep) -> bool:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "setting",
     [
@@ -338,6 +339,7 @@ def edited(incline: float, fill: float) -> Scene:
     return sliding(incline, fill, gravity=9.81 if incline < 0.1 or fill < 0.3 else 9.82)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("other", "differs"),
     [
