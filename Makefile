@@ -21,7 +21,7 @@ help:
 	@echo "make lint         runs ruff, the type checker, and import-linter"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
-	@echo "make portability  tries exported models in other tools (an hour, 3 GB)"
+	@echo "make portability  tries exported models in other tools (an hour, 1.5 GB)"
 	@echo "make clean        removes what the others wrote"
 
 report: $(PACKAGE)

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Can, Load, Scene, build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
+from mjbeer import build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
 from mjbeer.exceptions import TemplateError
 from mjbeer.model import looks, state
 from mjbeer.model.setting import ROLLINGS
@@ -112,18 +112,6 @@ def test_numbers_are_those_of_the_scene(name: str) -> None:
     assert np.array_equal(roll(model, key, 0.2)[1], roll(model, key, 0.2)[1])
 
 
-@pytest.mark.parametrize("name", TEMPLATES)
-def test_everything_is_named_and_in_its_group(name: str) -> None:
-    spec = mujoco.MjSpec.from_file(str(looks.folder() / f"{name}.xml"))
-    for kind in ("bodies", "joints", "geoms", "cameras", "lights", "meshes", "materials", "textures", "equalities"):
-        assert all(each.name for each in getattr(spec, kind)), kind
-    for geom in spec.geoms:
-        assert geom.group == (INVISIBLE if geom.name in ("surface", "can") else DRAWN), geom.name
-        assert geom.contype == geom.conaffinity == 0
-    model = spec.compile()
-    assert model.camera(model.vis.global_.cameraid).name == "side"
-
-
 def test_the_readme_names_what_the_models_have() -> None:
     sections = (looks.folder() / "README.md").read_text().split("\n## ")
     told = {text.partition("\n")[0]: set(re.findall("`([^`]*)`", text)) for text in sections}
@@ -151,12 +139,6 @@ def test_a_file_that_is_missing_or_not_whole_is_named(copy: pathlib.Path, file: 
     with pytest.raises(TemplateError, match=r"frozen\.xml ") as caught:
         build(frozen(), visuals=True)
     assert content is not None or file in str(caught.value).split("not readable MJCF: ")[1]
-
-
-def test_what_is_no_beer_looks_like_a_bob_or_a_bar() -> None:
-    can, load = Can(0.1, 0.1, 1.0), Load(1.0, 0.05, 1e-3)
-    found = [looks.dressed(Scene(can, load, attachment=each)).modelname for each in ("sliding", "frozen")]
-    assert found == ["pendulum", "hoop"]
 
 
 # What is edited

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
 from mjbeer.theory.equations import slip_rate
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL, about_run, liquid_in
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, about_run, liquid_in
 from mjbeer.theory.load import segment
 from tests.support.scenes import METAL
 
@@ -107,20 +107,6 @@ def test_damping_is_continuous_towards_level_ground() -> None:
     assert level == pytest.approx(0.603, abs=1e-3)
     for incline, apart in ((1e-9, 1e-5), (1e-6, 1e-2), (1e-4, 0.1)):
         assert abs(kept(incline) / level - 1) < apart
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", NAMES)
-def test_damping_goes_one_way_with_the_incline(name: str) -> None:
-    """Steady rolling is the faster the steeper, and a step of the incline by 5 % changes the damping by 7 % at most."""
-    inclines, used = np.geomspace(1e-9, 0.3, 400), liquid_in(name)
-    laws = [liquid_in(name, incline=incline).damping for incline in inclines]
-    assert (np.diff([liquid(name, incline=incline).terminal_speed() for incline in inclines]) > 0).all()
-    assert np.abs(np.diff(np.log([law.linear for law in laws]))).max() < 0.07
-    for rate in (0.1, 1.0, 10.0, 100.0):
-        assert np.abs(np.diff(np.log([law.torque(rate) for law in laws]))).max() < 0.07
-    creep = 8 / math.pi * used.density * used.viscosity * 0.033**2 * 0.12 * math.log(2 / 0.03)
-    assert min(law.torque(1.0) for law in laws) >= creep * (1 - 1e-12)
 
 
 def test_the_law_says_where_it_holds() -> None:

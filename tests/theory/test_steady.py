@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
-from mjbeer.theory import damping
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, scenes
@@ -96,23 +94,6 @@ def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: f
     spread = np.abs(np.subtract.outer(expected, expected))[~np.eye(3, dtype=bool)].min()
     assume(spread > 1e-2 * np.abs(expected).max())  # double roots are as uncertain as the root of a Jacobian
     assert np.abs(roots - expected).max() < 1e-6 * np.abs(expected).max()
-
-
-def test_roots_of_any_cubic() -> None:
-    """Relative to each root, against mpmath; double roots are left out, as coefficients do not tell them to an eps."""
-    pick, tried = np.random.default_rng(1), 0
-    while tried < 100:
-        square, linear, constant = (float(each) for each in 10 ** pick.uniform(-4, 4, 3))
-        if square * linear < 2 * constant:  # unstable, or a difference that cancels
-            continue
-        with mpmath.workdps(40):
-            expected = [complex(each) for each in mpmath.polyroots([1, square, linear, constant], 500, extraprec=200)]
-        found, sizes = damping.roots(square, linear, constant, square * linear - constant), np.abs(expected)
-        gaps = np.abs(np.subtract.outer(expected, expected)) / np.maximum.outer(sizes, sizes) + np.eye(3)
-        if gaps.min() > 1e-2:
-            tried += 1
-            for each in expected:
-                assert np.abs(found - each).min() < 1e-14 * abs(each)
 
 
 def test_modes_of_weak_and_strong_damping() -> None:

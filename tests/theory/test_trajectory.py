@@ -204,14 +204,6 @@ def test_frequency_is_that_of_the_period(scene: Scene) -> None:
         assert abs(measured * period / (2 * math.pi) - 1) < (2 * math.pi / samples) ** 4 / 384 + ROUNDING
 
 
-@pytest.mark.parametrize("gap", [0.45, 0.55, 0.93, 1.0, 2.3])
-def test_samples_that_do_not_follow_the_swing_have_no_frequency(gap: float) -> None:
-    """A swing that is sampled every 0.93 periods looks like one of 0.07 of its frequency."""
-    time = np.arange(0, 60, gap) * frozen().period(0.5)
-    with pytest.raises(MjbeerError, match="no frequency: "):
-        exact(frozen(), time, frozen().equilibrium() + 0.5).frequency()
-
-
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
 def test_a_load_at_rest_has_no_frequency(rolling: str) -> None:
     """What moves there is rounding, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
