@@ -81,6 +81,7 @@ def fragile(folder: pathlib.Path, lives: int, signal: int | None) -> list[Order]
     return [weak, *orders(folder / "films", "bc")]
 
 
+@pytest.mark.costly
 @pytest.mark.draws
 def test_a_film_whose_process_dies_is_drawn_once_more(tmp_path: pathlib.Path) -> None:
     produce(fragile(tmp_path, 1, signal.SIGSEGV), Console(quiet=True))

@@ -62,7 +62,7 @@ def period(scene: Scene, amplitude: float | Any) -> Any:
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 def test_period(scene: Scene) -> None:
     low, high = (end - scene.equilibrium() for end in scene.separatrix())
-    for amplitude in (-1.3, 2.0, 3):
+    for amplitude in (-1.3, 3):
         if low < amplitude < high:
             assert abs(scene.period(amplitude) / period(scene, amplitude) - 1) < PERIOD
             continue

@@ -48,7 +48,7 @@ NEAR = [5e-15, -1e-10, -1e-2]
 
 @pytest.mark.slow
 @pytest.mark.parametrize("beside", NEAR)
-@pytest.mark.parametrize("scene", [frozen(0.0), sliding(-0.3), hoop(), frozen(0.0, can=METAL)])
+@pytest.mark.parametrize("scene", [sliding(-0.3), frozen(0.0, can=METAL)])
 def test_beside_a_barrier_at_pi(scene: Scene, beside: float) -> None:
     """pi is no double, but how far a double is from it is known, and so is the motion."""
     phi0, slowness = math.pi + beside, math.sqrt(scene.oscillator.inertia(math.pi) / scene.oscillator.crest.curvature)
@@ -75,7 +75,7 @@ def random_slope(pick: np.random.Generator) -> Scene:
 @pytest.mark.slow
 def test_on_a_slope_a_motion_is_right_or_refused() -> None:
     """The barrier is rounded by up to 1e-15 rad, and more near the steepest slope: who starts so near is told so."""
-    count, refused, checked = 30, 0, 0
+    count, refused, checked = 20, 0, 0
     pick = np.random.default_rng(count)
     for _ in range(count):
         scene = random_slope(pick)
