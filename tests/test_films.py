@@ -39,6 +39,7 @@ def test_nothing_turns_so_fast_that_the_eye_is_deceived(name: str) -> None:
         assert fastest * film.speed / fps < TURN
 
 
+@pytest.mark.slow
 def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     """All of its numbers are those of the simulated cans, and honey is last with half and twice its viscosity."""
     cans = {can.name: can for can in races.of_liquids()}

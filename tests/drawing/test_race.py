@@ -46,6 +46,7 @@ def test_at_the_finish_a_can_is_at_the_line(scene: Scene, phi0: float) -> None:
     assert runner.finish(0.7) == pytest.approx(time, abs=SIMULATED)
 
 
+@pytest.mark.slow
 def test_a_can_that_does_not_finish_is_followed_until_the_others_have() -> None:
     """What honey does not reach has no time, and the table has how far it came."""
     fast, slow = run(sliding(INCLINE, can=METAL)), run(sliding(INCLINE, can=METAL, damping=1e-2), duration=1.8)
@@ -69,6 +70,7 @@ def test_runs_that_are_too_short_are_errors() -> None:
         Race("a race", lambda: [short], 1.0, 1.0, told=str, still=0.0).reel()
 
 
+@pytest.mark.slow
 def test_the_chart_of_a_race_does_not_tell_who_wins() -> None:
     """Theory's line is there at the end, and at the start only in the legend."""
     cans = [run(sliding(INCLINE, can=METAL))]

@@ -98,6 +98,7 @@ def test_balanced_load_is_two_inertias() -> None:
     assert motion.u_dot / a - motion.phi_dot == pytest.approx(slip, rel=ROUNDING)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("c", [1e-3, 1e-1])
 def test_steady_rolling_stays(c: float) -> None:
     """A start at the tilt in a can that is at rest comes to roll at the terminal speed, and stays there."""
@@ -175,6 +176,7 @@ def test_an_axis_that_hardly_moves_keeps_its_digits_under_a_fast_load() -> None:
     assert found.u / can.radius == pytest.approx((expected[:, 1] / can.radius).astype(float), abs=ANGLE)
 
 
+@pytest.mark.slow
 def test_the_edges_of_the_domain(monkeypatch: pytest.MonkeyPatch) -> None:
     """Damping that decays at 1e-9/s and 1e9/s, and a start so fast that it takes too many steps."""
     unit = sliding().oscillator.base
