@@ -15,7 +15,7 @@ from mjbeer.model import looks
 from mjbeer.studies.benchmark.peers import absent
 from tests.support import browser, screen
 
-for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED"):
+for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE"):
     os.environ.pop(each, None)
 
 _no_opengl = functools.cache(opengl.problem)

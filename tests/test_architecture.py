@@ -53,6 +53,7 @@ def test_a_file_of_numbers_needs_no_plots(tmp_path: pathlib.Path) -> None:
     assert path.read_text().startswith("time [s],u [m],")
 
 
+@pytest.mark.costly
 def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
     """Without this, a misspelt name or a blind test would pass those above."""
     assert loaded("import mjbeer.simulation.simulate, matplotlib, mediapy, OpenGL") >= HEAVY

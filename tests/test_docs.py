@@ -1,5 +1,6 @@
 """The documents keep their word: their Python runs, their commands exist, their tables are the program's."""
 
+import contextlib
 import pathlib
 import re
 import shlex
@@ -9,7 +10,7 @@ from dataclasses import dataclass
 import pytest
 
 from mjbeer import paper
-from mjbeer.cli.app import main
+from mjbeer.cli.app import parse
 from mjbeer.paper.row import CORRECTED, LIMIT
 from mjbeer.studies.validation.run import rows as validated
 from tests.support import stubs
@@ -65,21 +66,13 @@ def test_python_runs_and_has_what_the_text_names(tmp_path: pathlib.Path, monkeyp
     assert not [(owner, attribute) for owner, attribute in named if not hasattr(names[owner], attribute)]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("command", [command for command in COMMANDS if shlex.split(command)[0] == "mjbeer"])
-def test_commands_run(command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With no rows to validate, videos that are not drawn, and short studies."""
-    monkeypatch.chdir(tmp_path)
-    stubs.validate(monkeypatch)
-    stubs.draw(monkeypatch)
-    stubs.benchmark(monkeypatch, stubs.FEW)
-    stubs.stability(monkeypatch)
-    words = re.split(r"[|>]", command)[0]
-    try:
-        status = main(shlex.split(words, comments=True)[1:])
-    except SystemExit as ended:  # --help and completion
-        status = ended.code or 0
-    assert status == 0
+def test_commands_are_understood(command: str) -> None:
+    """Their words and their values."""
+    words = shlex.split(re.split(r"[|>]", command)[0], comments=True)[1:]
+    if words != ["--version"]:
+        with contextlib.suppress(SystemExit) if "--help" in words else contextlib.nullcontext():
+            parse(words)
 
 
 def test_targets_of_make_exist_and_there_are_no_other_commands() -> None:

@@ -23,6 +23,7 @@ TURN = 0.6
 """Largest turn from picture to picture [rad]: a tenth of a circle. From half a circle on, the eye sees it backwards."""
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", ALL)
 def test_no_text_covers_what_moves_or_another_text(name: str) -> None:
     assert faults(ALL[name][0]) == []
@@ -40,6 +41,7 @@ def test_nothing_turns_so_fast_that_the_eye_is_deceived(name: str) -> None:
         assert (fastest * speed).max() / fps < TURN
 
 
+@pytest.mark.slow
 def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     """All of its numbers are those of the simulated cans, and honey is last with half and twice its viscosity."""
     cans = {can.name: can for can in races.of_liquids()}

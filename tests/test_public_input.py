@@ -136,6 +136,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", CASES)
 def test_a_result_or_an_error_that_says_what_came(case: str) -> None:
     name, function, parameter = CASES[case]
@@ -184,7 +185,7 @@ def extreme(draw: st.DrawFn) -> Scene:
         reject()
 
 
-SEARCH = settings(max_examples=500, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+SEARCH = settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
 @pytest.mark.slow

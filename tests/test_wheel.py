@@ -19,7 +19,7 @@ from hatch_build import long_description
 from mjbeer import frozen, hoop, pendulum, simulate, sliding
 from mjbeer.theory.trajectory import csv
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.costly
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 README = (CHECKOUT / "README.md").read_text()

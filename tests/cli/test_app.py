@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import sysconfig
-import warnings
 from importlib.metadata import version
 
 import mujoco
@@ -18,12 +17,9 @@ import pytest
 import mjbeer
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import COMMANDS, main
-from mjbeer.cli.arguments import Command
 from mjbeer.cli.figures import Figures
-from mjbeer.exceptions import LiquidWarning
 from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.trajectory import csv
-from tests.support import stubs
 from tests.support.processes import run
 
 pytestmark = pytest.mark.slow
@@ -165,21 +161,6 @@ def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:
     assert run(["simulate", "frozen", "--phi0", "x"], code)[1] == "set()\n"
 
 
-@pytest.mark.parametrize(("speed", "advice"), [("1", "0.29"), ("0.3", "0.29"), ("0.285", None)])
-def test_a_film_in_which_a_can_turns_too_fast_for_the_eye_is_noted(
-    speed: str,
-    advice: str | None,
-    tmp_path: pathlib.Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    """In 2 s with g sin(10 degrees) a massless can of 33 mm comes to 103 rad/s, 1 rad in 0.29/30 s."""
-    stubs.draw(monkeypatch)
-    words = ["render", "sliding", "--phi0", "0", "--speed", speed, "--output", str(tmp_path / "film.mp4")]
-    assert main(words) == 0
-    assert re.findall(r"--speed below (\S+) shows it", capsys.readouterr().err) == ([advice] if advice else [])
-
-
 @pytest.mark.parametrize(("angle", "noted"), [("3.14159", True), ("-1.571", True), ("3.14", False), ("60", False)])
 def test_an_angle_that_looks_like_radians_is_noted(angle: str, noted: bool, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["simulate", "frozen", "--duration", "0.01", "--phi0", angle]) == 0
@@ -204,15 +185,3 @@ def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(capsys: pytest.Ca
     assert err.startswith(f"{told}\nnote: olive oil as one lump is an order of magnitude only")
     run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 0.1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
-
-
-def test_a_study_is_not_interrupted_by_what_it_says_of_liquids_elsewhere(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def paper(_: object) -> int:
-        warnings.warn("no lump", LiquidWarning, stacklevel=2)
-        return 0
-
-    monkeypatch.setitem(COMMANDS, "paper", Command(paper, (), None))
-    assert main(["paper"]) == 0
-    assert capsys.readouterr().err == ""

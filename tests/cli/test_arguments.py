@@ -117,8 +117,3 @@ def test_a_range_a_list_or_a_number() -> None:
 def test_what_is_none_of_these_is_refused(text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["sweep", "frozen", "--fill", text]) == 2
     assert "is no number, no list as 1,2,5, and no range as 1:20:39" in capsys.readouterr().err
-
-
-def test_names_stand_before_or_after_options() -> None:
-    for words in ("frozen hoop --quick", "--quick frozen hoop", "frozen --quick hoop"):
-        assert parse(["benchmark", *words.split()])[1].scenes == ["frozen", "hoop"]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Damping, Trajectory, exact, frozen, hoop, simulate, sliding
+from mjbeer import Trajectory, exact, frozen, hoop, simulate, sliding
 from mjbeer.cli.figures import Figures
 from mjbeer.simulation.run import Run
 from mjbeer.theory.scene import Scene
@@ -63,27 +63,6 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
     assert text["trusted"] == "no"
 
 
-def test_the_drift_of_a_full_can_is_a_share_of_what_gravity_gives() -> None:
-    """Its load neither swings nor turns. From rest m g u sin(alpha) is all the kinetic energy that it has."""
-    run = simulate(sliding(fill=1.0), 2.0, 1.0)
-    gained = run.scene.mass * run.scene.gravity * np.sin(run.scene.incline) * (run.u - run.u[0]).max()
-    drift = run.energy_drift
-    # 2,000 steps add up as many roundings, in the velocity and so twice in its square.
-    assert drift == pytest.approx(np.abs(run.energy - run.energy[0]).max() / gained, rel=1e-9)
-    assert drift < 2 * 2000 * np.finfo(float).eps
-    assert lines(run)["energy drift"] == f"{drift:.2e} of the largest kinetic energy"
-
-
-def test_the_text_fits_in_80_columns() -> None:
-    for run in (
-        simulate(frozen(), SHORT, START, timestep=0.02),
-        exact(hoop(), np.linspace(0, 0.5, 1001), 3.0),
-        simulate(sliding(damping=Damping(1.2345e-5, 1.2345e-5), drag=1.2345e-5), 0.1, 1.0),
-        simulate(frozen(gravity=0.0), 0.1, 1.0),
-    ):
-        assert max(map(len, Figures(run, 0.123456).text().splitlines())) <= 80
-
-
 def test_a_damped_run_has_its_steady_rolling_and_its_modes() -> None:
     scene = sliding(damping=1e-3)
     text, data = lines(run := simulate(scene, 0.1, 1.0)), content(run)
@@ -109,18 +88,6 @@ def test_a_damped_run_without_steady_rolling_says_why(scene: Scene, reason: str)
     assert text["terminal speed"].startswith(reason)
     assert "modes, real and imaginary parts" not in text
     assert data["terminal speed [m/s]"] is data["modes, real and imaginary parts [1/s]"] is None
-
-
-def test_a_motion_of_theory_has_no_estimated_error() -> None:
-    motion = exact(frozen(), np.linspace(0, 0.5, 51), 1.0)
-    assert "estimated error of phi and u/a" not in lines(motion)
-    assert content(motion)["estimated error of phi and u/a [rad]"] is None
-
-
-def test_the_friction_needed_is_that_of_all_steps_and_not_of_the_samples() -> None:
-    run = simulate(frozen(), SHORT, START, times=np.array([0.0, SHORT]), integrator="DOP853")
-    assert run.record.needed > run.forces.needed.max()
-    assert lines(run)["friction coefficient needed"] == f"{run.record.needed:.4g} to roll to the end without slipping"
 
 
 @pytest.mark.parametrize("friction", [0.6, 1.0, 1.8, 2.0])

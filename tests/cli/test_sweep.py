@@ -9,6 +9,7 @@ import mjbeer
 from mjbeer.cli.app import main
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".csv", ".npz", ".nc", ".png", ".svg"])
 def test_the_file_has_what_python_gives(
     ending: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
@@ -41,29 +42,6 @@ def test_a_file_of_another_sweep_is_replaced_on_request_only(
         assert main(["sweep", scene, *words, duration]) == 2
         assert "map.npz has another sweep, whose " in capsys.readouterr().err
     assert main(["sweep", "frozen", *words, "0.2", "--overwrite"]) == 0
-
-
-def test_scenes_without_a_period_are_counted_by_reason(
-    tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The longest of these swings takes 2.4 s: 3.7 s hold the three turning points that 2 s do not."""
-    words = f"sweep frozen --incline 1,2,20 --fill 0.5,0.85,0.9 --quantity period --output {tmp_path / 'map.csv'}"
-    assert main(words.split()) == 0
-    short, none = capsys.readouterr().err.splitlines()[:2]
-    assert none.startswith("failed: 2 scenes, the first at incline = 20, fill = 0.85: period: no equilibrium at an inc")
-    assert short.startswith("failed: 4 scenes, the first at incline = 1, fill = 0.85: period: only a longer duration ")
-    assert main([*words.split(), "--duration", "3.7"]) == 0
-    assert capsys.readouterr().out == "7 of 9 scenes went well; 2: a quantity has no value\n"
-
-
-def test_all_scenes_and_a_metal_can(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for scene, option in (("sliding", "--can metal --fill"), ("pendulum", "--offset"), ("hoop", "--load-mass")):
-        path = tmp_path / f"{scene}.csv"
-        setting = "--phi0 20 --duration 0.1 --rolling contact --integrator RK4"
-        words = f"sweep {scene} {option} 0.01,0.02 {setting} --output {path}"
-        assert main(words.split()) == 0
-        assert len(path.read_text().splitlines()) == 3
-    assert capsys.readouterr().out == "2 of 2 scenes went well\n" * 3
 
 
 def test_each_scene_of_a_sweep_has_the_damping_of_its_incline(

@@ -106,6 +106,7 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
         assert reds == [True, False], roll
 
 
+@pytest.mark.costly
 @pytest.mark.draws
 @pytest.mark.parametrize("camera", CAMERAS)
 @pytest.mark.parametrize("incline", [-60.0, 0.0, 80.0])

@@ -89,6 +89,7 @@ def test_a_hang_is_survived(monkeypatch: pytest.MonkeyPatch) -> None:
     assert opengl._why_not("egl") == "did not start within 0.2 s"
 
 
+@pytest.mark.costly
 @linux
 @pytest.mark.parametrize(
     ("everything", "status", "said"),
@@ -127,6 +128,7 @@ def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
     assert "phi at the end" in out
 
 
+@pytest.mark.costly
 @linux
 def test_a_library_that_crashes_when_it_is_loaded(crashing: dict[str, str], tmp_path: pathlib.Path) -> None:
     """The video is not begun, and the message has the remedy."""

@@ -17,7 +17,7 @@ from mjbeer.drawing.film import Reel, Take
 from mjbeer.drawing.studio import Order, produce
 from mjbeer.exceptions import RenderingError
 
-pytestmark = [pytest.mark.slow, pytest.mark.draws]
+pytestmark = [pytest.mark.slow, pytest.mark.draws, pytest.mark.costly]
 
 TAKE = Take(partial(exact, frozen(), np.linspace(0, 0.5, 51), 1.0), speed=1.0, still=0.2)
 

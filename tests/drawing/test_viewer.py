@@ -50,6 +50,7 @@ def shown(tmp_path: pathlib.Path) -> Generator[Screen]:
         yield each
 
 
+@pytest.mark.costly
 @pytest.mark.views
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_a_template_shows_its_can_after_three_seconds(name: str, shown: Screen) -> None:
@@ -63,6 +64,7 @@ def test_a_template_shows_its_can_after_three_seconds(name: str, shown: Screen) 
             process.terminate()
 
 
+@pytest.mark.costly
 @pytest.mark.views
 @pytest.mark.parametrize("scene", ["sliding", "frozen --can metal", "pendulum", "hoop"])
 def test_a_scene_is_viewed_paused_runs_and_starts_anew(scene: str, shown: Screen) -> None:
@@ -86,6 +88,7 @@ def test_a_scene_is_viewed_paused_runs_and_starts_anew(scene: str, shown: Screen
     assert process.returncode == 143
 
 
+@pytest.mark.costly
 @pytest.mark.views
 def test_the_command_ends_with_its_window(shown: Screen) -> None:
     with processes.start(["view", "frozen"], env=shown.environment) as process:

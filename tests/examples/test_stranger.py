@@ -96,7 +96,7 @@ MESSAGES = (
 )
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_a_stranger_s_notebook_runs(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cells = [nbformat.v4.new_code_cell("\n".join(line[4:] for line in cell.strip("\n").splitlines())) for cell in CELLS]
     assert len(cells) == 12

@@ -11,7 +11,7 @@ from tests.support import notebook
 TUTORIAL = pathlib.Path(__file__).parents[2] / "examples" / "tutorial.ipynb"
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 @pytest.mark.draws
 def test_the_tutorial_runs_and_shows_a_plot_a_video_and_tables(monkeypatch: pytest.MonkeyPatch) -> None:
     outputs = notebook.execute(nbformat.read(TUTORIAL, as_version=4), TUTORIAL.parent, monkeypatch)

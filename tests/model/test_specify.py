@@ -37,6 +37,7 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
         return spec.compile()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("visuals", [False, True])
 @pytest.mark.parametrize("rolling", ROLLINGS)
 def test_a_specification_is_that_of_the_built_model(rolling: str, visuals: bool) -> None:
@@ -62,20 +63,6 @@ def test_a_new_parent_keeps_its_own_options_and_one_that_merges_adopts_all() -> 
         assert np.array_equal(getattr(kept, name), getattr(fresh, name)), name
         assert np.array_equal(getattr(merged, name), getattr(needed, name)), name
         assert np.array_equal(getattr(fresh, name), getattr(needed, name)) == (name in OTHERS), name
-
-
-@pytest.mark.parametrize("rolling", ["equality", "contact"])
-def test_an_attached_can_keeps_what_is_in_its_body(rolling: str) -> None:
-    alone = specify(SCENE, rolling, visuals=True).compile()
-    model = compiled(attached(specify(SCENE, rolling, visuals=True)))
-    assert [model.joint(i).name for i in range(model.njnt)] == [f"own-{alone.joint(i).name}" for i in range(alone.njnt)]
-    for body in ("can", "load"):
-        assert np.array_equal(model.body(f"own-{body}").mass, alone.body(body).mass)
-        assert np.array_equal(model.body(f"own-{body}").inertia, alone.body(body).inertia)
-    geoms = {alone.geom(i).name for i in range(alone.ngeom)} - {"wall", "board", "surface"}
-    assert {model.geom(i).name for i in range(model.ngeom)} == {f"own-{name}" for name in geoms}
-    assert (model.neq, model.npair) == ((1, 0) if rolling == "equality" else (0, 0))
-    assert not model.geom_contype.any()
 
 
 def test_an_attached_can_that_rolls_by_an_equality_moves_as_theory_says_if_its_diagonal_is_exact() -> None:

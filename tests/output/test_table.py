@@ -8,14 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rich.console import Console
 
-from mjbeer import Scene, paper, simulate
+from mjbeer import Scene, simulate
 from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
 from mjbeer.paper.row import CONFIRMED, CORRECTED, Finding
 from mjbeer.studies.rows import Result
-from mjbeer.studies.validation.run import Validation, rows
+from mjbeer.studies.validation.run import Validation
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import SCENES
 
@@ -61,25 +60,6 @@ def test_a_program_reads_tabs_and_an_eye_lines(
     monkeypatch.setattr(terminal, "is_read_by_eye", lambda: True)
     terminal.show(one)
     assert "│ phi  │   1.5 │" in capsys.readouterr().out
-
-
-def test_a_narrow_terminal_leaves_no_letter_out() -> None:
-    text = io.StringIO()
-    Console(file=text, width=24).print(Table("t", ("what", "error"), [("g sin(alpha)/(1+k)", "1e-9")]))
-    cells = [line.split("│")[1].strip() for line in text.getvalue().splitlines() if line.startswith("│")]
-    assert "".join(cells).replace(" ", "") == "gsin(alpha)/(1+k)"
-    text = io.StringIO()
-    with terminal.progress_bar(Console(file=text, width=40, force_terminal=True), 123456) as begin:
-        begin("appendix B m >> M: omega^2 = g cos(alpha) m/(2 M b), without bound: beyond, m = M")
-    assert " 1/123456 " in text.getvalue()
-
-
-def test_every_cell_of_the_rows_is_whole() -> None:
-    """The library that prints takes some brackets for markup; none of the texts of the validation may be lost so."""
-    texts = {text for row in rows() for text in (row.name, row.by, row.reason)}
-    texts |= {text for row in paper.rows() for text in (row.equation, row.quantity, row.bound.reason)}
-    lines = [(text,) for text in sorted(texts)]
-    assert Table("t", ("text",), lines).tabbed().splitlines()[1:] == sorted(texts)
 
 
 def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:

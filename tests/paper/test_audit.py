@@ -32,6 +32,7 @@ BROKEN = 0.01
 """What a term of a broken form is off by, or twenty bounds where these are wide."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", ROWS, ids=NAMES)
 def test_row(row: Row) -> None:
     finding = row.measure()
@@ -47,6 +48,7 @@ def test_every_equation_footnote_with_a_claim_and_figure_with_data_has_a_row() -
         assert each in named
 
 
+@pytest.mark.slow
 def test_rows_are_listed_without_simulating() -> None:
     code = "from mjbeer.simulation import simulate; simulate.simulate = None; from mjbeer import paper; paper.rows()"
     subprocess.run([sys.executable, "-c", code], check=True)

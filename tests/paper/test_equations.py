@@ -86,6 +86,7 @@ def test_every_equation_of_a_motion_is_derived() -> None:
     assert not [number for number in numbers if f"({number})" not in named]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
 def test_derived(row: Row) -> None:
     """No term of it vanishes by itself, so that none could be left out; and a misprint does not follow."""
@@ -96,6 +97,7 @@ def test_derived(row: Row) -> None:
         assert not vanishes(row.printed(Q), motion)
 
 
+@pytest.mark.slow
 def test_small_oscillations() -> None:
     """Eqs. (4)-(6), (10), (24): the linear part of (16); eq. (55): that of (52)."""
     x, rest = sp.symbols("x phi_0", real=True)
@@ -115,7 +117,7 @@ def test_small_oscillations() -> None:
         assert (sp.diff(sum(terms(Q)), phi).subs(phi, 0) == 0) is right
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_fast_loops() -> None:
     """Eqs. (26)-(29) to first order in delta: J phi_dot^2/2 = E, then with a little potential.
 

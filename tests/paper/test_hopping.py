@@ -57,6 +57,7 @@ def slides(_: float, state: np.ndarray, push: float) -> list[float]:
     return [state[2], state[3], u_ddot, phi_ddot]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("phi_dot0", [-0.2, -0.3, -0.5])
 def test_contact_rolls_slips_and_grips_as_coulomb_says(phi_dot0: float) -> None:
     """u and phi through rolling and slipping; the two are some hundredths apart in the end, N is never 0."""

@@ -106,6 +106,7 @@ FOUND_ONCE = [
 ]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize(("volume", "known"), FOUND_ONCE)
 def test_the_fit_of_the_torque_changes_little(volume: float, known: tuple[float, ...]) -> None:
     """A torque that is wrong by FIT_ERROR changes what friction takes from the acceleration by no more than that."""

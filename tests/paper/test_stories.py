@@ -29,6 +29,7 @@ FILMS = {name: story.film for name, story in STORIES.items() if story.film is no
 CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
+@pytest.mark.costly
 @pytest.mark.parametrize("name", STORIES)
 def test_a_plot_can_be_read_by_itself(name: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It has a title and a scene, every line a name, every axis a unit, and no text lies on another or on a line; its

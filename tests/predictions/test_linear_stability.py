@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import DOP853
 
 from mjbeer.predictions import linear_stability, soft_constraint
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, error, motion, polynomial, spectral_radius
+from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, error, polynomial, spectral_radius
 from tests.support import rows
 
 EPS = np.finfo(float).eps
@@ -76,12 +76,6 @@ def test_limits_on_the_imaginary_axis() -> None:
     assert linear_stability.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
 
 
-@pytest.mark.parametrize("dampratio", [0.1, math.sqrt(1 / 8), 3.0])
-def test_the_limit_of_a_row_under_euler_is_the_closed_form(dampratio: float) -> None:
-    wanted = 2 * dampratio * (math.sqrt(dampratio**2 + 1) - dampratio)
-    assert rows.stable_ratio("Euler", dampratio) == pytest.approx(wanted, rel=1e-7)
-
-
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str) -> None:
     hard, soft = (soft_constraint.spring(1e-3, 1.0, each) for each in (0.9999, 0.5))
@@ -119,11 +113,3 @@ def test_errors_of_short_steps() -> None:
     swing, angle = 0.1, 20 * math.pi
     wanted = angle * math.hypot(swing**4 / 120, swing**5 / 144)
     assert error("RK4", swing) == pytest.approx(wanted, rel=1e-2)  # the next order, (omega h)^2
-
-
-def test_motion_is_the_power_of_the_matrix() -> None:
-    matrix = amplification("RK4", 0.3, 0.1)
-    states = motion(matrix, np.array([1.0, 0.5]), 37)
-    assert states.shape == (38, 2)
-    for n in (0, 1, 17, 37):
-        assert states[n] == pytest.approx(np.linalg.matrix_power(matrix, n) @ [1.0, 0.5], rel=1e-12)

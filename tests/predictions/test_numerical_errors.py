@@ -92,9 +92,3 @@ def test_a_usual_joint_equality_has_a_share_of_its_force(scene: Scene) -> None:
     share = applied_share(model, np.zeros(model.nq + model.nv))
     predicted = soft_constraint.reached_share(0.9, soft_rolling.diagonal_excess(scene))
     assert share == pytest.approx(predicted, rel=ROUNDING)
-
-
-def test_the_diagonal_is_right_where_metres_and_radians_do_not_mix() -> None:
-    """A can of radius 1 m."""
-    assert soft_rolling.diagonal_excess(sliding(can=Can.hoop(1.0, 1.0, 2.0))) == pytest.approx(1, rel=1e-12)
-    assert soft_constraint.reached_share(0.9, 1.0) == pytest.approx(0.9, rel=1e-15)

@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, Page
 from mjbeer.report import films, page
 from tests.support import browser, pages
 
-pytestmark = [pytest.mark.slow, pytest.mark.browses]
+pytestmark = [pytest.mark.costly, pytest.mark.browses]
 
 PHONE, LAPTOP, PROJECTOR = 360, 1000, 1600
 """Widths of screens [pixels]: the narrowest, one on which two columns just fit, and the widest."""

@@ -22,6 +22,7 @@ def test_there_is_one_of_each_film() -> None:
     assert max(path.stat().st_size for path in RENDERS.glob("*.webp")) < LARGEST
 
 
+@pytest.mark.costly
 @pytest.mark.draws
 @pytest.mark.parametrize("name", FILMS)
 def test_it_is_of_today(name: str) -> None:

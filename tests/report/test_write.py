@@ -60,6 +60,7 @@ def test_a_failure_is_told_whatever_is_asked_for(
     assert ("\nfirst\t" in out) == (not eye and options == ["--table"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("quick", [True, False])
 def test_a_report_has_the_table_and_the_films(
     quick: bool, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -98,6 +99,7 @@ def test_a_report_has_the_table_and_the_films(
     assert runs["hoop"].takeoff() is not None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("error", "status"), [(1e-5, 0), (2e-3, 1)])
 @pytest.mark.parametrize("lacking", [opengl, video])
 def test_without_opengl_or_ffmpeg_a_report_has_all_but_films_and_says_so(

@@ -50,7 +50,8 @@ def test_a_set_up_in_use_is_not_lent() -> None:
         assert bits(one) == before
 
 
-def test_a_set_up_comes_back_from_a_run_that_failed() -> None:
+def test_a_set_up_comes_back_from_a_run_that_failed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("mjbeer.simulation.tolerance._EVALUATIONS", 100_000)  # soon, and not after millions
     with (
         pytest.raises(DivergenceError),
         Prepared.borrowed(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed,

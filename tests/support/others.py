@@ -42,8 +42,6 @@ class Other:
     """Its word in `consumers.TOOLS`."""
     precise: bool = True
     """Whether it computes in double precision."""
-    faithful: bool = True
-    """Whether it does what MJCF says, in every way of rolling."""
 
     def python(self) -> str:
         """Return the Python that has the tool, after installing it if need be.
@@ -81,9 +79,6 @@ OTHERS = (
     Other("MJX 3.3 single", _MJX, "mjx-single", precise=False),
     Other("mujoco_warp 4", ("mujoco==4.0.*", "mujoco-warp==4.0.*"), "warp", precise=False),
     Other("dm_control 1.0.50", ("dm_control==1.0.50", "mujoco==3.17.*"), "dm_control"),
-    Other("Pinocchio 4.1", ("pin==4.1.*",), "pinocchio", faithful=False),
-    Other("Drake 1.51", ("drake==1.51.*",), "drake", faithful=False),
-    Other("PyBullet 3.2", ("pybullet==3.2.*", "numpy<2"), "pybullet", faithful=False),
 )
 BY_NAME = {other.name: other for other in OTHERS}
 

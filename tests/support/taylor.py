@@ -1,66 +1,57 @@
-"""J and V in 40 digits, and the motions of many scenes at once by Taylor series in extended precision, without energy.
+"""The witness of exact theory: J and V in 40 digits, and motions by heyoka's Taylor series in extended precision.
 
-The reduced equation J phi_ddot + J' phi_dot^2 / 2 = -V' is integrated with its coefficients in 40 digits from the
-Lagrangian, and phi only ever as the sine and cosine of its half. All series are by recurrence.
+Motions are those of Lagrange's two equations as they stand, solved for the accelerations; a frozen load has u = a phi,
+and one equation: the first times a, plus the second.
+
+M u_ddot - m b (cos(phi) phi_ddot - sin(phi) phi_dot^2) = m_t g sin(alpha) - T(w)/a - drag u_dot |u_dot|
+I phi_ddot - m b cos(phi) u_ddot = -m g b sin(alpha + phi) + T(w),    w = u_dot/a - phi_dot
 """
 
+import functools
+import importlib.util
 import itertools
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pytest
 from mpmath import MPContext
 from mpmath.calculus.quadrature import GaussLegendre
 
 from mjbeer import Scene
+from mjbeer.theory.equations import accelerations
 
 EXTENDED = np.longdouble
-ENOUGH = float(np.finfo(EXTENDED).eps) < 1e-18
-"""Whether this machine's `long double` has 64 bits of digits, as on x86; elsewhere it may be a double."""
-_ORDER = 26
-_LOCAL = EXTENDED(1e-20)
-"""Local error relative to each quantity."""
+NEEDED = pytest.mark.skipif(
+    importlib.util.find_spec("heyoka") is None or np.finfo(EXTENDED).eps > 1e-18,
+    reason="no heyoka here, or its long double has no more digits than double",
+)
+"""The mark of tests that need motions in extended precision, which there are on x86."""
 
 mp = MPContext()
 mp.dps = 40
 
 
-@dataclass(frozen=True)
-class Case:
-    """A scene, its start, and increasing times; all cases of a run have the same number of times."""
-
-    scene: Scene
-    phi0: float
-    phi_dot0: float
-    time: np.ndarray
-
-
-def coefficients(scene: Scene) -> dict[str, Any]:
-    """The coefficients of J and V in 40 digits."""
+def letters(scene: Scene) -> dict[str, Any]:
+    """The coefficients of the equations of motion in 40 digits, those of J and V among them."""
     can, load = scene.can, scene.load
     a, can_mass, can_inertia = (mp.mpf(each) for each in (can.radius, can.mass, can.inertia))
     m, b, inertia = (mp.mpf(each) for each in (load.mass, load.offset, load.inertia))
     g, alpha = mp.mpf(scene.gravity), mp.mpf(scene.incline)
+    rolling, moment = can_mass + can_inertia / a**2, m * b
+    whole, drive = m + rolling, (m + can_mass) * g * mp.sin(alpha)
+    common = {
+        "a": a, "moment": moment, "drive": drive, "sine": moment * g * mp.sin(alpha),
+        "cosine": moment * g * mp.cos(alpha), "chord": mp.mpf(0), "swing": mp.mpf(0), "slope": mp.mpf(0),
+    }  # fmt: skip
     if scene.attachment == "frozen":
-        return {
-            "base": inertia + m * (a - b) ** 2 + can_inertia + can_mass * a**2,
-            "chord": 4 * m * a * b,
-            "swing": mp.mpf(0),
-            "slope": (m + can_mass) * g * a * mp.sin(alpha),
-            "cosine": m * g * b * mp.cos(alpha),
-            "sine": m * g * b * mp.sin(alpha),
-        }
-    rolling = can_mass + can_inertia / a**2
-    whole = m + rolling
-    return {
-        "base": inertia + m * b**2 * rolling / whole,
-        "chord": mp.mpf(0),
-        "swing": (m * b) ** 2 / whole,
-        "slope": mp.mpf(0),
-        "cosine": m * b * g * mp.cos(alpha),
-        "sine": m * b * (g * mp.sin(alpha) - (m + can_mass) * g * mp.sin(alpha) / whole),
-    }
+        base = inertia + m * (a - b) ** 2 + can_inertia + can_mass * a**2
+        return common | {"base": base, "chord": 4 * moment * a, "slope": drive * a}
+    return common | {
+        "whole": whole, "axial": inertia + moment * b, "base": inertia + moment * b * rolling / whole,
+        "swing": moment**2 / whole, "sine": common["sine"] - moment * drive / whole, "drag": mp.mpf(scene.drag),
+        **dict(zip(("c1", "c2", "c3"), map(mp.mpf, scene.damping_law.coefficients), strict=True)),
+    }  # fmt: skip
 
 
 def inertia(form: dict[str, Any], phi: Any) -> Any:
@@ -93,90 +84,83 @@ def integral(rate: Callable[[Any], Any], pieces: Sequence[Any]) -> Any:
     return total
 
 
-def _extended(numbers: Sequence[Any]) -> np.ndarray:
-    """The doubles nearest to the numbers, and what they leave."""
-    return np.array([EXTENDED(float(each)) + EXTENDED(float(each - mp.mpf(float(each)))) for each in numbers])
+def motion(scene: Scene, times: Any, phi0: float, phi_dot0: float, steps: int = 100_000) -> np.ndarray:
+    """phi - phi0, u, phi_dot and u_dot at increasing times, of shape (times, 4); NaN after so many steps."""
+    known, start = letters(scene), mp.mpf(phi0)
+    rate, offset, radius = EXTENDED(phi_dot0), _extended(mp.mpf(scene.load.offset)), _extended(known["a"])
+    sine, cosine = _extended(mp.sin(start)), _extended(mp.cos(start))
+    frozen = scene.attachment == "frozen"
+    u, u_dot = (radius * _extended(start), radius * rate) if frozen else (offset * sine, offset * cosine * rate)
+    names, integrator = _integrator(scene.attachment, bool(scene.drag or scene.damping_law.quadratic))
+    known |= {"s0": mp.sin(start), "c0": mp.cos(start), "h0": mp.sin(start / 2), "k0": mp.cos(start / 2)}
+    # Steps are as short as the largest numbers ask for: without damping, they are those of phi however far it rolls.
+    known["unit"] = known["a"] * (1 if scene.dissipates else 10**12)
+    unit = _extended(known["unit"])
+    integrator.pars[: len(names)] = [_extended(known[name]) for name in names]
+    integrator.time, integrator.state[:] = EXTENDED(0), [0, u / unit, rate, u_dot / unit]
+    if len(names) < len(integrator.pars):  # the sign of what starts at zero is that of its derivative
+        u_ddot, phi_ddot = accelerations(scene, phi0, phi_dot0, float(u_dot))
+        ahead = np.sign([u_ddot / scene.can.radius - phi_ddot, u_ddot])
+        integrator.pars[len(names) :] = [np.sign(u_dot / radius - rate) or ahead[0], np.sign(u_dot) or ahead[1]]
+    grid = np.unique(np.append(0, times)).astype(EXTENDED)
+    found = np.full((len(grid), 4), np.nan, EXTENDED)
+    result = integrator.propagate_grid(grid, max_steps=steps)[-1]
+    found[: len(result)] = result
+    return found[np.searchsorted(grid, times)] * [1, unit, 1, unit]
 
 
-def _product(x: np.ndarray, y: np.ndarray, k: int) -> np.ndarray:
-    """Coefficient k of the products of one or several pairs of series, of shape (..., order, cases)."""
-    return np.einsum("...jn,...jn->...n", x[..., : k + 1, :], y[..., k::-1, :])  # with no array in between
+def _extended(number: Any) -> Any:
+    """The extended number nearest to one of 40 digits."""
+    return EXTENDED(float(number)) + EXTENDED(float(number - mp.mpf(float(number))))
 
 
-def value(series: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Of series at a step, by Horner's rule."""
-    total = series[-1]
-    for coefficient in series[-2::-1]:
-        total = total * step + coefficient
-    return total
+@functools.cache
+def _integrator(attachment: str, corners: bool) -> tuple[list[str], Any]:
+    """The names of the parameters, and heyoka's integrator; |w| and |u_dot| have corners, which are events."""
+    import heyoka
 
-
-def integrate(cases: Sequence[Case], steps: int = 4000) -> tuple[np.ndarray, np.ndarray]:
-    """How far phi has turned and phi_dot, of shape (cases, times); NaN for a motion that takes more steps than that."""
-    known = [coefficients(case.scene) for case in cases]
-    terms = {name: _extended([each[name] for each in known]) for name in known[0]}
-    halves = [mp.mpf(case.phi0) / 2 for case in cases]
-    s, c = _extended([mp.sin(half) for half in halves]), _extended([mp.cos(half) for half in halves])
-    v, ends = np.array([EXTENDED(case.phi_dot0) for case in cases]), np.array([case.time for case in cases], EXTENDED)
-    turned, now, sample = np.zeros_like(v), np.zeros_like(v), np.zeros(len(cases), int)
-    turns, rates = np.full(ends.shape, np.nan, EXTENDED), np.full(ends.shape, np.nan, EXTENDED)
-    active = np.arange(len(cases))
-    for _ in range(steps):
-        sines, cosines, speeds = _series(
-            {name: each[active] for name, each in terms.items()}, s[active], c[active], v[active]
+    names = ["a", "unit", "moment", "drive", "cosine", "sine", "base", "s0", "c0", "h0", "k0"]
+    names += ["chord", "slope"] if attachment == "frozen" else ["whole", "axial", "swing", "drag", "c1", "c2", "c3"]
+    at = {name: heyoka.par[place] for place, name in enumerate(names)}
+    turned, way, phi_dot, speed = heyoka.make_vars("turned", "way", "phi_dot", "speed")
+    u_dot = speed * at["unit"]
+    sin, cos = heyoka.sin(turned), heyoka.cos(turned)
+    sin, cos = at["s0"] * cos + at["c0"] * sin, at["c0"] * cos - at["s0"] * sin
+    events = []
+    if attachment == "frozen":
+        half = at["h0"] * heyoka.cos(turned / 2) + at["k0"] * heyoka.sin(turned / 2)
+        pull = at["slope"] - at["cosine"] * sin - at["sine"] * cos - at["moment"] * at["a"] * sin * phi_dot**2
+        phi_ddot = pull / (at["base"] + at["chord"] * half**2)
+        u_ddot = at["a"] * phi_ddot
+    else:
+        slip, sides = (
+            u_dot / at["a"] - phi_dot,
+            [heyoka.par[len(names) + place] if corners else 1.0 for place in (0, 1)],
         )
-        left = ends[active, sample[active]] - now[active]
-        step = _step(sines, cosines, speeds)
-        there = step >= left
-        step = np.where(there, left, step)
-        turned[active] += step * value(speeds / np.arange(1, _ORDER + 2)[:, np.newaxis], step)
-        s[active], c[active], v[active] = (value(each, step) for each in (sines, cosines, speeds))
-        length = np.hypot(s[active], c[active])
-        s[active], c[active] = s[active] / length, c[active] / length
-        now[active] = np.where(there, ends[active, sample[active]], now[active] + step)
-        done = active[there]
-        turns[done, sample[done]], rates[done, sample[done]] = turned[done], v[done]
-        sample[done] += 1
-        active = active[sample[active] < ends.shape[1]]
-        if not len(active):
-            break
-    return turns, rates
+        torque = (
+            at["c1"] * slip + sides[0] * at["c2"] * slip**2 + at["c3"] * slip * slip * slip
+        )  # heyoka divides by the base of a cube
+        drag = torque / at["a"] + sides[1] * at["drag"] * u_dot**2
+        along = at["drive"] - drag - at["moment"] * sin * phi_dot**2
+        # sine lacks what the axis takes of gravity's torque along cos(phi): it is in J's V, and not in this equation.
+        around = torque - at["cosine"] * sin - (at["sine"] + at["moment"] * at["drive"] / at["whole"]) * cos
+        couple = at["moment"] * cos
+        determinant = at["whole"] * (at["base"] + at["swing"] * sin**2)
+        phi_ddot = (at["whole"] * around + couple * along) / determinant
+        u_ddot = (at["axial"] * along + couple * around) / determinant
+        if corners:
+            events = [_corner(heyoka, len(names) + place, each) for place, each in enumerate((slip, u_dot))]
+    system = [(turned, phi_dot), (way, speed), (phi_dot, phi_ddot), (speed, u_ddot / at["unit"])]
+    count = len(names) + 2 * corners
+    start, ones = np.zeros(4, EXTENDED), np.ones(count, EXTENDED)
+    return names, heyoka.taylor_adaptive(system, start, pars=ones, t_events=events, fp_type=EXTENDED)
 
 
-def _series(terms: dict[str, np.ndarray], s: np.ndarray, c: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """The Taylor series in time of sin(phi/2), cos(phi/2) and phi_dot, of shape (3, _ORDER + 1, cases)."""
-    base, chord, swing, slope, cosine, sine = (
-        terms[name] for name in ("base", "chord", "swing", "slope", "cosine", "sine")
-    )
-    series = np.empty((3, _ORDER + 1, len(v)), EXTENDED)
-    sines, cosines, speeds = series
-    sines[0], cosines[0], speeds[0] = s, c, v
-    sin_phi, cos_phi = whole = np.empty((2, _ORDER, len(v)), EXTENDED)
-    inertia, half_slope = lever = np.empty((2, _ORDER, len(v)), EXTENDED)
-    accelerations, squares = driven = np.empty((2, _ORDER, len(v)), EXTENDED)
-    for k in range(_ORDER):  # few calls on many numbers: where few cases are left, calls are what takes time
-        first = 1 if k == 0 else 0
-        square, half_sin_phi = _product(series[:2], sines, k)
-        sin_phi[k], cos_phi[k] = 2 * half_sin_phi, first - 2 * square
-        sin_phi_squared, sin_phi_cos_phi = _product(whole, sin_phi, k)
-        inertia[k] = first * base + chord * square + swing * sin_phi_squared
-        half_slope[k] = chord * sin_phi[k] / 4 + swing * sin_phi_cos_phi
-        sines_slope, cosines_slope, squares[k] = _product(series, speeds, k)
-        accelerations[k] = 0  # until it is known
-        turning = _product(lever, driven, k).sum(axis=0)  # J phi_ddot + J' phi_dot^2 / 2
-        accelerations[k] = (first * slope - cosine * sin_phi[k] - sine * cos_phi[k] - turning) / inertia[0]
-        speeds[k + 1] = accelerations[k] / (k + 1)
-        sines[k + 1] = cosines_slope / (2 * (k + 1))
-        cosines[k + 1] = -sines_slope / (2 * (k + 1))
-    return series
+def _corner(heyoka: Any, place: int, rate: Any) -> Any:
+    """An event that changes the sign of a rate in the equations where the rate changes its own."""
 
+    def turn(integrator: Any, sign: int) -> bool:
+        integrator.pars[place] = sign
+        return True
 
-def _step(sines: np.ndarray, cosines: np.ndarray, speeds: np.ndarray) -> np.ndarray:
-    """The step at which the last terms of all series are as small as they should be."""
-    fastest = np.abs(speeds[0]) + np.sqrt(np.abs(speeds[1])) + EXTENDED(1e-300)
-    steps = [
-        (_LOCAL * scale / np.maximum(np.abs(series[k]), np.finfo(EXTENDED).tiny)) ** (EXTENDED(1) / k)
-        for series, scale in ((sines, 1), (cosines, 1), (speeds, fastest))
-        for k in (_ORDER - 1, _ORDER)
-    ]
-    return np.min(steps, axis=0)
+    return heyoka.t_event(rate, callback=turn, fp_type=EXTENDED)

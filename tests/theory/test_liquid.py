@@ -2,7 +2,6 @@
 
 import math
 import warnings
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,9 +9,8 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
-from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, NAMES, WALL, about_run, liquid_in
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, about_run, liquid_in
 from mjbeer.theory.load import segment
 from tests.support.scenes import METAL
 
@@ -96,31 +94,19 @@ def test_a_swing_has_stokes_layers() -> None:
     assert used.damping.linear == pytest.approx(1000 * math.sqrt(1e-6 * omega / 2) * (wall + ends), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_damping_is_continuous_towards_level_ground() -> None:
     """How far water in a metal can still swings in the fifth second. The rest of W_steady, which goes with the incline
     to 2/3, is 1e-6 of the swing's at 1e-9 rad."""
 
     def kept(incline: float) -> float:
         scene = liquid("water", incline, can=METAL)
-        return float(np.abs(exact(scene, np.linspace(4, 5, 2001), 1.0).phi - scene.terminal_tilt()).max())
+        return float(np.abs(exact(scene, np.linspace(4, 5, 501), 1.0).phi - scene.terminal_tilt()).max())
 
     level = kept(0.0)
     assert level == pytest.approx(0.603, abs=1e-3)
     for incline, apart in ((1e-9, 1e-5), (1e-6, 1e-2), (1e-4, 0.1)):
         assert abs(kept(incline) / level - 1) < apart
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_damping_goes_one_way_with_the_incline(name: str) -> None:
-    """Steady rolling is the faster the steeper, and a step of the incline by 5 % changes the damping by 7 % at most."""
-    inclines, used = np.geomspace(1e-9, 0.3, 400), liquid_in(name)
-    laws = [liquid_in(name, incline=incline).damping for incline in inclines]
-    assert (np.diff([liquid(name, incline=incline).terminal_speed() for incline in inclines]) > 0).all()
-    assert np.abs(np.diff(np.log([law.linear for law in laws]))).max() < 0.07
-    for rate in (0.1, 1.0, 10.0, 100.0):
-        assert np.abs(np.diff(np.log([law.torque(rate) for law in laws]))).max() < 0.07
-    creep = 8 / math.pi * used.density * used.viscosity * 0.033**2 * 0.12 * math.log(2 / 0.03)
-    assert min(law.torque(1.0) for law in laws) >= creep * (1 - 1e-12)
 
 
 def test_the_law_says_where_it_holds() -> None:
@@ -171,17 +157,3 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     assert "17.8 to 178 rad/s between can and liquid, but 200" in (about_run(scene, 200.0, math.inf) or "")
     assert exact(scene, run.time[:10], 0.0).record.no_lump_at == math.inf
     assert about_run(sliding(damping=1e-3), 1e9, 0.0) is None  # what is no liquid's may be anything
-
-
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"name": "Watr"}, r"liquid must be one of .*; got 'Watr': did you mean 'water'\?"),
-        ({"viscosity": -1}, r"viscosity must be greater than 0 \[m\^2/s\], got -1"),
-        ({"viscosity": 1e-8}, "the layer on the wall is turbulent .* got 1e-08 m"),
-        ({"fill": 1.0}, "fill must be less than 1 and gravity more than 0"),
-    ],
-)
-def test_what_is_not_allowed(given: dict[str, Any], message: str) -> None:
-    with pytest.raises(ParameterError, match=message):
-        liquid(**given)

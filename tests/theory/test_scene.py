@@ -151,25 +151,6 @@ def test_a_scene_is_shown_as_the_call_that_makes_it(scene: Scene, text: str) -> 
     assert repr(pickle.loads(pickle.dumps(scene))) == text
 
 
-@pytest.mark.parametrize(
-    ("scene", "words"),
-    [
-        (sliding(math.radians(-2.5), 0.37, Can.sheet_metal()), "37 % full can of 8.57 g, beer sliding, incline −2.5°"),
-        (pendulum(), "wheel with a pendulum, M = 200 g, m = 100 g, incline 10°"),
-        (
-            sliding(damping=Damping(1e-5, 1e-6), drag=2e-4),
-            "half-full massless can, beer sliding, damped, drag 0.0002 kg/m, incline 10°",
-        ),
-        (
-            Scene(Can.massless(), Load(0.2, 0.01, 1e-5), 0.0),
-            "massless can, load sliding, its centre of mass 10 mm from the axis, level ground",
-        ),
-    ],
-)
-def test_a_scene_in_words(scene: Scene, words: str) -> None:
-    assert in_words(scene) == words
-
-
 def test_what_varies_is_left_out() -> None:
     assert in_words(frozen(), {"fill", "can", "load"}) == "can, incline 10°"
     assert in_words(sliding(damping=1e-3, drag=1e-3), {"damping"}) == in_words(sliding())

@@ -3,7 +3,6 @@
 import math
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -11,7 +10,6 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
-from mjbeer.theory import damping
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, scenes
@@ -98,23 +96,6 @@ def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: f
     assert np.abs(roots - expected).max() < 1e-6 * np.abs(expected).max()
 
 
-def test_roots_of_any_cubic() -> None:
-    """Relative to each root, against mpmath; double roots are left out, as coefficients do not tell them to an eps."""
-    pick, tried = np.random.default_rng(1), 0
-    while tried < 100:
-        square, linear, constant = (float(each) for each in 10 ** pick.uniform(-4, 4, 3))
-        if square * linear < 2 * constant:  # unstable, or a difference that cancels
-            continue
-        with mpmath.workdps(40):
-            expected = [complex(each) for each in mpmath.polyroots([1, square, linear, constant], 500, extraprec=200)]
-        found, sizes = damping.roots(square, linear, constant, square * linear - constant), np.abs(expected)
-        gaps = np.abs(np.subtract.outer(expected, expected)) / np.maximum.outer(sizes, sizes) + np.eye(3)
-        if gaps.min() > 1e-2:
-            tried += 1
-            for each in expected:
-                assert np.abs(found - each).min() < 1e-14 * abs(each)
-
-
 def test_modes_of_weak_and_strong_damping() -> None:
     """The two limits, and decays to all their digits where they are 1e-10 of the frequency."""
     scene = sliding(can=METAL, damping=1e-12)
@@ -134,10 +115,11 @@ def test_modes_of_weak_and_strong_damping() -> None:
     assert fast.frequency() == pytest.approx(frozen(0.2, can=METAL).frequency(), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_mean_slip() -> None:
     """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
     scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033
-    motion = exact(scene, [7.0, 8.0], 0.0, 112.7)
+    motion = exact(scene, [1.0, 2.0], 0.0, 112.7)
     momentum = scene.mass * motion.u_dot - scene.load.mass * scene.load.offset * np.cos(motion.phi) * motion.phi_dot
     slipped = np.diff(motion.u)[0] / a - np.diff(motion.phi)[0]
     assert slipped + np.diff(momentum)[0] * a / c == pytest.approx(scene.slip_rate(), rel=1e-11)  # 18 turns a second
@@ -163,10 +145,3 @@ def test_what_has_no_answer_says_so() -> None:
     heavy = Scene(Can.hoop(mass=100.0), Load(0.3, 0.01, 1e-6), 0.0, damping=1e-2)
     with pytest.raises(NoLibrationError, match="no frequency: the load creeps back without a swing, with rates"):
         heavy.frequency()
-
-
-def test_a_balanced_load_lets_the_can_go_ever_faster() -> None:
-    scene = Scene(METAL, Load(0.3, 0.0, 1e-4), 0.2, damping=1e-2)
-    motion = exact(scene, [5.0, 6.0], 0.0)  # after a hundred decays of the slip rate
-    assert np.diff(motion.u_dot) == pytest.approx([scene.acceleration()], rel=1e-12)
-    assert replace(scene, drag=1e-3).acceleration() == 0

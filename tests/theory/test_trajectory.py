@@ -61,14 +61,6 @@ def test_exact_motion_is_trusted(scene: Scene, phi0: float, phi_dot0: float) -> 
     assert motion.rolls_until() == math.inf
 
 
-@pytest.mark.parametrize("scene", [sliding(fill=1 - 1e-9), frozen(fill=1.0), sliding(gravity=0.0)])
-@pytest.mark.parametrize("phi_dot0", [0.0, 1.0])
-def test_exact_motion_without_a_swing_is_trusted(scene: Scene, phi_dot0: float) -> None:
-    motion = exact(scene, np.linspace(0, 50, 11), 0.3, phi_dot0)
-    assert motion.record.implied_error < ROUNDING * 50**2
-    assert motion.trusted or scene.gravity == 0  # without weight a load that circles lifts the can
-
-
 def moved(motion: Trajectory, along: np.ndarray, up: np.ndarray | float = 0.0) -> Trajectory:
     """Down the incline by rolling, and away from it."""
     rolled = along / motion.scene.can.radius
@@ -212,21 +204,6 @@ def test_frequency_is_that_of_the_period(scene: Scene) -> None:
         assert abs(measured * period / (2 * math.pi) - 1) < (2 * math.pi / samples) ** 4 / 384 + ROUNDING
 
 
-@pytest.mark.parametrize("gap", [0.45, 0.55, 0.93, 1.0, 2.3])
-def test_samples_that_do_not_follow_the_swing_have_no_frequency(gap: float) -> None:
-    """A swing that is sampled every 0.93 periods looks like one of 0.07 of its frequency."""
-    time = np.arange(0, 60, gap) * frozen().period(0.5)
-    with pytest.raises(MjbeerError, match="no frequency: "):
-        exact(frozen(), time, frozen().equilibrium() + 0.5).frequency()
-
-
-@pytest.mark.parametrize(("phi0", "phi_dot0"), [(0.5, 0.0), (0.0, 60.0)])
-def test_no_frequency_without_a_swing(phi0: float, phi_dot0: float) -> None:
-    motion = exact(sliding(), np.linspace(0, 0.3, 100), phi0, phi_dot0)
-    with pytest.raises(MjbeerError, match=r"no frequency: the motion turns \d times in 0\.3 s, 3 are needed"):
-        motion.frequency()
-
-
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
 def test_a_load_at_rest_has_no_frequency(rolling: str) -> None:
     """What moves there is rounding, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
@@ -234,16 +211,6 @@ def test_a_load_at_rest_has_no_frequency(rolling: str) -> None:
     run = simulate(scene, 4.0, scene.equilibrium() + 1e-13, rolling=rolling)
     with pytest.raises(MjbeerError, match="no frequency: "):
         run.frequency()
-
-
-@pytest.mark.parametrize(("scene", "start"), [(sliding(), 0.014 * math.sin(1)), (frozen(), 0.033), (hoop(), 0.033)])
-def test_the_distance_is_counted_from_the_start_and_u_is_not(scene: Scene, start: float) -> None:
-    """u starts at b sin(phi0) with b = 4a/3pi, or at a phi0; what matters is time 0, whether it has a sample or not."""
-    motion = exact(scene, [0.3, 0.0, 0.2], 1.0)
-    assert motion.u[1] == pytest.approx(start, rel=1e-3)
-    assert motion.distance[1] == 0
-    assert motion.distance == pytest.approx(motion.u - motion.u[1], abs=0)
-    assert exact(scene, [0.3], 1.0).distance == pytest.approx(motion.distance[:1], rel=1e-12)
 
 
 def test_a_table_needs_pandas_and_a_file_does_not(monkeypatch: pytest.MonkeyPatch, tmp_path: pathlib.Path) -> None:

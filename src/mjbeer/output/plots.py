@@ -99,6 +99,7 @@ def chart(
                 figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
                 if kind == ".svg":
                     temporary.write_text(_lighter(temporary.read_text(encoding="utf-8")), encoding="utf-8")
+                    figure.set_layout_engine("none")  # to lay it out anew would take longer than to draw it
 
 
 def label(axes: Axes, x: str, y: str, title: str = "", **settings: Any) -> None:

@@ -162,7 +162,7 @@ def draw_period(path: pathlib.Path) -> None:
     with chart(path, 1, 2, width=12, height=5.2, title=title, subtitle=subtitle) as (period, swing):
         for name, scene in scenes.items():
             rest, (_, high) = scene.equilibrium(), scene.separatrix()
-            amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 400))
+            amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 100))
             small = 2 * math.pi / scene.frequency()
             theory = [scene.period(amplitude) / small for amplitude in amplitudes]
             (line,) = period.plot(np.degrees(amplitudes), theory, label=name)
@@ -181,7 +181,7 @@ def draw_period(path: pathlib.Path) -> None:
 def _draw_range(axes: Axes) -> None:
     """Draw between which angles a frozen load swings, over the incline."""
     # At both ends of the inclines the limits are steep, so that the points are denser there.
-    inclines = frozen().largest_incline() * (1 - np.cos(np.linspace(0.02, math.pi - 0.005, 200))) / 2
+    inclines = frozen().largest_incline() * (1 - np.cos(np.linspace(0.02, math.pi - 0.005, 100))) / 2
     cans, x = [frozen(incline) for incline in inclines], np.degrees(inclines)
     low, high = np.degrees([can.separatrix() for can in cans]).T
     axes.fill_between(x, low, high, color=COLOURS[5], alpha=0.25, linewidth=0)

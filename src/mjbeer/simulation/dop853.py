@@ -1,14 +1,14 @@
 """The integrator DOP853: an eighth-order Runge-Kutta method around MuJoCo's forward dynamics, in compiled code.
 
 The twelve stages, the error estimate and the seventh-order continuous output are those of E. Hairer, S. P. Norsett and
-G. Wanner, Solving Ordinary Differential Equations I, section II.10 (coefficients from scipy.integrate.DOP853).
+G. Wanner, Solving Ordinary Differential Equations I, section II.10 (coefficients in dop853.txt).
 """
 
 import math
+import pathlib
 
 import mujoco
 import numpy as np
-import scipy.integrate
 from numba import njit
 
 from mjbeer.model.engine import address
@@ -23,11 +23,11 @@ _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_f
 the same numbers to the last bit, in three quarters of the time."""
 _ROWS = 16
 """Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""
-_METHOD = scipy.integrate.DOP853
-_A, _B = _METHOD.A[:12, :12].copy(), _METHOD.B.copy()
-_E3, _E5 = _METHOD.E3.copy(), _METHOD.E5.copy()
-_A_EXTRA, _D = np.asarray(_METHOD.A_EXTRA).copy(), np.asarray(_METHOD.D).copy()
-_STAGES = len(_B)
+# SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
+_TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
+_A, _B, _E3, _E5 = _TABLEAU[:12, :12].copy(), *_TABLEAU[12:15, :13].copy()
+_A_EXTRA, _D = _TABLEAU[15:18].copy(), _TABLEAU[18:].copy()
+_STAGES = len(_A)
 _CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
 _MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
 _LEAST = 1e-4  # smallest error of the step before that counts

@@ -79,7 +79,7 @@ def test_csv_has_every_point(stored: Benchmark) -> None:
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_the_diagram_names_what_it_shows_and_each_point_tells_its_setting(
     stored: Benchmark, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

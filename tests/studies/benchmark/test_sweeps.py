@@ -8,7 +8,7 @@ from mjbeer.studies.benchmark import peers, sweeps
 from mjbeer.studies.benchmark.sweeps import TOLERANCE, Sample
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_all_that_is_timed_keeps_the_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sweeps, "Sample", lambda count: Sample(8))
     ways = sweeps.compare(quick=True)["ways"]
@@ -18,6 +18,7 @@ def test_all_that_is_timed_keeps_the_tolerance(monkeypatch: pytest.MonkeyPatch) 
     assert all(0 < way["seconds"] < np.inf for way in ways)
 
 
+@pytest.mark.slow
 def test_each_scene_has_about_the_largest_timestep_that_keeps_the_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
     """With 0.85 of the timesteps RK4 errs by 0.85^-4 = 1.9 times as much."""
     sample = Sample(6)

@@ -183,6 +183,7 @@ def test_the_table_of_the_document_is_that_of_theory() -> None:
         assert told == pytest.approx([limit(method) for method in methods], rel=2e-2), head  # two digits or three
 
 
+@pytest.mark.costly
 def test_the_errors_of_the_document_are_measured_now() -> None:
     text = DOCUMENT.partition("errors of φ and u/a at h = 1 ms")[2]
     for integrator in (*INTEGRATORS, DOP853):

@@ -80,6 +80,7 @@ def test_a_csv_file_has_a_line_for_each_scene(swept: Sweep, tmp_path: pathlib.Pa
     assert "fill" in lines[0]
 
 
+@pytest.mark.slow
 def test_an_xarray_dataset_has_all_of_it_with_units(swept: Sweep, listed: Sweep, tmp_path: pathlib.Path) -> None:
     xarray = pytest.importorskip("xarray")
     dataset = swept.to_xarray()

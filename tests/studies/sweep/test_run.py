@@ -56,6 +56,7 @@ def same(one: Sweep, other: Sweep) -> bool:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "setting",
     [
@@ -104,7 +105,7 @@ def test_the_result_is_the_same_in_processes() -> None:
             mjbeer.sweep(lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=pool)
 
 
-@pytest.mark.slow
+@pytest.mark.costly
 def test_the_result_is_the_same_on_a_dask_cluster(monkeypatch: pytest.MonkeyPatch) -> None:
     distributed = pytest.importorskip("distributed")
     here = sweep_of_sliding()
@@ -309,6 +310,7 @@ def edited(incline: float, fill: float) -> Scene:
     return sliding(incline, fill, gravity=9.81 if incline < 0.1 or fill < 0.3 else 9.82)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("other", "differs"),
     [

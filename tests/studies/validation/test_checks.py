@@ -45,6 +45,7 @@ def test_takeoff_is_the_first_sample_in_the_air() -> None:
     assert lifted.takeoff() == pytest.approx(math.pi - fall.phi[2])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("quantity", "name", "factor"),
     [("energy that a swing", "energy_per_swing", 1.01), ("rolling down for", "euler_motion", 1.01)],

@@ -61,6 +61,7 @@ def first(quantity: str) -> Row:
     return next(row for name, row in ROWS.items() if name.startswith(quantity))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("quantity", "other"),
     [
