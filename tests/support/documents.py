@@ -131,21 +131,21 @@ def misprints() -> str:
 
 def validity() -> str:
     """What is true only within limits, and by how much it misses beyond them."""
-    found = [row for row in paper.rows() if row.verdict == LIMIT and row.limit]
-    lines = [(row.equation, row.quantity, f"{row.limit.misses_by:.2g}") for row in found if row.limit]
-    return table(("where", "claim, and where it was tried", "misses by"), lines, left=(0, 1))
+    found = [(row, row.limit) for row in paper.rows() if row.verdict == LIMIT and row.limit]
+    lines = [(row.equation, row.quantity.partition(":")[0], f"{limit.misses_by:.2g}") for row, limit in found]
+    return table(("where", "claim", "misses beyond by"), lines, left=(0, 1))
 
 
 def causes() -> str:
     """The causes of errors in the validation, with the bounds that follow."""
-    found: dict[tuple[str, str, str], list[float]] = {}
+    found: dict[tuple[str, str], list[float]] = {}
     for row in checks():
-        found.setdefault((row.group, row.reason, row.unit), []).append(row.bound)
+        found.setdefault((row.reason.partition(":")[0], row.unit), []).append(row.bound)
     lines = []
-    for (group, reason, unit), bounds in found.items():
+    for (reason, unit), bounds in found.items():
         span = sorted({min(bounds), max(bounds)})
-        lines.append((group, str(len(bounds)), f"{' to '.join(f'{each:.2g}' for each in span)} {unit}".strip(), reason))
-    return table(("group", "checks", "error at most", "what dominates the error"), lines, left=(0, 3))
+        lines.append((reason, str(len(bounds)), f"{' to '.join(f'{each:.2g}' for each in span)} {unit}".strip()))
+    return table(("what dominates the error", "checks", "error at most"), lines)
 
 
 def cheapest() -> str:
@@ -154,22 +154,16 @@ def cheapest() -> str:
 
 
 def others() -> str:
-    """Run times of other tools at two errors; the page has all."""
+    """Run times of other tools at one error; the page has all."""
     shown = tables.others(Benchmark.load(SHIPPED))
-    lines = [row for row in shown.rows if "1e-06" in row[0] or "1e-09" in row[0]]
+    lines = [row for row in shown.rows if "1e-09" in row[0]]
     return table(shown.columns, lines)
 
 
 def tolerances() -> str:
-    """Run times to two tolerances."""
+    """Run times to one tolerance; the page has all."""
     shown = tables.tolerances(Benchmark.load(SHIPPED))
-    return table(shown.columns, [row for row in shown.rows if row[0].endswith(("1e-6", "1e-9"))])
-
-
-def usual() -> str:
-    """Models of frozen beer as they are usually written."""
-    shown = tables.usual(Benchmark.load(SHIPPED))
-    return table(shown.columns, [row for row in shown.rows if row[0].startswith("frozen")])
+    return table(shown.columns, [row for row in shown.rows if row[0].endswith("1e-9")])
 
 
 def swept() -> str:
@@ -253,8 +247,8 @@ def damped_runs() -> str:
     worst = max(each["worst"] for each in maps if not each["name"].startswith("contact"))
     contact = max(each["worst"] for each in maps if each["name"].startswith("contact"))
     return (
-        f"Of {ended.total():,} runs in these maps {exploded:,} explode, and {inaccurate:,} are inaccurate and say so; {silent} "
-        f"are wrong and silent. Of {warned + trusted:,} accurate runs {warned:,} warn all the same. "
+        f"Of {ended.total():,} runs in these maps {exploded:,} explode, and {inaccurate:,} are inaccurate and say so; "
+        f"{silent} are wrong and silent. Of {warned + trusted:,} accurate runs {warned:,} warn all the same. "
         f"Measured and predicted borders agree within {100 * worst:.2g} %, in contact within {100 * contact:.2g} %."
     )
 
@@ -344,7 +338,6 @@ MADE: dict[str, Callable[[], str]] = {
     "cheapest": cheapest,
     "others": others,
     "tolerances": tolerances,
-    "usual": usual,
     "swept": swept,
     "ranges": ranges,
     "steps": steps,

@@ -136,17 +136,17 @@ _STORIES = (
         Take(partial(plots_frozen.HOP, friction=MU), 0.1,
             look=Look("With less friction the hoop skids before it hops", ("normal", "slip"), _HOOP))),
     Story("real-beer",
-        "What footnote 4 leaves open. Without friction a nearly empty can has a little more than half of g sin α (wide "
-        "line), but in Jackson's experiment it was slower. The friction of water on the wall, with no parameter "
-        "fitted, makes it slower, most of all about 1 mL of it on a gentle incline. A nearly full can still comes near "
-        "g sin α. Right: the air takes a few hundredths more from a nearly empty can, and little from a full one. "
-        "Grey: all of the water could go round with the wall as a film, so that the lines are estimates there.",
+        "What footnote 4 leaves open, as an estimate. Without friction a nearly empty can has a little more than half "
+        "of g sin α (wide line), but in Jackson's experiment it was slower. The friction of water on the wall makes it "
+        "slower, and no measurement is fitted. Grey lines: the can is so fast that its water need not stay at the "
+        "bottom. Grey area: surface tension shapes the puddle. Rosch saw the least acceleration near 10 mL of water; "
+        "here it is near 1 mL.",
         real_beer.draw_first_metre),
     Story("liquids",
-        "From frictionless to frozen. A half-full can without friction goes ever faster. With a real liquid it comes "
-        "to a terminal speed (dashed), the lower the thicker the liquid: 4.2 m/s for water, 4 cm/s for honey. With ice "
-        "it rocks about its equilibrium and does not go anywhere. Glycerol and honey coat the can, so that their "
-        "speeds are no better than an order of magnitude.",
+        "From frictionless to frozen. A half-full can without friction goes ever faster. A lump of liquid brings it "
+        "to a terminal speed (dashed), the lower the thicker the liquid. Grey: the can is so fast that the liquid need "
+        "not stay at the bottom. With ice it rocks about its equilibrium and does not go anywhere. Glycerol and honey "
+        "coat the can, so that their speeds are no better than an order of magnitude.",
         real_beer.draw_liquids),
 )
 # fmt: on
