@@ -9,6 +9,7 @@ import math
 import pathlib
 import re
 import sys
+import textwrap
 import warnings
 from collections import Counter
 from collections.abc import Callable
@@ -74,6 +75,11 @@ def counts() -> dict[str, Any]:
 def table(columns: tuple[str, ...], lines: list[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
     """Return a table as Markdown."""
     return Table("", columns, lines, left).markdown(title=False)
+
+
+def prose(text: str) -> str:
+    """Return sentences in lines of the documents' width."""
+    return textwrap.fill(text, 130)
 
 
 def ratios(name: str) -> str:
@@ -176,7 +182,7 @@ def swept() -> str:
 
 def ranges() -> str:
     """Two sentences on RK4 and heyoka."""
-    return (
+    return prose(
         f"At the same error MuJoCo's own RK4 takes {ratios('MuJoCo RK4')} times as long as mjbeer's best setting, and "
         f"heyoka {ratios('heyoka')} times as long."
     )
@@ -212,8 +218,9 @@ def agreement() -> str:
     maps, swings = stiff_maps.load(), counts()["limits"]
     cells = sum(len(line) for each in maps["maps"] for line in each["measured"])
     same = sum(each["same"] for each in maps["maps"]) / len(maps["maps"])
-    return (
-        f"It was measured for {swings['cases']} combinations of scene, way of rolling and integrator, and differs from "
+    return prose(
+        f"The longest stable timestep of a small swing was measured for {swings['cases']} combinations of scene, way of "
+        "rolling and integrator, and differs from "
         f"the prediction by {100 * swings['stable']:.2g} % at most; the largest accurate timestep differs by "
         f"{100 * swings['accurate']:.2g} %. Besides, there are {len(maps['maps'])} maps of timestep and stiffness with "
         f"{cells:,} short runs, of which {100 * same:.4g} % end as predicted."
@@ -246,7 +253,7 @@ def damped_runs() -> str:
     exploded, inaccurate, warned, trusted, silent = (ended[str(code)] for code in range(5))
     worst = max(each["worst"] for each in maps if not each["name"].startswith("contact"))
     contact = max(each["worst"] for each in maps if each["name"].startswith("contact"))
-    return (
+    return prose(
         f"Of {ended.total():,} runs in these maps {exploded:,} explode, and {inaccurate:,} are inaccurate and say so; "
         f"{silent} are wrong and silent. Of {warned + trusted:,} accurate runs {warned:,} warn all the same. "
         f"Measured and predicted borders agree within {100 * worst:.2g} %, in contact within {100 * contact:.2g} %."
@@ -260,23 +267,20 @@ def known() -> str:
 
 
 def regions() -> str:
-    """How many random runs of each region were accurate, and how many ended as none must."""
-    lines = []
-    for of in counts()["regions"]:
-        never = sum(int(of[VERDICTS[verdict]]) for verdict in NEVER)
-        lines.append((of["region"], of["runs"], of["accurate"], str(never), of["false alarms"]))
-    return table(("region", "runs", "accurate", "must not be", "false alarms"), lines)
+    """How many random runs of each region were accurate, and how many of those had a false alarm."""
+    columns = ("region", "runs", "accurate", "false alarms")
+    return table(columns, [tuple(of[name] for name in columns) for of in counts()["regions"]])
 
 
 def honesty() -> str:
     """How often a run said too little of its error, and how often too much."""
     found = counts()
     random, over = found["regions"][-1], found["overconfident"]
-    missed, silent = (int(random[name]) for name in ("missed", "silent"))
-    return (
-        f"Of {int(random['runs']):,} random runs {silent} were wrong and silent, and {missed} had an error above their "
-        f"tolerance. Of {int(random['accurate']):,} accurate runs {over['runs']} were trusted with an error above "
-        f"their estimate, by {over['by']:.0e} rad at most, and {random['false alarms']} had a {FALSE}."
+    silent, missed, theories = (random[VERDICTS[verdict]] for verdict in NEVER)
+    return prose(
+        f"Of {int(random['runs']):,} random runs {silent} were wrong and silent, {missed} missed their tolerance, and "
+        f"of {theories} two theories differed. Of {int(random['accurate']):,} accurate runs {over['runs']} were trusted "
+        f"with an error above their estimate, by {over['by']:.0e} rad at most, and {random['false alarms']} had a {FALSE}."
     )
 
 
