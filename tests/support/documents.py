@@ -25,7 +25,7 @@ from mjbeer.studies.benchmark import tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.rows import Study
 from mjbeer.studies.stability import limits, search, stiff_maps, study
-from mjbeer.studies.stability.judge import FALSE, NEVER, VERDICTS
+from mjbeer.studies.stability.judge import NEVER, VERDICTS
 from mjbeer.studies.validation.run import rows as checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
 from tests.support import rows
@@ -219,9 +219,9 @@ def agreement() -> str:
     cells = sum(len(line) for each in maps["maps"] for line in each["measured"])
     same = sum(each["same"] for each in maps["maps"]) / len(maps["maps"])
     return prose(
-        f"The longest stable timestep of a small swing was measured for {swings['cases']} combinations of scene, way of "
-        "rolling and integrator, and differs from "
-        f"the prediction by {100 * swings['stable']:.2g} % at most; the largest accurate timestep differs by "
+        f"The longest stable timestep of a small swing was measured for {swings['cases']} combinations of scene, way "
+        "of rolling and integrator, and differs from the prediction by "
+        f"{100 * swings['stable']:.2g} % at most; the largest accurate timestep differs by "
         f"{100 * swings['accurate']:.2g} %. Besides, there are {len(maps['maps'])} maps of timestep and stiffness with "
         f"{cells:,} short runs, of which {100 * same:.4g} % end as predicted."
     )
@@ -279,8 +279,9 @@ def honesty() -> str:
     silent, missed, theories = (random[VERDICTS[verdict]] for verdict in NEVER)
     return prose(
         f"Of {int(random['runs']):,} random runs {silent} were wrong and silent, {missed} missed their tolerance, and "
-        f"of {theories} two theories differed. Of {int(random['accurate']):,} accurate runs {over['runs']} were trusted "
-        f"with an error above their estimate, by {over['by']:.0e} rad at most, and {random['false alarms']} had a {FALSE}."
+        f"two theories differed about {theories}. Of {int(random['accurate']):,} accurate runs {over['runs']} were "
+        f"trusted with an error above their estimate, by {over['by']:.0e} rad at most, and {random['false alarms']} had "
+        "a false alarm."
     )
 
 
