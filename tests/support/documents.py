@@ -280,8 +280,8 @@ def honesty() -> str:
     return prose(
         f"Of {int(random['runs']):,} random runs {silent} were wrong and silent, {missed} missed their tolerance, and "
         f"two theories differed about {theories}. Of {int(random['accurate']):,} accurate runs {over['runs']} were "
-        f"trusted with an error above their estimate, by {over['by']:.0e} rad at most, and {random['false alarms']} had "
-        "a false alarm."
+        f"trusted with an error above their estimate, by {over['by']:.0e} rad at most, and {random['false alarms']} "
+        "had a false alarm."
     )
 
 
