@@ -358,6 +358,7 @@ MADE: dict[str, Callable[[], str]] = {
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
-        COUNTS.write_text(json.dumps(counts_of(pathlib.Path(sys.argv[1])), indent=1) + "\n", encoding="utf-8")
+        taken = [f"{json.dumps(name)}: {json.dumps(of)}" for name, of in counts_of(pathlib.Path(sys.argv[1])).items()]
+        COUNTS.write_text("{\n" + ",\n".join(taken) + "\n}\n", encoding="utf-8")
     for document in DOCUMENTS:
         document.write_text(anew(document.read_text(encoding="utf-8")), encoding="utf-8")
