@@ -102,7 +102,8 @@ def told_of_liquids() -> str:
         f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The honey "
         f"is last: it has come {100 * way:.0f} cm. It is between water and ice, yet slower than both. It neither "
         "slides freely nor turns with its can, and as it rubs it takes all that the incline gives: it creeps with "
-        f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here. Of "
-        f"real honey the wall carries up to {100 * carried:.0f} % round with it, so that its speed is an estimate, but "
-        "with half or twice the viscosity it is last as well."
+        f"{100 * speed:.1f} cm/s, at which a metre takes {LENGTH / speed:.0f} s. Each liquid is one lump here, "
+        "and the times are those of this model. Real water and oil are soon so fast that they need not stay at the "
+        f"bottom, and of real honey the wall carries up to {100 * carried:.0f} % round with it. With half or twice the "
+        "viscosity honey is last as well."
     )
