@@ -11,7 +11,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 export PYTHONDONTWRITEBYTECODE :=
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
-.PHONY: help report test quick everything search portability renders lint clean
+.PHONY: help report test quick everything search portability renders tables api lint clean
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
@@ -21,6 +21,8 @@ help:
 	@echo "make lint         runs ruff, the type checker, and import-linter"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
+	@echo "make tables       writes the tables of the documents anew"
+	@echo "make api          writes a reference of all functions from their docstrings: build/api/index.html"
 	@echo "make portability  tries exported models in other tools (an hour, 1.5 GB)"
 	@echo "make clean        removes what the others wrote"
 
@@ -46,6 +48,14 @@ portability: $(TOOLS)
 
 renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.films renders
+
+tables: $(TOOLS)
+	$(BIN)/python -m tests.support.documents
+
+# Names that mjbeer loads when they are first used are loaded, for pdoc to find them.
+api: $(TOOLS)
+	@$(BIN)/python -c 'import mjbeer, pathlib, pdoc; vars(mjbeer).update({each: getattr(mjbeer, each) for each in mjbeer.__all__}); \
+		pdoc.pdoc("mjbeer", output_directory=pathlib.Path("build/api"))'
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .

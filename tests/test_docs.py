@@ -1,4 +1,4 @@
-"""The documents keep their word: their Python runs, their commands exist, their tables are the program's."""
+"""The documents keep their word: their Python runs, their commands exist, a program writes their tables."""
 
 import contextlib
 import pathlib
@@ -9,11 +9,10 @@ from dataclasses import dataclass
 
 import pytest
 
-from mjbeer import paper
 from mjbeer.cli.app import parse
-from mjbeer.paper.row import CORRECTED, LIMIT
-from mjbeer.studies.validation.run import rows as validated
-from tests.support import stubs
+from mjbeer.studies.rows import Result, Study
+from mjbeer.studies.stability import limits, search, study
+from tests.support import documents, stubs
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 README = CHECKOUT / "README.md"
@@ -93,36 +92,33 @@ def test_links_and_paths_lead_somewhere() -> None:
         assert not [named for named in paths if not (CHECKOUT / named).exists()], path
 
 
-def rows(document: str, head: str) -> list[list[str]]:
-    """Return the cells of the table with a head, in a document of the folder docs."""
-    _, start, after = (CHECKOUT / "docs" / document).read_text().partition(head)
-    assert start, head
-    return [line.strip("| ").split(" | ") for line in after.partition("\n\n")[0].splitlines()[2:]]
+@pytest.mark.slow
+@pytest.mark.parametrize("path", [path for path in documents.DOCUMENTS if "<!-- made:" in path.read_text()], ids=str)
+def test_what_a_program_writes_is_what_it_writes_now(path: pathlib.Path) -> None:
+    """`make tables` writes it anew. What is measured there is far from a border of the digits that are shown."""
+    text = path.read_text()
+    assert text.count("<!-- made:") == text.count("<!-- end -->") == len(documents.MARKED.findall(text))
+    assert documents.anew(text) == text
 
 
-def test_the_table_of_the_validation_is_that_of_the_program() -> None:
-    """An error of today's differs in its digits, not in its being within the bound."""
-    checks, told = validated(), rows("validation.md", "| check | by | error | at most |")
-    bounds = [f"{check.bound:.1e} {check.unit}".strip() for check in checks]
-    assert [(quantity, by, bound, reason) for quantity, by, _, bound, reason in told] == [
-        (check.name, check.by, bound, check.reason) for check, bound in zip(checks, bounds, strict=True)
-    ]
-    assert all(float(row[2]) <= check.bound for row, check in zip(told, checks, strict=True))
+def test_a_wrong_number_between_the_marks_is_found() -> None:
+    text = "<!-- made: ranges -->\nmjbeer is faster than everything.\n<!-- end -->\nOn.\n"
+    assert "times as long" in documents.anew(text)
+    assert documents.anew(text).endswith("\n<!-- end -->\nOn.\n")
 
 
-def test_misprints_and_limits_of_the_physics_are_those_of_the_audit() -> None:
-    """With what each misprint misses by; and the tests that are named exist."""
-    claims, told = paper.rows(), rows("physics.md", "| equation | printed | right | misses by |")
-    corrected = [each for each in claims if each.verdict == CORRECTED]
-    assert sorted((row[0], float(row[3])) for row in told) == sorted(
-        (each.equation, each.misses_by) for each in corrected
-    )
-    named = {each for row in rows("physics.md", "| where | claim | holds |") for each in row[0].split(", ")}
-    assert named == {each for claim in claims if claim.verdict == LIMIT for each in claim.equation.split(", ")}
-    tests = "".join(path.read_text() for path in (CHECKOUT / "tests").rglob("test_*.py"))
-    shown = re.findall(r"`(test_\w+)`", (CHECKOUT / "docs" / "physics.md").read_text())
-    assert len(shown) > 20
-    assert not [name for name in shown if f"def {name}(" not in tests]
+def test_the_counts_of_a_stability_study_are_taken(tmp_path: pathlib.Path) -> None:
+    batch = search.batch(0, len(search.REGIONS))
+    swing = {"stable": 2.02, "stable_predicted": 2.0, "accurate": 0.9, "accurate_predicted": 1.0}
+    made = Study(study.COMMAND, {"extent": "long"}, {})
+    made.results = [Result(limits.GROUP, "a swing", values=swing), Result(search.RANDOM, "a batch", values=batch)]
+    (tmp_path / "stability.jsonl").write_text(made.lines())
+    found = documents.counts_of(tmp_path / "stability.jsonl")
+    assert found.keys() == documents.counts().keys()
+    assert found["regions"][-1].keys() == documents.counts()["regions"][-1].keys()
+    assert found["regions"][-1]["runs"] == str(len(search.REGIONS))
+    assert found["limits"]["stable"] == pytest.approx(0.01)
+    assert found["limits"]["accurate"] == pytest.approx(0.1)
 
 
 def test_the_version_is_that_of_the_citation_and_of_the_newest_entry_of_the_changelog() -> None:

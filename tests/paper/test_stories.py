@@ -53,9 +53,13 @@ def test_a_plot_can_be_read_by_itself(name: str, tmp_path: pathlib.Path, monkeyp
         assert all(scene in "\n".join(text.get_text() for text in figure.texts) for scene in scenes)
 
 
+SKETCHES = {"layer", "rolling"}
+"""What `docs/figures/sketches.py` draws."""
+
+
 def test_the_figures_of_the_documents_are_those_of_the_stories() -> None:
     kept = {each.stem for each in (CHECKOUT / "docs" / "figures").glob("*.svg")}
-    assert {each for each in kept if not each.startswith(("stability-", "sweep-"))} == {*STORIES, "letters"}
+    assert {each for each in kept if not each.startswith(("stability-", "sweep-"))} == {*STORIES, "letters", *SKETCHES}
 
 
 def motions(film: Film) -> list[Trajectory]:

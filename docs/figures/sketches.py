@@ -1,0 +1,110 @@
+"""Draws the sketches of `docs/how-it-works.md` and `docs/real_beer.md`: `python docs/figures/sketches.py`."""
+
+import math
+import pathlib
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Polygon
+
+from mjbeer.output.plots import COLOURS, GREY, chart
+
+HERE = pathlib.Path(__file__).parent
+BEER, SURFACE = "#E8A33D", "#A05A00"
+LETTER, FORCE = COLOURS[0], COLOURS[1]
+
+
+def on_circle(angle: float | np.ndarray, radius: float = 1.0) -> np.ndarray:
+    """Return points at angles [rad] from straight down, counterclockwise."""
+    return radius * np.transpose([np.sin(angle), -np.cos(angle)])
+
+
+def arrow(axes: Axes, start: np.ndarray, end: np.ndarray, colour: str, style: str = "-|>", **more: str) -> None:
+    """Draw an arrow."""
+    look = {"arrowstyle": style, "color": colour, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.4} | more
+    axes.annotate("", tuple(end), tuple(start), arrowprops=look)
+
+
+def can(axes: Axes, half_angle: float, turned: float) -> None:
+    """Draw a can of radius 1 and its load, a segment whose middle is turned from the bottom by an angle [rad]."""
+    axes.set_axis_off()
+    axes.set_aspect("equal")
+    axes.plot(*on_circle(np.linspace(0, 2 * math.pi, 361)).T, color="black", linewidth=1.5)
+    wet = on_circle(turned + np.linspace(-half_angle, half_angle, 181))
+    axes.fill(*wet.T, color=BEER, alpha=0.5, linewidth=0)
+    axes.plot(*wet[[0, -1]].T, color=SURFACE, linewidth=1.5)
+    axes.plot(0, 0, "o", color="black", markersize=4)
+
+
+def write(axes: Axes, text: str, place: tuple[float, float], colour: str = "black", **style: str) -> None:
+    """Write a text at a place."""
+    axes.text(*place, text, color=colour, **({"ha": "center", "va": "center"} | style))
+
+
+def draw_rolling() -> None:
+    """Draw the three ways in which a model can be made to roll."""
+    with chart(HERE / "rolling", 1, 3, 11, 4.2) as (reduced, equality, contact):
+        for axes, name in ((reduced, "reduced"), (equality, "equality"), (contact, "contact")):
+            can(axes, math.pi / 2, math.radians(-50))
+            axes.plot([-1.6, 1.6], [-1, -1], color="black" if axes is contact else "#C4C4C4", linewidth=2)
+            axes.set(xlim=(-1.65, 1.65), ylim=(-2.05, 1.5))
+            axes.set_title(name, loc="center", fontweight="bold")
+        fixed, site = np.array([0, 0.75]), on_circle(math.radians(-50), 0.75)
+        reduced.plot(*np.transpose([fixed, site]), color=FORCE, linewidth=2.5)
+        reduced.plot(*np.transpose([fixed, [0, 0], site]), "--", color=LETTER, linewidth=1)
+        reduced.plot(*np.transpose([fixed, site]), "o", color=FORCE, markersize=6)
+        write(reduced, "r", (0.1, 0.4), LETTER)
+        write(reduced, "r", (-0.22, -0.36), LETTER)
+        write(reduced, "fixed point", (0.75, 1.0), GREY, ha="left", fontsize="small")
+        reduced.plot([0.05, 0.72], [0.77, 0.98], color=GREY, linewidth=0.8)
+        write(reduced, "point of\nthe can", (-1.1, -0.62), GREY, ha="right", fontsize="small")
+        write(reduced, "no constraint: the armature of the\ntendon has the inertia of rolling", (0, -1.6))
+        arrow(equality, np.array([-0.2, 0]), np.array([1.45, 0]), LETTER)
+        write(equality, "u", (1.3, 0.17), LETTER)
+        arrow(equality, np.array([-0.42, 1.1]), np.array([0.55, 1.05]), LETTER, connectionstyle="arc3,rad=-0.3")
+        write(equality, "turn", (0.1, 1.38), LETTER)
+        write(equality, "two joints and one equation\nbetween them: u = a · turn", (0, -1.6))
+        arrow(contact, np.array([0, -1.75]), np.array([0, -1.02]), FORCE)
+        write(contact, "N", (0.16, -1.5), FORCE)
+        arrow(contact, np.array([0, -1.07]), np.array([-0.7, -1.07]), FORCE)
+        write(contact, "F", (-0.85, -1.17), FORCE)
+        write(contact, "a cylinder on a plane:\nit may slip and lift", (0, -1.9))
+
+
+def draw_layer() -> None:
+    """Draw the layer of liquid that the wall of a rolling can drags along."""
+    with chart(HERE / "layer", width=7, height=4.2) as (axes,):
+        half = math.radians(62)
+        can(axes, half, math.radians(-14))
+        angles = math.radians(-14) + np.linspace(half, -half, 181)
+        thick = 0.035 + 0.22 * np.sqrt(np.linspace(0, 1, 181))  # grows with the root of the distance
+        inner = np.array([on_circle(angle, 1 - depth) for angle, depth in zip(angles, thick, strict=True)])
+        layer = np.concatenate([on_circle(angles), inner[::-1]])
+        (shown,) = axes.fill(*layer.T, color=COLOURS[5], alpha=0.6, linewidth=0)
+        shown.set_clip_path(Polygon(on_circle(angles), transform=axes.transData))
+        path = on_circle(angles, 1.1)
+        axes.plot(*path.T, color=LETTER, linewidth=1)
+        arrow(axes, path[-3], path[-1], LETTER)
+        write(axes, "X", (-0.42, -1.16), LETTER)
+        arrow(
+            axes,
+            on_circle(math.radians(120), 0.88),
+            on_circle(math.radians(75), 0.88),
+            FORCE,
+            connectionstyle="arc3,rad=-0.2",
+        )
+        write(axes, "w", (0.62, 0.12), FORCE)
+        for place, target, text in (
+            ((1.5, -0.95), on_circle(math.radians(30), 0.97), "the layer begins here,\nwhere the wall dips in"),
+            ((-1.55, -0.95), on_circle(math.radians(-60), 0.86), "and is thickest here:\n√(νX/U) with U = aw"),
+            ((1.55, 0.45), on_circle(math.radians(-5), 0.5), "the liquid above it\nlies still"),
+        ):
+            axes.annotate(text, target, place, ha="center", va="center", arrowprops={"arrowstyle": "-", "color": GREY})
+        axes.set(xlim=(-2.2, 2.2), ylim=(-1.35, 1.1))
+
+
+if __name__ == "__main__":
+    draw_rolling()
+    draw_layer()
+    for name in ("rolling", "layer"):
+        (HERE / f"{name}.png").unlink()  # the documents show the SVGs
