@@ -2,7 +2,6 @@
 
 import functools
 import json
-import math
 
 import pytest
 
@@ -48,7 +47,6 @@ DAMPED: dict[tuple[Rolling, Integrator], bool] = {
     ("contact", "Euler"): False,
 }
 """Maps of damping, and whether there are runs in them that explode."""
-ROUNDING = 1e-9
 
 
 @pytest.mark.parametrize("plan", SAMPLE, ids=lambda plan: plan.name)
@@ -156,24 +154,3 @@ def test_a_contact_that_is_not_settled_loses_a_stage() -> None:
     assert found["lost_a_stage"]
     assert found["stable"] < 0.5 * found["stable_predicted"]
     assert "loses the contact" in limits.table([Result("limits", "frozen", bound=1.0, values=found)]).markdown()
-
-
-def test_rows_are_told_apart() -> None:
-    for listed in (limits.rows, stiff_maps.rows):
-        names, few = ([(row.group, row.name) for row in listed(quick)] for quick in (False, True))
-        assert len(set(names)) == len(names)
-        assert set(few) < set(names)
-    assert len(limits.rows()) == 6 * (1 + 4 * 3) + 4
-    assert [len([row for row in stiff_maps.rows() if row.group == group]) for group in ("maps", "damped")] == [40, 18]
-
-
-def test_tables_count_outcomes() -> None:
-    values = {"measured": ["012", "222"], "same": 0.5}
-    results = [
-        Result("maps", "a", bound=0.05, error=0.01, values=values),
-        Result("maps", "b", bound=0.0, values=values),
-    ]
-    table = stiff_maps.table("Maps", results, list(SHADES))
-    assert table.rows[0] == ("a", "1", "1", "4", "50.0%", "1.0%", "[green]pass[/]")
-    assert table.rows[1][-2:] == ("-", "[bold red]FAIL[/]")
-    assert len(DAMPED_SHADES) == SILENT + 1
