@@ -56,7 +56,7 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
         f"Water wins after {finish['water']:.2f} s",
         f"oil follows after {finish['olive oil']:.2f} s",
         f"finishes after {finish['ice']:.2f} s",
-        f"it has come {100 * way:.0f} cm, and needs {finish['honey']:.2f} s",
+        f"it has come {100 * way:.0f} cm, and it needs {finish['honey']:.2f} s",
         f"creeps with {100 * speed:.1f} cm/s",
     ):
         assert words in told

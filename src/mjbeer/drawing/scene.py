@@ -87,6 +87,7 @@ class Display:
         board, *others = specs
         looks.lengthen(board, _resize(scenes[0]), low, high)
         for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+            spec.option.tolerance = board.option.tolerance  # nothing is stepped here
             board.body("incline").add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
         planks, wall = board.geom("board"), board.geom("wall")
         planks.pos += [0, lanes[-1] / 2, 0]
