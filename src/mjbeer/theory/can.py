@@ -64,6 +64,9 @@ class Can:
         """Return a can of thin metal sheet, a wall and two ends: eqs. (30) and (31).
 
         `thickness` is the sheet's [m], `density` the metal's [kg/m^3].
+
+        Raises:
+          ParameterError: as `Can`.
         """
         empty = cls(radius, length)
         radius, length = empty.radius, empty.length
@@ -76,6 +79,10 @@ class Can:
 
     @classmethod
     def hoop(cls, radius: float = RADIUS, length: float = LENGTH, mass: float = 0.05) -> "Can":
-        """Return a hoop, which has all of its `mass` [kg] at the rim: I_can = m_can a^2 (appendices A.4 and B)."""
+        """Return a hoop, which has all of its `mass` [kg] at the rim: I_can = m_can a^2 (appendices A.4 and B).
+
+        Raises:
+          ParameterError: as `Can`.
+        """
         mass = require.within("hoop mass", mass, *require.MASS, "kg")
         return cls(radius, length, mass, inertia=mass * cls(radius).radius ** 2)

@@ -60,6 +60,9 @@ class Load:
         """Return beer of `density` [kg/m^3] in a can of `radius` and `length` [m]: eqs. (32)-(37).
 
         `fill` is h/2a of eq. (32), 0 < fill <= 1.
+
+        Raises:
+          ParameterError: as `Load`, or if `fill` is outside (0, 1].
         """
         radius = require.within("load radius", radius, *require.SIZE, "m")
         length = require.within("load length", length, *require.SIZE, "m")

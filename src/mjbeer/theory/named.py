@@ -1,4 +1,4 @@
-"""The scenes that have a name, as functions that make them, with `Scene`'s errors; and what a scene is in words."""
+"""The scenes that have a name, as functions that make them; and what a scene is in words."""
 
 import functools
 import inspect
@@ -42,6 +42,9 @@ def sliding(
 
     `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. The beer slides without
     friction unless `damping` [N m s] is given; `drag` [kg/m] is that of the air. Both are fields of `Scene`.
+
+    Raises:
+      ParameterError: as `Scene`.
     """
     can, load = _of_beer(can, fill, density)
     return Scene(can, load, incline, "sliding", gravity, damping, drag)
@@ -51,7 +54,11 @@ def sliding(
 def frozen(
     incline: float = INCLINE, fill: float = 0.5, can: Can | None = None, density: float = BEER, gravity: float = GRAVITY
 ) -> Scene:
-    """Return the scene of beer frozen to the can, with parameters as of `sliding`: appendix A (massless can)."""
+    """Return the scene of beer frozen to the can, with parameters as of `sliding`: appendix A (massless can).
+
+    Raises:
+      ParameterError: as `Scene`.
+    """
     can, load = _of_beer(can, fill, density)
     return Scene(can, load, incline, "frozen", gravity)
 
@@ -75,6 +82,9 @@ def pendulum(
 
     `incline` is in [rad]; `wheel_mass` and `load_mass` are M and m [kg], and `offset` is the pendulum's length b [m].
     The paper gives no numbers: the defaults are a wheel of the can's size and a bob of half its mass.
+
+    Raises:
+      ParameterError: as `Scene`.
     """
     return Scene(Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset), incline, "sliding", gravity)
 
@@ -92,6 +102,9 @@ def hoop(
 
     `incline` is in [rad]; `hoop_mass` and `load_mass` are M and m [kg]. The default M/m = 1/20 is light enough to hop,
     for which M/m must be below 1/13.
+
+    Raises:
+      ParameterError: as `Scene`.
     """
     return Scene(Can.hoop(radius, length, hoop_mass), Load.point(load_mass, radius), incline, "frozen", gravity)
 
