@@ -111,7 +111,7 @@ def test_the_result_is_the_same_on_a_dask_cluster(monkeypatch: pytest.MonkeyPatc
     here = sweep_of_sliding()
     monkeypatch.setattr(measure, "integrate", lambda *_: pytest.fail("it ran in this process"))
     with (
-        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
         distributed.Client(cluster) as client,
     ):
         assert len(client.ncores()) == 2
