@@ -163,15 +163,32 @@ EDITS = {
     "colour": ("shared", "0.98 0.63 0.08 1", "0 1 0 1", SAME),
     "camera": ("sliding", '0 -0.3 0.04"', '0 -0.5 0.04"', SAME),
     "mesh": ("sliding", 'mesh name="can" file="can.obj"', 'mesh name="can" file="tab.obj"', SAME),
+    "geom that is heavy and in the way": (
+        "sliding", BODY, BODY + '<geom name="more" size="0.1" mass="7" contype="3"/>', SAME,
+    ),
     "mass": ("sliding", 'mass="0.2052', 'mass="0.3052', SAME),
+    "inertia": ("sliding", 'diaginertia="7.15', 'diaginertia="9.15', SAME),
+    "depth of the load": ("sliding", 'pos="0 0 -0.014', 'pos="0 0 -0.024', SAME),
+    "axis": ("sliding", 'name="swing" type="hinge" axis="0 1 0"', 'name="swing" type="hinge" axis="0 -1 1"', SAME),
     "spring, damping, armature and friction of a joint": (
         "sliding", 'name="swing" type="hinge"',
         'name="swing" type="hinge" stiffness="1" damping="1" armature="1" frictionloss="1" range="-1 1"', SAME,
     ),
     "further joint": ("sliding", BODY, BODY + '<joint name="more" axis="1 0 0"/>', SAME),
+    "joints in another order": ("sliding", '<joint name="slide" type="slide" axis="1 0 0"/>', "", SAME),
     "gravity, wind and integrator": (
         "sliding", '<option timestep="0.001" integrator="RK4">',
         '<option timestep="0.1" integrator="Euler" gravity="1 2 3" density="1000" wind="1 2 3" iterations="1">', SAME,
+    ),
+    "flags": ("sliding", 'refsafe="disable"', 'refsafe="enable" gravity="disable" contact="disable"', SAME),
+    "equality": ("sliding", 'polycoef="0 0.033', 'active="false" polycoef="0 0.066', SAME),
+    "actuator": ("sliding", OUTER, f'<actuator><motor joint="roll" gear="3"/></actuator>{OUTER}', SAME),
+    "tendon with a spring": (
+        "sliding", OUTER,
+        f'<tendon><fixed stiffness="9"><joint joint="roll" coef="1"/></fixed></tendon>{OUTER}', SAME,
+    ),
+    "contact that is excluded": (
+        "hoop", OUTER, f'<contact><exclude body1="incline" body2="can"/></contact>{OUTER}', SAME,
     ),
     "defaults": (
         "hoop", OUTER,
@@ -179,11 +196,14 @@ EDITS = {
         f'<site pos="1 0 0"/><pair margin="1" gap="1"/><tendon stiffness="1"/><general gear="3"/></default>{OUTER}',
         SAME,
     ),
+    "mean inertia and memory": ("hoop", OUTER, f'<statistic meaninertia="1e9"/><size memory="1K"/>{OUTER}', SAME),
+    "gravity compensation": ("hoop", BODY, BODY.replace(">", ' gravcomp="1">'), SAME),
     "bounds of masses": ("sliding", OUTER, f'<compiler boundmass="1" boundinertia="1"/>{OUTER}', REFUSED),
     "further body with a mass": (
         "hoop", BODY, BODY + '<body name="more"><inertial pos="0 0 1" mass="1" diaginertia="1 1 1"/></body>', SAME,
     ),
     "can in a turned frame": ("frozen", BODY, f'<frame euler="0 20 0">{BODY}', REFUSED),
+    "can that is lifted": ("frozen", BODY, f'<frame pos="0 0 0.1">{BODY}', REFUSED),
     "can beside the incline": ("frozen", BODY, f"</body>{BODY}", REFUSED),
 }  # fmt: skip
 
@@ -200,6 +220,8 @@ def edit(folder: pathlib.Path, name: str) -> str:
         text = text.replace(end, end.replace("</body>", "</body></frame>", 1))
     elif name == "can beside the incline":
         text = text.replace(end, "\n      </body>\n  </worldbody>")
+    elif "another order" in name:
+        text = text.replace('axis="0 1 0"/>', f'axis="0 1 0"/>{old}', 1)
     path.write_text(text)
     return "sliding" if file == "shared" else file
 
