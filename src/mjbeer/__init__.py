@@ -15,6 +15,7 @@ from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene, pictures
+from mjbeer.theory.standing import standing
 from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ __all__ = [
     "simulate",
     "sliding",
     "specify",
+    "standing",
     "sweep",
 ]
 
