@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from mjbeer.drawing.video import render
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
+    from mjbeer.model.free import attach
     from mjbeer.model.state import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep.run import sweep
@@ -36,6 +37,7 @@ __all__ = [
     "Scene",
     "Trajectory",
     "UntrustedWarning",
+    "attach",
     "build",
     "exact",
     "export",
@@ -54,6 +56,7 @@ __all__ = [
 
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
+    "attach": "mjbeer.model.free",
     "build": "mjbeer.model.build",
     "specify": "mjbeer.model.build",
     "export": "mjbeer.model.export",

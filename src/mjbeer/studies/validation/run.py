@@ -13,7 +13,7 @@ from mjbeer import paper
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.row import CONFIRMED, CORRECTED, LIMIT, Finding
 from mjbeer.studies.rows import FAILED, PASSED, Result, Row, table, told
-from mjbeer.studies.validation import damped, models, motions
+from mjbeer.studies.validation import damped, models, motions, standing
 
 _WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
 """The verdicts of the audit, short enough for a terminal."""
@@ -92,7 +92,7 @@ class Validation:
 
 def rows() -> list[Row]:
     """Return all rows of the validation, in the order of its table."""
-    return [*motions.rows(), *damped.rows(), *models.rows(), *motions.extremes()]
+    return [*motions.rows(), *damped.rows(), *models.rows(), *motions.extremes(), *standing.rows()]
 
 
 def validate(console: Console) -> Validation:
