@@ -11,9 +11,27 @@ import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Can, Load, Scene, UntrustedWarning, attach, build, frozen, pendulum, sliding, specify, standing
+from mjbeer import (
+    Can,
+    Load,
+    Scene,
+    UntrustedWarning,
+    attach,
+    build,
+    exact,
+    export,
+    frozen,
+    pendulum,
+    sliding,
+    specify,
+    standing,
+)
+from mjbeer.cli.app import main
+from mjbeer.drawing.viewer import Player
 from mjbeer.exceptions import MjbeerError, ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import free, looks
+from mjbeer.model.export import stand
+from mjbeer.model.setting import Setting
 from mjbeer.studies.validation import standing as measured
 from tests.support.scenes import METAL
 
@@ -164,6 +182,96 @@ def test_a_template_that_lacks_something_is_named(copy: pathlib.Path) -> None:
     path.write_text(path.read_text().replace('name="beer_top"', ""))
     with pytest.raises(TemplateError, match=r"standing\.xml has no geom named 'beer_top'"):
         build(standing(), visuals=True)
+
+
+# Templates and exports
+
+ARRAYS = (
+    "body_mass",
+    "body_inertia",
+    "body_ipos",
+    "body_pos",
+    "dof_damping",
+    "dof_dampingpoly",
+    "key_qpos",
+    "site_pos",
+)
+GEOMS = ("can", "beer", "beer_top")
+WRITTEN = 1e-12
+"""Numbers in the templates have 13 digits."""
+
+
+def test_the_template_of_a_standing_can_is_the_model() -> None:
+    template = mujoco.MjModel.from_xml_path(str(looks.folder() / "standing.xml"))
+    made = stand(standing(), True, Setting()).compile()
+    for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority"):
+        if name.startswith("geom"):  # the floor is made last
+            pairs = [(getattr(template.geom(each), name[5:]), getattr(made.geom(each), name[5:])) for each in GEOMS]
+        else:
+            pairs = [(getattr(template, name), getattr(made, name))]
+        for written, other in pairs:
+            assert np.allclose(written, other, rtol=WRITTEN, atol=1e-15), name
+    assert [template.sensor(place).name for place in range(2)] == ["slosh1_up", "slosh1_rise"]
+
+
+def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> None:
+    template = mujoco.MjModel.from_xml_path(str(looks.folder() / "lying.xml"))
+    spec, scene = world(timestep=1e-3), sliding(can=METAL)
+    attach(spec, scene)
+    made = spec.compile()
+    for name in ("mass", "inertia", "ipos"):
+        for body in ("can", "load"):
+            written, other = getattr(template.body(body), name), getattr(made.body(f"can-{body}"), name)
+            assert np.allclose(written, other, rtol=WRITTEN, atol=1e-15), (body, name)
+    assert np.allclose(template.geom("can").solref, made.geom("can-can").solref)
+    data = mujoco.MjData(template)
+    for key, phi0 in (("level", -scene.incline), ("swing", 1.0)):
+        mujoco.mj_resetDataKeyframe(template, data, template.key(key).id)
+        start = data.joint("free").qpos[:3].copy()
+        mujoco.mj_step(template, data, 1500)
+        u = exact(scene, [0.0, data.time], phi0).u
+        # The promise of the templates, 1e-3 rad.
+        assert np.linalg.norm(data.joint("free").qpos[:3] - start) == pytest.approx(
+            u[1] - u[0], abs=1e-3 * METAL.radius
+        )
+
+
+@pytest.mark.parametrize("portable", [False, True])
+def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> None:
+    """The export itself compares what it wrote; portable, it has only what MuJoCo 3.3 knows."""
+    export(standing(modes=2), tmp_path / "can.xml", portable=portable, timestep=2e-3, integrator="implicitfast")
+    text = (tmp_path / "can.xml").read_text()
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    for key, highest in (("start", 1e-3), ("slosh", 1e-3), ("fall", METAL.radius)):
+        mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
+        mujoco.mj_step(model, data, 1500)
+        assert -1e-3 < data.body("can").xpos[2] < highest
+        assert (data.body("can").xmat[8] < 0.1) == (key == "fall")
+    assert (model.dof_dampingpoly.any(), "frame " in text) == (not portable, not portable)
+    export(standing(modes=0), tmp_path / "held.xml", free=False)
+    assert mujoco.MjModel.from_xml_path(str(tmp_path / "held.xml")).nq == 0
+
+
+def test_the_command_line_exports_a_standing_can(tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
+    said, meant = tmp_path / "said.xml", tmp_path / "meant.xml"
+    words = "export standing --liquid water --fill 0.3 --length 0.15 --modes 2 --damping-ratio 0.01 --timestep 2e-3"
+    assert main([*words.split(), "--portable", "--output", str(said)]) == 0
+    can = standing("water", 0.3, Can.sheet_metal(length=0.15), 2, 0.01)
+    export(can, meant, timestep=2e-3, portable=True)
+    assert said.read_text() == meant.read_text()
+    assert main(["simulate", "standing"]) == 2
+    assert "the scene after simulate must be one of" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["export", "standing", "--help"])
+    assert "--damping-ratio" in capsys.readouterr().out
+
+
+def test_the_viewer_s_model_of_a_standing_can_starts() -> None:
+    player = Player(stand(standing(), True, Setting()).compile())
+    player.press(32)
+    player.advance(0.01)
+    assert player.data.time > 0
 
 
 def test_the_rows_find_a_wrong_model(monkeypatch: pytest.MonkeyPatch) -> None:
