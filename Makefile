@@ -39,6 +39,7 @@ portability: $(TOOLS)
 
 renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.films renders
+	$(BIN)/python -m mjbeer.report.carry .
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .
