@@ -38,8 +38,8 @@ class Carry:
     still: float = 0.8
     caption: str = (
         "Two cans, half full, are carried by 0.4 m in one second by the same gripper. In the upper one the beer is "
-        "free to slosh, and its surface tilts; in the lower one it is solid, as in other simulators. Below is the force "
-        "of the gripper: the beer needs a tenth more, and goes on after the stop."
+        "free to slosh, and its surface tilts; in the lower one it is solid, as in other simulators. Below is the "
+        "force of the gripper: the beer needs a tenth more, and goes on after the stop."
     )
 
     def reel(self) -> Reel:
