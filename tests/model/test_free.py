@@ -81,6 +81,8 @@ def test_cans_are_attached_and_stand_and_lie() -> None:
     """On a plane and on a box, with nothing to be said about the parent, and under names of their own."""
     spec = world()
     spec.worldbody.add_geom(name="table", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1], pos=[1, 0, 0.1])
+    with pytest.raises(ParameterError, match="has a can of this prefix already"):
+        attach(twice := world(), standing()), attach(twice, standing())
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert attach(spec, standing(modes=2)).name == "can-can"
@@ -143,10 +145,11 @@ def test_what_the_parent_spoils_is_said(can: Scene, options: dict[str, object], 
     ("can", "arguments", "error", "message"),
     [
         ("can", {}, ParameterError, "can must be a Standing, got 'can'"),
-        (standing(), {"body": "hand"}, ParameterError, "body must be one of 'world', got 'hand'"),
-        (standing(), {"body": "hand", "free": False}, ParameterError, "body must be one of 'world', got 'hand'"),
-        (standing(), {"pos": [0, 0]}, ParameterError, "pos must have three numbers and quat four"),
-        (standing(), {"quat": [0, 0, 0, 0]}, ParameterError, "pos must have three numbers and quat four"),
+        (standing(), {"body": "hand"}, ParameterError, "body must be one of 'world'; got 'hand'"),
+        (standing(), {"body": "hand", "free": False}, ParameterError, "body must be one of 'world'; got 'hand'"),
+        (standing(), {"pos": [0, 0]}, ParameterError, "pos must have 3 numbers, got"),
+        (standing(), {"quat": [0, 0, 0, 0]}, ParameterError, "quat must have 4 numbers, not all 0, got"),
+        (standing(), {"prefix": ""}, ParameterError, "prefix must be a text that is not empty"),
         (sliding(), {}, UnsupportedError, "without mass and inertia around a sliding load"),
         (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
         (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),

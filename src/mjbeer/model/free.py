@@ -69,14 +69,17 @@ def attach(
       TemplateError: if a template is missing or lacks a part.
     """
     require.instance("parent", parent, mujoco.MjSpec)
+    free = require.boolean("free", free)
     place = require.samples("pos", pos, "m"), require.samples("quat", quat)
-    if (len(place[0]), len(place[1])) != (3, 4) or not place[1].any():
-        raise ParameterError(
-            f"pos must have three numbers and quat four, got {require.shown(pos)}, {require.shown(quat)}"
-        )
-    if parent.body(body) is None or (free and body != "world"):
-        known = ["world"] if free else [each.name for each in parent.bodies]
-        raise ParameterError(f"body must be one of {', '.join(map(repr, known))}, got {require.shown(body)}")
+    for name, value, array, count in (("pos", pos, place[0], 3), ("quat", quat, place[1], 4)):
+        if len(array) != count or (name == "quat" and not array.any()):
+            zero = ", not all 0" if name == "quat" else ""
+            raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.shown(value)}")
+    if not isinstance(prefix, str) or not prefix:
+        raise ParameterError(f"prefix must be a text that is not empty, got {require.shown(prefix)}")
+    if parent.body(f"{prefix}can") is not None:
+        raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
+    require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
     child = _lying(can) if isinstance(can, Scene) else dressed(require.instance("can", can, Standing), visuals=True)
     reasons = _settle(parent.option, can)
     if isinstance(can, Scene):
@@ -85,7 +88,7 @@ def attach(
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
     root = child.body("can")
     root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
-    if require.boolean("free", free):
+    if free:
         root.add_freejoint(name="free")
     attached = parent.body(body).add_frame(pos=place[0], quat=place[1]).attach_body(root, prefix, "")
     if reasons:

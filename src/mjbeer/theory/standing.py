@@ -25,6 +25,8 @@ QUANTITATIVE, INDICATIVE = 0.1, 0.3
 DEPTHS = 0.05, 50.0
 """Heights of the liquid over the radius that are allowed. In thinner films viscosity is everywhere."""
 MOST_MODES = 5
+_SHAKING = 1e-6, 1e6
+"""Frequencies that are allowed [rad/s]."""
 _SERIES = 4000
 """Number of terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13."""
 _THIN = 0.1
@@ -87,7 +89,7 @@ class Standing:
                 f"surface, got {require.shown(self.fill)}"
             )
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, *DEPTHS)
-        if isinstance(self.modes, bool) or self.modes not in range(MOST_MODES + 1):
+        if not _is_count(self.modes) or not 0 <= self.modes <= MOST_MODES:
             raise ParameterError(f"modes must be one of 0, 1, ... {MOST_MODES}, got {require.shown(self.modes)}")
         ratio = self.damping_ratio
         require.store(
@@ -160,17 +162,19 @@ class Standing:
         return 2 / (_roots(self._count(count)) ** 2 - 1)
 
     def reaction(self, omega: float | np.ndarray) -> Reaction:
-        """Return force and moment of the liquid alone in a can that is shaken with a frequency `omega` [rad/s] > 0.
+        """Return force and moment of the liquid alone in a can that is shaken with a frequency `omega` [rad/s].
 
         The sums are over all modes; there is no damping. X is sideways, Theta about the level axis across it. Weight
         is included: a tilted liquid's metacentric moment is -g sum(m_n L_n) = -rho g pi R^4/4 per angle.
 
         Raises:
-          ParameterError: if a frequency is not greater than 0.
+          ParameterError: if a frequency is not between 1e-6 and 1e6.
         """
+        if isinstance(omega, (list, tuple)) or getattr(omega, "ndim", 0) > 0:
+            omega = require.samples("omega", omega, "rad/s")
+        for each in np.atleast_1d(omega):
+            require.within("omega", each, *_SHAKING, "rad/s")
         omega = np.asarray(omega, float)
-        if not (np.isfinite(omega) & (omega > 0)).all():
-            raise ParameterError(f"omega must be greater than 0 [rad/s], got {require.shown(omega)}")
         series = self._modes(_SERIES)
         square = omega[..., None] ** 2
         share = series.mass * square / (self.gravity / series.length - square)
@@ -194,7 +198,7 @@ class Standing:
     def _count(self, count: int | None) -> int:
         if count is None:
             return self.modes
-        if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or not 0 <= count <= _SERIES:
+        if not _is_count(count) or not 0 <= count <= _SERIES:
             raise ParameterError(f"count must be a number of modes up to {_SERIES}, got {require.shown(count)}")
         return int(count)
 
@@ -242,6 +246,10 @@ def standing(
                 stacklevel=2,
             )
     return made
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
 
 
 @functools.lru_cache(maxsize=16)
