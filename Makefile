@@ -39,7 +39,7 @@ portability: $(TOOLS)
 
 renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.films renders
-	$(BIN)/python -m mjbeer.report.carry .
+	$(BIN)/python -m mjbeer.report.carry docs/figures/carry
 
 lint: $(TOOLS)
 	$(BIN)/ruff check .

@@ -14,7 +14,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from mjbeer.drawing import video
 from mjbeer.drawing.film import Reel
 from mjbeer.exceptions import LiquidWarning
 from mjbeer.output import plots
@@ -34,8 +33,9 @@ _LOWER = 0.16
 class Carry:
     """The film of two cans that are moved by 0.4 m in one second; it is a `drawing.film.Film`."""
 
+    title: str = "Two cans in one gripper: beer that sloshes, and a rigid one"
     speed: float = 0.5
-    still: float = 0.8
+    still: float = 0.25
     caption: str = (
         "Two cans, half full, are carried by 0.4 m in one second by the same gripper. In the upper one the beer is "
         "free to slosh, and its surface tilts; in the lower one it is solid, as in other simulators. Below is the "
@@ -134,7 +134,5 @@ def _peak(run: Carried, start: float, end: float) -> float:
 
 
 if __name__ == "__main__":
-    folder = pathlib.Path(sys.argv[1])
-    video.write_webp(Carry().reel(), folder / "renders" / "carry.webp", 720, 405, 20)
-    draw_plot(folder / "docs" / "figures" / "carry")
-    (folder / "docs" / "figures" / "carry.png").unlink()
+    draw_plot(target := pathlib.Path(sys.argv[1]))
+    target.with_suffix(".png").unlink()
