@@ -48,6 +48,7 @@ portability: $(TOOLS)
 
 renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.films renders
+	$(BIN)/python -m mjbeer.report.carry docs/figures/carry
 
 tables: $(TOOLS)
 	$(BIN)/python -m tests.support.documents

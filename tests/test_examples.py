@@ -7,7 +7,11 @@ import subprocess
 import sys
 from typing import Any
 
+import numpy as np
 import pytest
+
+from mjbeer import standing
+from mjbeer.simulation.carry import carry
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 EXAMPLES = CHECKOUT / "examples"
@@ -29,7 +33,7 @@ def test_an_example_runs_by_itself(path: pathlib.Path, tmp_path: pathlib.Path) -
     command = [sys.executable, "-W", "error", str(path)]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
-    assert re.search(r"phi is within \d\.\de-0[78] rad", done.stdout)
+    assert re.search(r"phi is within \d\.\de-0[78] rad|at most 0\.55\d N during the move", done.stdout)
 
 
 def test_a_loop_of_one_s_own_moves_as_theory_says() -> None:
@@ -44,6 +48,16 @@ def test_cans_on_a_slope_of_one_s_own_move_as_theory_says() -> None:
     errors = load("attach")["errors"]()
     assert set(errors) == {"frozen", "sliding"}
     assert max(errors.values()) < ATTACHED
+
+
+def test_cans_that_are_carried_are_felt_as_theory_says() -> None:
+    """The forces and the ringing of `simulation/carry.py`; the weld of the gripper is softer by 1 %."""
+    times, forces = load("carry")["forces"]()
+    for name, modes in (("beer", 1), ("rigid", 0)):
+        run = carry(standing(modes=modes))
+        assert np.abs(forces[name]).max() == pytest.approx(np.abs(run.force).max(), rel=0.01)
+        ringing = np.abs(run.force[run.time > 1.1]).max()
+        assert np.abs(forces[name][times > 1.1]).max() == pytest.approx(ringing, rel=0.03, abs=1e-3)
 
 
 def test_every_example_is_named_in_a_document() -> None:

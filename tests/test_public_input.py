@@ -50,15 +50,17 @@ RUN = simulate(frozen(), 0.01, 1.0)
 MODEL = build(frozen())
 GOOD: dict[str, Any] = {
     **{name: getattr(MOTION, name) for name in inspect.signature(Trajectory).parameters},
-    **{"can": Can(), "load": Load(0.2, 0.01, 1e-5), "mass": 0.2, "offset": 0.01, "amplitude": 0.3},
+    **{"can": Can(), "load": Load(0.2, 0.01, 1e-5), "mass": 0.2, "offset": 0.01, "amplitude": 0.3, "omega": 1.0},
     **{"phi0": 1.0, "phi_dot0": 10.0, "duration": 0.01, "trajectory": MOTION, "path": "can.mp4", "make": frozen},
 }
 """Good arguments, by the names of the parameters."""
 GOOD_HERE: dict[str, dict[str, Any]] = {
     "save_frame": {"time": 0.1, "path": "can.png"}, "frame": {"time": 0.1}, "export": {"path": "can.xml"},
-    "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)},
+    "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)}, "attach": {"can": mjbeer.standing()},
 }  # fmt: skip
 """Those that are others in one function."""
+FRESH = {"parent": mujoco.MjSpec}
+"""Those that are changed by what gets them."""
 NOT_ASKED = ("start", "replace", "plot", "to_csv", "to_dataframe", "video")
 """Methods with arguments, or which draw or write: they are called by themselves."""
 
@@ -71,7 +73,12 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
             yield name, thing
         if inspect.isclass(thing):
             yield from methods(name, thing, thing)
-    for name, instance in (("Scene()", frozen()), ("Trajectory()", MOTION), ("Run()", RUN)):
+    for name, instance in (
+        ("Scene()", frozen()),
+        ("Standing()", mjbeer.standing()),
+        ("Trajectory()", MOTION),
+        ("Run()", RUN),
+    ):
         yield from methods(name, type(instance), instance)
     for more in (Setting, Softness, export, loop, video.save_frame, video.frame):
         yield more.__name__, more
@@ -100,7 +107,7 @@ def good(name: str, function: Callable[..., object]) -> dict[str, Any]:
     parameters = inspect.signature(function).parameters.values()
     several = inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL
     needed = [each.name for each in parameters if each.default is each.empty and each.kind not in several]
-    return {each: (GOOD | GOOD_HERE.get(name, {}))[each] for each in needed}
+    return {each: FRESH[each]() if each in FRESH else (GOOD | GOOD_HERE.get(name, {}))[each] for each in needed}
 
 
 def use(result: object) -> None:

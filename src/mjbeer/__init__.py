@@ -15,12 +15,14 @@ from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene, pictures
+from mjbeer.theory.standing import standing
 from mjbeer.theory.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from mjbeer.drawing.video import render
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
+    from mjbeer.model.free import attach
     from mjbeer.model.state import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep.run import sweep
@@ -35,6 +37,7 @@ __all__ = [
     "Scene",
     "Trajectory",
     "UntrustedWarning",
+    "attach",
     "build",
     "exact",
     "export",
@@ -47,11 +50,13 @@ __all__ = [
     "simulate",
     "sliding",
     "specify",
+    "standing",
     "sweep",
 ]
 
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
+    "attach": "mjbeer.model.free",
     "build": "mjbeer.model.build",
     "specify": "mjbeer.model.build",
     "export": "mjbeer.model.export",

@@ -47,11 +47,11 @@ class AngleWarning(UserWarning):
 
 
 class UntrustedWarning(UserWarning):
-    """A run is not to be relied on, as all of its steps show; `Trajectory.warnings` has the reasons."""
+    """A run is not to be relied on, as its steps show (`Trajectory.warnings`), or as a parent's options let expect."""
 
 
 class LiquidWarning(UserWarning):
-    """A liquid is no lump, or slips at rates that its damping is not for: the motion is an order of magnitude only."""
+    """A liquid is no lump, slips at rates that its damping is not for, or sloshes higher than linear theory goes."""
 
 
 class TemplateError(MjbeerError):

@@ -18,7 +18,7 @@ from tests.support import stubs
 from tests.support.pages import Page
 
 SENTENCE = r"{} of {} checks and {} of {} rows of the audit passed, in \d+ s\n"
-FILMS = ("race", "liquids", "sliding", "frozen", "pendulum", "hoop")
+FILMS = ("race", "liquids", "sliding", "frozen", "pendulum", "hoop", "carry")
 DRAWN = {f"{film}{end}" for film in FILMS for end in (".mp4", "-still.png")}
 FILES = {"validation.json", "index.html", "paper", "plots"}
 

@@ -12,7 +12,7 @@ from typing import Any, NoReturn, cast
 import mjbeer
 from mjbeer import require
 from mjbeer.cli import motions, studies, sweep
-from mjbeer.cli.arguments import SCENES, Command, Parser, scene_options, scenes_told
+from mjbeer.cli.arguments import SCENES, STANDING_OPTIONS, Command, Parser, scene_options, scenes_told
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
 from mjbeer.output import terminal
@@ -22,6 +22,7 @@ _ERROR = 2
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
 _HELP = ("-h", "--help")
+_STANDING = "a can that stands on a floor, free in space, with a liquid that sloshes"
 
 
 COMMANDS: dict[str, Command] = {
@@ -89,13 +90,19 @@ def parse(words: Sequence[str]) -> tuple[Command, Namespace]:
     command = COMMANDS[require.choice("command", first, COMMANDS)]
     told = str(command.run.__doc__)
     parser = Parser(f"mjbeer {first}", told)
+    if command.standing and rest[:1] == ["standing"]:
+        parser = Parser(f"mjbeer {first} standing", f"{told} The scene: {_STANDING}.")
+        parser.set_defaults(scene="standing")
+        parser.add((*STANDING_OPTIONS, *command.standing))
+        return command, parser.read(rest[1:])
     if command.numbers:
         scene, *rest = rest or [""]
         if scene in _HELP:
             parser, rest = Parser(f"mjbeer {first}", told, "SCENE [options]"), [scene]
-            parser.words(f"scenes (`mjbeer {first} SCENE --help` shows the options of each)", scenes_told())
+            scenes = scenes_told() | ({"standing": _STANDING} if command.standing else {})
+            parser.words(f"scenes (`mjbeer {first} SCENE --help` shows the options of each)", scenes)
         else:
-            require.choice(f"the scene after {first}", scene, SCENES)
+            require.choice(f"the scene after {first}", scene, [*SCENES, *(["standing"] if command.standing else [])])
             parser = Parser(f"mjbeer {first} {scene}", f"{told} The scene: {scenes_told()[scene]}")
             parser.set_defaults(scene=scene)
             parser.add(scene_options(scene, command.numbers))

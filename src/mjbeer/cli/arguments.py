@@ -23,7 +23,8 @@ from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import NAMES, liquid, liquid_in
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
-from mjbeer.theory.scene import DURATION, PHI0, Scene
+from mjbeer.theory.scene import DURATION, GRAVITY, PHI0, Scene
+from mjbeer.theory.standing import Standing, standing
 
 SCENES: dict[str, Callable[..., Scene]] = {each.__name__: each for each in (sliding, liquid, frozen, pendulum, hoop)}
 _CANS = {"massless": Can.massless, "metal": Can.sheet_metal}
@@ -92,11 +93,15 @@ class Command:
     options: tuple[Option, ...]
     numbers: Callable[[str], Any] | None
     """How the numbers of its scene are read, which is its first argument; None if it has no scene."""
+    standing: tuple[Option, ...] = ()
+    """The options beside those of a standing can, if the command takes one instead of a scene."""
 
 
-def command(*options: Option, numbers: Any = None) -> Callable[[Callable[[Namespace], int]], Command]:
+def command(
+    *options: Option, numbers: Any = None, standing: tuple[Option, ...] = ()
+) -> Callable[[Callable[[Namespace], int]], Command]:
     """Make a function the command of its name."""
-    return lambda run: Command(run, options, numbers)
+    return lambda run: Command(run, options, numbers, standing)
 
 
 class Parser(argparse.ArgumentParser):
@@ -167,9 +172,29 @@ def scene_options(scene: str, numbers: Callable[[str], Any]) -> Iterable[Option]
         yield Option(name, _MEANINGS[name], default, _CHOICES.get(name, numbers), "the liquid's" * (default is None))
 
 
+STANDING_OPTIONS = (
+    Option("liquid", _MEANINGS["liquid"], "beer", NAMES),
+    Option("fill", "height of the liquid as a fraction of the can's length, between 0 and 1", 0.5),
+    Option("radius", _MEANINGS["radius"], RADIUS),
+    Option("length", _MEANINGS["length"], LENGTH),
+    Option("modes", "modes of the slosh that move, from 0 (solid) to 5", "1", tuple("012345")),
+    Option("damping_ratio", "damping of each mode over the critical one", None, float, "what the viscosity gives"),
+    Option("gravity", _MEANINGS["gravity"], GRAVITY),
+)
+"""The options of a standing can, which is of aluminium sheet."""
+
+
+def standing_can(given: Namespace) -> Standing:
+    """Return the standing can that was asked for."""
+    can = Can.sheet_metal(given.radius, given.length)
+    return standing(given.liquid, given.fill, can, int(given.modes), given.damping_ratio, given.gravity)
+
+
 _PHI0 = "initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline"
 _ROLLING = "what makes the can roll: reduced coordinates, a joint equality, or contact with friction"
 _TIMESTEP = Option("timestep", "timestep; with a tolerance, interval between samples [s]", 1e-3)
+STEPS = Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP
+"""The options of what MuJoCo steps."""
 _FRICTION = Option("friction", "coefficient of friction: a contact slips beyond it", FRICTION)
 
 
@@ -181,7 +206,7 @@ def _start(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
 def model_options(rolling: str | None = "reduced") -> tuple[Option, ...]:
     """Return the options of a model at its start with one of MuJoCo's integrators."""
     way = Option("rolling", _ROLLING, rolling, ROLLINGS, "" if rolling else "equality, or reduced if only that exists")
-    return *_start(), way, Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP, _FRICTION
+    return *_start(), way, *STEPS, _FRICTION
 
 
 def run_options(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:

@@ -4,11 +4,22 @@ import math
 import pathlib
 from argparse import Namespace
 from contextlib import nullcontext
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mjbeer.cli.arguments import REQUIRED, Option, command, model_options, run_options, scene, start, steps
+from mjbeer.cli.arguments import (
+    REQUIRED,
+    STEPS,
+    Option,
+    command,
+    model_options,
+    run_options,
+    scene,
+    standing_can,
+    start,
+    steps,
+)
 from mjbeer.drawing.camera import CAMERAS
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
@@ -95,7 +106,7 @@ def render(given: Namespace) -> int:
     return 0
 
 
-@command(*model_options(rolling=None), _SPEED, numbers=float)
+@command(*model_options(rolling=None), _SPEED, numbers=float, standing=(*STEPS, _SPEED))
 def view(given: Namespace) -> int:
     """Open a scene in MuJoCo's viewer, paused at its start.
 
@@ -104,24 +115,32 @@ def view(given: Namespace) -> int:
     """
     from mjbeer.drawing.viewer import view
 
-    view(scene(given), **start(given), **steps(given), speed=given.speed)
+    thing, begin = _scene_and_start(given)
+    view(thing, **begin, **steps(given), speed=given.speed)
     return 0
 
 
-@command(
-    *model_options(),
+_WRITTEN = (
     Option("output", 'MJCF file to write (.xml); its keyframe "start" is the start', None, pathlib.Path, REQUIRED),
     Option("portable", _PORTABLE, kind=bool),
-    numbers=float,
 )
+
+
+@command(*model_options(), *_WRITTEN, numbers=float, standing=(*STEPS, *_WRITTEN))
 def export(given: Namespace) -> int:
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
     from mjbeer.model.export import export
 
-    export(scene(given), given.output, **start(given), **steps(given), portable=given.portable)
+    thing, begin = _scene_and_start(given)
+    export(thing, given.output, **begin, **steps(given), portable=given.portable)
     keyframe = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
     say(f"wrote {given.output}; {keyframe}")
     return 0
+
+
+def _scene_and_start(given: Namespace) -> tuple[Any, dict[str, Any]]:
+    """Return what was asked for, a scene or a standing can, and the start of a scene."""
+    return (standing_can(given), {}) if given.scene == "standing" else (scene(given), start(given))
 
 
 def _warn(figures: "Figures") -> None:

@@ -9,9 +9,10 @@ from mjbeer import require
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import RenderingError, UnsupportedError
 from mjbeer.model.build import START, compile_spec
-from mjbeer.model.export import CAMERA, present
+from mjbeer.model.export import CAMERA, present, stand
 from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting, supported
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.standing import Standing
 
 _SPACE = 32
 """The code of the space bar in GLFW."""
@@ -79,7 +80,7 @@ class Player:
 
 
 def view(
-    scene: Scene,
+    scene: Scene | Standing,
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
     rolling: Rolling | None = None,
@@ -91,7 +92,8 @@ def view(
     """Open MuJoCo's viewer on a scene at its start, paused, and return when its window is closed.
 
     The parameters are those of `export`. If `rolling` is None, it is "equality", or "reduced" where MuJoCo can have no
-    equality. A `speed` of 0.1 shows the motion ten times slower than in reality.
+    equality. A `standing` can stands on a floor, and has neither start nor rolling nor friction. A `speed` of 0.1 shows
+    the motion ten times slower than in reality.
 
     Raises:
       ParameterError: if a parameter is not allowed.
@@ -102,10 +104,13 @@ def view(
         raise UnsupportedError(
             f"{integrator} is mjbeer's integrator, not MuJoCo's; view with one of {', '.join(INTEGRATORS)}"
         )
-    rolling = rolling or ("equality" if supported(scene, "equality") else "reduced")
-    setting = Setting(rolling, integrator, timestep, friction=friction)
     require.positive("speed", speed)
-    model = compile_spec(present(scene, setting, *require.start(phi0, phi_dot0)), setting.rigid)
+    if isinstance(scene, Standing):
+        model = stand(scene, True, Setting(integrator=integrator, timestep=timestep)).compile()
+    else:
+        rolling = rolling or ("equality" if supported(scene, "equality") else "reduced")
+        setting = Setting(rolling, integrator, timestep, friction=friction)
+        model = compile_spec(present(scene, setting, *require.start(phi0, phi_dot0)), setting.rigid)
     opengl.rasterize_in_one_thread()
     require_window()
     _play(Player(model, speed))

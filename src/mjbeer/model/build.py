@@ -10,6 +10,7 @@ looks too. Both get their elements from `_add`, and their numbers from `numbers.
 """
 
 import copy
+import inspect
 import math
 import threading
 import warnings
@@ -17,12 +18,14 @@ import warnings
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import UnsupportedError
+from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model import check, looks, numbers, state
+from mjbeer.model import free as free_cans
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import FRICTION, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.standing import Standing
 
 START = "start"
 """The name of the keyframe."""
@@ -47,7 +50,7 @@ _compiling = threading.RLock()
 
 
 def build(
-    scene: Scene,
+    scene: Scene | Standing,
     rolling: Rolling = "reduced",
     visuals: bool = False,
     integrator: Integrator = "RK4",
@@ -56,6 +59,7 @@ def build(
     softness: Softness = TUNED,
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
+    free: bool = True,
 ) -> mujoco.MjModel:
     """Return a compiled MuJoCo model of a scene, whose keyframe "start" is at `phi0` [rad], `phi_dot0` [rad/s].
 
@@ -73,11 +77,17 @@ def build(
     MuJoCo's smallest mass would matter, all masses are multiplied by the same power of two, which does not
     change the motion; so they are in a reduced model with damping under "discrete", which would not see small forces.
 
+    A `standing` can stands on a floor, on a free joint; without `free` it is held by the world. It has no other
+    parameters than `visuals`, `integrator` and `timestep`, and a free joint only a standing can may have.
+
     Raises:
       ParameterError: if a name is unknown or a number is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
       TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
     """
+    if isinstance(scene, Standing):
+        refuse_others(rolling=rolling, friction=friction, softness=softness, phi0=phi0, phi_dot0=phi_dot0)
+        return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep))
     require.instance("scene", scene, Scene)
     visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
@@ -90,13 +100,14 @@ def build(
 
 
 def specify(
-    scene: Scene,
+    scene: Scene | Standing,
     rolling: Rolling = "reduced",
     visuals: bool = False,
     integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
     softness: Softness = TUNED,
+    free: bool = True,
 ) -> mujoco.MjSpec:
     """Return the specification of the model that `build` compiles, to be edited or attached to another one.
 
@@ -105,6 +116,9 @@ def specify(
     specification, bodies keep their joints, masses and geoms, and lose all options: `mjcf/README.md` lists those that
     the parent needs.
     """
+    if isinstance(scene, Standing):
+        refuse_others(rolling=rolling, friction=friction, softness=softness)
+        return free_cans.compose(scene, visuals, free, integrator, timestep)
     require.instance("scene", scene, Scene)
     visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
@@ -112,6 +126,18 @@ def specify(
     if visuals:
         check.require_theory(compile_spec(spec), scene, setting)
     return spec
+
+
+def refuse_others(**given: object) -> None:
+    """Refuse what is said of a standing can that has a meaning for a can that rolls on an incline only.
+
+    Raises:
+      ParameterError: if something is not the default.
+    """
+    defaults = {name: each.default for name, each in inspect.signature(build).parameters.items()}
+    for name, value in given.items():
+        if value != defaults[name]:
+            raise ParameterError(f"a standing can has no {name}, got {require.shown(value)}")
 
 
 def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:

@@ -18,13 +18,15 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
 from mjbeer.model import check, looks, setting, state
-from mjbeer.model.build import START, add_start, compile_spec, compose
+from mjbeer.model.build import START, add_start, compile_spec, compose, refuse_others
 from mjbeer.model.engine import library
+from mjbeer.model.free import compose as compose_free
 from mjbeer.model.numbers import mass_unit
 from mjbeer.model.setting import Setting, Softness
 from mjbeer.output import files
 from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.standing import QUANTITATIVE, Standing
 
 CAMERA = "side"
 """The camera with which the viewer opens. It goes along with the can."""
@@ -33,6 +35,8 @@ _DURATION = 10.0
 _LONGEST = 1e5
 """Largest length of the board to either side, in radii: graphics compute in single precision, so that further away the
 can would be drawn a percent of its radius beside its place."""
+_FALL = 1.0
+"""Angle at which a standing can leans in its keyframe "fall" [rad]."""
 _DIGITS = 17
 """Decimal digits from which a double can be read back exactly."""
 PORTABLE = ("Euler", "implicitfast", "RK4")
@@ -56,7 +60,7 @@ rounded a few times. MuJoCo also leaves out a number that is within 2e-16 of its
 
 
 def export(
-    scene: Scene,
+    scene: Scene | Standing,
     path: str | os.PathLike[str],
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
@@ -65,6 +69,7 @@ def export(
     timestep: float = 1e-3,
     friction: float = setting.FRICTION,
     portable: bool = False,
+    free: bool = True,
 ) -> None:
     """Write a scene as one MJCF file, with everything drawn, with sensors, and with its start as the keyframe "start".
 
@@ -76,6 +81,10 @@ def export(
     `PORTABLE`, the scene must have no drag and no damping but in proportion to a rate, and a contact is softer:
     docs/portability.md has the errors.
 
+    A `standing` can is written with the floor that it stands on, and with the keyframes "start", "slosh" and "fall"; or
+    without `free` as one that is held. It has no other parameters than `integrator`, `timestep` and `portable`, with
+    which it lacks the damping of breaking waves.
+
     Raises:
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model, or cannot write all digits.
@@ -83,7 +92,10 @@ def export(
       OutputError: if the file cannot be written.
       MjbeerError: if the text does not give the same model.
     """
-    require.instance("scene", scene, Scene)
+    if isinstance(scene, Standing):
+        refuse_others(rolling=rolling, phi0=phi0, phi_dot0=phi_dot0, friction=friction)
+    else:
+        require.instance("scene", scene, Scene)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
         raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
@@ -93,11 +105,22 @@ def export(
             f"{made.integrator} is mjbeer's integrator, not MuJoCo's; export with one of "
             f"{', '.join(setting.INTEGRATORS)}"
         )
-    if require.boolean("portable", portable):
-        made = replace(made, softness=_portable_softness(scene, made))
-    spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
-    # It replaces the template's.
-    spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
+    if require.boolean("portable", portable) and made.integrator not in PORTABLE:
+        raise UnsupportedError(
+            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {made.integrator}: MJX and "
+            "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
+        )
+    # The comment replaces the template's.
+    if isinstance(scene, Standing):
+        spec = stand(scene, free, made)
+        spec.comment = f" Written by mjbeer: {scene!r}. "
+        for joint in spec.joints if portable else ():
+            joint.damping = [joint.damping[0], 0, 0]
+    else:
+        if portable:
+            made = replace(made, softness=_portable_softness(scene, made))
+        spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
+        spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
     folder = pathlib.Path(spec.modelfiledir).resolve()
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
     spec.meshdir = str(folder / spec.meshdir) if any(mesh.file for mesh in spec.meshes) else ""
@@ -129,6 +152,30 @@ def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco
     model = compile_spec(spec)
     check.require_theory(model, scene, made)
     spec.visual.global_.cameraid = model.camera(CAMERA).id
+    return spec
+
+
+def stand(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
+    """Return the specification of a standing can to be shown; if it is free, with its keyframes.
+
+    "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, and "fall" leans beyond where cans tip.
+
+    Raises:
+      TemplateError: if the template is missing or lacks a part.
+    """
+    spec = compose_free(can, True, free, made.integrator, made.timestep)
+    spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
+    if not free:
+        return spec
+    upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
+    tilt = math.asin(QUANTITATIVE / can.elevations(1)[0])
+    turned = [math.cos(tilt / 2), 0.0, math.sin(tilt / 2), 0.0]
+    leaning = [math.cos(_FALL / 2), 0.0, math.sin(_FALL / 2), 0.0]
+    above = can.can.radius * math.sin(_FALL)
+    spec.add_key(name=START, qpos=[0, 0, 0, *upright, *rest])
+    if can.modes > 0:
+        spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
+    spec.add_key(name="fall", qpos=[0, 0, above, *leaning, *rest])
     return spec
 
 
@@ -212,12 +259,10 @@ def _portable_softness(scene: Scene, made: Setting) -> Softness:
     Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
     angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances 1/m + a^2/I: of the two the one is taken
     that is not too soft.
+
+    Raises:
+      UnsupportedError: if not all that load a portable export have the damping and drag.
     """
-    if made.integrator not in PORTABLE:
-        raise UnsupportedError(
-            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {made.integrator}: MJX and "
-            "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
-        )
     if scene.drag > 0 or any(scene.damping_law.coefficients[1:]):
         raise UnsupportedError(
             "a portable export has no drag, and damping in proportion to the slip rate only: MuJoCo 3.3 knows no other"

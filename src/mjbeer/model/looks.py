@@ -11,9 +11,10 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import TemplateError
-from mjbeer.theory.can import LENGTH, RADIUS
+from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.load import segment
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.standing import Standing
 
 FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
 """Where the templates are in an installed wheel, and in a checkout."""
@@ -27,6 +28,18 @@ NEEDED = {
     "default": ("collision",),
 }
 """The elements that mjbeer addresses by name in every template, by kind; one with beer has a mesh "load" too."""
+_STANDING = {
+    "body": ("can", "liquid", "slosh1"),
+    "frame": ("upright",),
+    "camera": ("side", "quarter"),
+    "geom": ("beer", "beer_top"),
+    "mesh": ("can",),
+    "material": ("grid",),
+    "default": ("collision",),
+}
+"""The same in the template of a standing can."""
+_TOP = 0.1
+"""Thickness of the drawn surface of a standing can, in radii."""
 _MECHANISM = ("keys", "sensors", "actuators", "equalities", "pairs", "excludes", "tendons", "joints")
 """Kinds of elements that mjbeer makes anew, or leaves out; what refers to others comes before them."""
 _COLLIDING = ("surface", "can")
@@ -89,18 +102,48 @@ def dressed(scene: Scene) -> mujoco.MjSpec:
     Raises:
       TemplateError: if it cannot be read, or lacks an element that mjbeer addresses by name.
     """
-    path = template(scene)
+    needed = NEEDED | ({"mesh": ("can", "load")} if scene.load.fill is not None else {})
+    spec = _read(template(scene), needed)
+    _remove_mechanics(spec)
+    _fit(spec, scene)
+    return spec
+
+
+def upright(standing: Standing) -> mujoco.MjSpec:
+    """Return what is drawn of a standing can, as `dressed` does, with the same errors.
+
+    The beer is a column in the body "liquid" under a disc that tilts with the body "slosh1".
+    """
+    can, height = standing.can, standing.height
+    spec = _read(folder() / "standing.xml", _STANDING)
+    _remove_mechanics(spec)
+    for site in spec.sites:
+        spec.delete(site)
+    _fit_sizes(spec, can)
+    spec.frame("upright").pos = [0, 0, can.length / 2]
+    column, top = spec.geom("beer"), spec.geom("beer_top")
+    thickness = min(_TOP * can.radius, height / 4)
+    for geom, low, high in ((column, 0.0, height - thickness), (top, height - 2 * thickness, height)):
+        geom.pos, geom.size = [0, 0, (low + high) / 2], [can.radius, (high - low) / 2, 0]
+    if standing.modes == 0:
+        column.pos, column.size = [0, 0, height / 2], [can.radius, height / 2, 0]
+        spec.delete(spec.body("slosh1"))
+    else:
+        top.pos = [0, 0, height - thickness - standing.pivots(1)[0]]
+    return spec
+
+
+def _read(path: pathlib.Path, needed: dict[str, tuple[str, ...]]) -> mujoco.MjSpec:
+    """Return the specification in a template, which must have the elements that mjbeer addresses by name."""
     try:
         spec = mujoco.MjSpec.from_file(str(path))
     except (ValueError, OSError) as error:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
-    for kind, names in NEEDED.items():
+    for kind, names in needed.items():
         find = spec.find_default if kind == "default" else getattr(spec, kind)
-        for each in (*names, "load") if kind == "mesh" and scene.load.fill is not None else names:
+        for each in names:
             if find(each) is None:
                 raise TemplateError(f"{path} has no {kind} named {each!r}, which mjbeer uses; restore the template")
-    _remove_mechanics(spec)
-    _fit(spec, scene)
     return spec
 
 
@@ -130,7 +173,16 @@ def _attributes(kind: type) -> tuple[str, ...]:
 
 def _fit(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Fit what is drawn to the scene's sizes."""
-    size, length = scene.can.radius / RADIUS, scene.can.length
+    _fit_sizes(spec, scene.can)
+    if scene.load.fill is not None:
+        _fill(spec, scene, max(scene.load.fill, _LEAST_FILL))
+    else:
+        _hang(spec, scene)
+
+
+def _fit_sizes(spec: mujoco.MjSpec, can: Can) -> None:
+    """Fit what is drawn to the sizes of a can."""
+    size, length = can.radius / RADIUS, can.length
     for geom in spec.geoms:
         _stretch(geom, size, length)
     for camera in spec.cameras:
@@ -140,10 +192,6 @@ def _fit(spec: mujoco.MjSpec, scene: Scene) -> None:
     spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
     for element in spec.meshes:
         _fit_mesh(element, pathlib.Path(spec.modelfiledir, spec.meshdir), size, length)
-    if scene.load.fill is not None:
-        _fill(spec, scene, max(scene.load.fill, _LEAST_FILL))
-    else:
-        _hang(spec, scene)
 
 
 def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:

@@ -37,11 +37,11 @@ _FORCES_SEEN = 2.0**60
 [N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
 ARM = 1.0
 """Length r of the arms of the chord [m]; any length gives the same inertia."""
-_IMPEDANCE = (0.9999, 0.9999)
+IMPEDANCE = (0.9999, 0.9999)
 """dmin and dmax of solimp, the share of its reference acceleration that a constraint reaches: MuJoCo's mjMAXIMP."""
-_WIDTH = (0.001, 0.5, 2)
+WIDTH = (0.001, 0.5, 2)
 """The other numbers of solimp, MuJoCo's defaults: they have no effect where dmin = dmax."""
-_FRICTION_HARDNESS = 100.0
+FRICTION_HARDNESS = 100.0
 """impratio. More gains little, and from 1e6 on the solver stops converging (errors measured on frozen: 3e-7 rad at 100,
 2e-7 rad at 1e4, 5e-3 rad at 1e6)."""
 _TOLERANCE = 1e-14
@@ -275,7 +275,7 @@ def _write_contact(made: Made, option: Any, numbers: Numbers) -> None:
     rolling = made.pair("rolling")
     rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
     _write_softness(rolling, numbers)
-    option.impratio = setting.softness.impratio or _FRICTION_HARDNESS
+    option.impratio = setting.softness.impratio or FRICTION_HARDNESS
     # What the weight of the load gains, over what that of all masses gains: each is a force squared over an inertia.
     light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
     option.tolerance = _TOLERANCE * min(1.0, max(light, _LIGHTEST)) * max(scene.gravity, _WEIGHTLESS) ** 2
@@ -287,7 +287,7 @@ def _write_contact(made: Made, option: Any, numbers: Numbers) -> None:
 def _write_softness(rolling: Any, numbers: Numbers) -> None:
     """Write the softness of the row of a joint equality, or of a contact's rows."""
     setting, softness = numbers.setting, numbers.setting.softness
-    rolling.solimp = [*(softness.impedance or _IMPEDANCE), *_WIDTH]
+    rolling.solimp = [*(softness.impedance or IMPEDANCE), *WIDTH]
     fastest = stiffest(setting.integrator, numbers.timestep, contact=setting.rolling == "contact")
     rolling.solref = softness.solref or (fastest, 1)
 

@@ -12,10 +12,11 @@ from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Order
 from mjbeer.paper import stories
 from mjbeer.report import races
+from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 
-FILMS: dict[str, Race | Take] = {
+FILMS: dict[str, Race | Take | Carry] = {
     "race": Race(
         "Which can wins?",
         races.of_beer,
@@ -71,6 +72,7 @@ FILMS: dict[str, Race | Take] = {
         still=0.24,
         look=Look("A hoop with a heavy bar on its rim, pushed at 16 rad/s", ("normal", "lift"), ("paths", "forces")),
     ),
+    "carry": Carry(),
 }
 """The films by the names of their files."""
 RACES = ("race", "liquids")

@@ -14,7 +14,7 @@ from markupsafe import Markup, escape
 from PIL import Image
 
 from mjbeer import paper
-from mjbeer.drawing.race import Race
+from mjbeer.drawing.film import Take
 from mjbeer.paper import stories
 from mjbeer.paper.row import Finding, Row
 from mjbeer.report.films import COMMANDS, FILMS, RACES
@@ -179,7 +179,7 @@ def _film(folder: pathlib.Path, name: str) -> Shown:
     """Return a film of the scenes with its poster, or without both if it was not drawn."""
     film, video = FILMS[name], folder / f"{name}.mp4"
     command = f"{COMMANDS[name]} --output {name}.mp4" if name in COMMANDS else "mjbeer report"
-    head = film if isinstance(film, Race) else film.look
+    head = film.look if isinstance(film, Take) else film
     shown = Shown(name, head.title if head else name, film.caption, command)
     return replace(shown, video=_data(video), poster=_poster(video)) if video.exists() else shown
 

@@ -91,6 +91,8 @@ class Segment:
     """Distance of the centroid from the axis over a, eq. (35)."""
     inertia: float
     """Moment of inertia about the centroid over mass and a^2, eq. (37)."""
+    width: float
+    """The part of it that lies across, along the flat side: the mean of x^2 over a^2."""
 
 
 def segment(fill: float) -> Segment:
@@ -108,8 +110,8 @@ def segment(fill: float) -> Segment:
     total = float(np.sum(strip))
     offset = 2 * (sine / beta) ** 3 / (3 * total)
     height = float(np.sum(strip * below)) / total - below  # strip's y minus the centroid's
-    inertia = float(np.sum(strip * (np.sin(angle) ** 2 / 3 + height**2))) / total
-    return Segment(half_angle=beta, area=beta**3 * total, offset=offset, inertia=inertia)
+    inertia, width = (float(np.sum(strip * (np.sin(angle) ** 2 / 3 + square))) / total for square in (height**2, 0.0))
+    return Segment(half_angle=beta, area=beta**3 * total, offset=offset, inertia=inertia, width=width)
 
 
 def _checked_fill(fill: float) -> float:

@@ -13,7 +13,7 @@ from mjbeer import paper
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.row import CONFIRMED, CORRECTED, LIMIT, Finding
 from mjbeer.studies.rows import FAILED, PASSED, Result, Row, table, told
-from mjbeer.studies.validation import damped, motions
+from mjbeer.studies.validation import damped, motions, standing
 
 _WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
 """The verdicts of the audit, short enough for a terminal."""
@@ -65,7 +65,7 @@ class Validation:
 
 def rows() -> list[Row]:
     """Return all rows of the validation, in the order of its table."""
-    return [*motions.rows(), *damped.rows(), *motions.models(), *motions.extremes()]
+    return [*motions.rows(), *damped.rows(), *motions.models(), *motions.extremes(), *standing.rows()]
 
 
 def validate(console: Console) -> Validation:

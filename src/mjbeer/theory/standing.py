@@ -1,0 +1,266 @@
+"""A standing can with liquid in it: the slosh of its free surface, in the exact linear theory without viscosity.
+
+The liquid has the inside radius R and the height h. Its modes vary as J1(xi r/R) cos(angle) with J1'(xi) = 0; each acts
+on the can like a pendulum, and what does not slosh acts like a rigid body. Heights z are above the centroid of the
+liquid at rest. For the held can and its forces see H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving
+Containers", NASA SP-106 (1966), chapters 2 and 6; the sums here were derived anew, and are tested against a solution of
+Laplace's equation by polynomials.
+"""
+
+import functools
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from mjbeer import require
+from mjbeer.exceptions import ParameterError, warn_of_liquid
+from mjbeer.theory.can import Can
+from mjbeer.theory.liquid import LIQUIDS, NAMES, Liquid
+from mjbeer.theory.scene import GRAVITY
+
+QUANTITATIVE, INDICATIVE = 0.1, 0.3
+"""Elevations of the surface at the wall, over the radius, up to which linear theory gives numbers, and a picture."""
+DEPTHS = 0.05, 50.0
+"""Heights of the liquid over the radius that are allowed. In thinner films viscosity is everywhere."""
+MOST_MODES = 5
+_SHAKING = 1e-6, 1e6
+"""Frequencies that are allowed [rad/s]."""
+_SERIES = 4000
+"""Number of terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13."""
+_THIN = 0.1
+"""Largest thickness of the layer on the walls, sqrt(2 nu/omega) over R, with which it counts as thin."""
+
+
+class Reaction(NamedTuple):
+    """What holds the liquid must give per unit of acceleration, about the liquid's centroid at rest."""
+
+    force: np.ndarray | float
+    """Force per sideways acceleration, F_X [kg]."""
+    coupling: np.ndarray | float
+    """Force per angular acceleration, and moment per sideways acceleration, F_Theta = M_X [kg m]."""
+    moment: np.ndarray | float
+    """Moment per angular acceleration about a level axis, M_Theta [kg m^2]."""
+
+
+class Mode(NamedTuple):
+    """What the sums need of modes; heights are above the centroid."""
+
+    mass: np.ndarray
+    """Slosh masses m_n [kg]."""
+    bob: np.ndarray
+    """Heights z_n of the bobs [m]."""
+    length: np.ndarray
+    """Lengths L_n of the pendulums [m]."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """A can that stands, with a liquid in it whose surface is free.
+
+    Raises:
+      ParameterError: if one of the values is not allowed.
+    """
+
+    can: Can
+    fill: float
+    """Height of the liquid over the can's length."""
+    name: str
+    density: float
+    """Density of the liquid [kg/m^3]."""
+    viscosity: float
+    """Kinematic viscosity nu [m^2/s]."""
+    modes: int = 1
+    """Number of modes that move in the model; with 0 the liquid is solid, as in other models of cans."""
+    damping_ratio: float | None = None
+    """Damping of every mode over the critical one; None: what the layers on the walls give."""
+    gravity: float = GRAVITY
+
+    def __post_init__(self) -> None:
+        require.instance("can", self.can, Can)
+        for what, value in (("mass", self.can.mass), ("inertia", self.can.inertia)):
+            if value == 0:
+                raise ParameterError(f"a can that stands free must have {what}, as Can.sheet_metal(), got {self.can!r}")
+        fill = require.number("fill", self.fill)
+        if not 0 < fill < 1:
+            raise ParameterError(
+                "fill (height of the liquid over the can's length) must be between 0 and 1: a full can has no free "
+                f"surface, got {require.shown(self.fill)}"
+            )
+        require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, *DEPTHS)
+        if not _is_count(self.modes) or not 0 <= self.modes <= MOST_MODES:
+            raise ParameterError(f"modes must be one of 0, 1, ... {MOST_MODES}, got {require.shown(self.modes)}")
+        ratio = self.damping_ratio
+        require.store(
+            self,
+            fill=fill,
+            density=require.positive("density", self.density, "kg/m^3"),
+            viscosity=require.non_negative("viscosity", self.viscosity, "m^2/s"),
+            modes=int(self.modes),
+            damping_ratio=None if ratio is None else require.within("damping_ratio", ratio, 0, 1),
+            gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2"),
+        )
+        require.within("mass of the liquid", self.mass, *require.MASS, "kg")
+        require.within("mass of the can", self.can.mass, self.mass / require.RATIO, self.mass * require.RATIO, "kg")
+
+    @property
+    def height(self) -> float:
+        """Return the height h of the liquid [m]."""
+        return self.fill * self.can.length
+
+    @property
+    def mass(self) -> float:
+        """Return the mass of the liquid [kg]."""
+        return self.density * math.pi * self.can.radius**2 * self.height
+
+    @property
+    def solid_inertia(self) -> float:
+        """Return the moment of inertia that the liquid would have if it were solid, about a level axis [kg m^2]."""
+        return self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)
+
+    @property
+    def held_inertia(self) -> float:
+        """Return the moment of inertia about a level axis of the liquid under a lid on its surface, I_F [kg m^2]."""
+        radius, xi = self.can.radius, _roots(_SERIES)
+        series = float(np.sum(np.tanh(xi * self.height / (2 * radius)) / (xi**3 * (xi**2 - 1))))
+        return self.mass * (self.height**2 / 12 - 0.75 * radius**2 + 16 * radius**3 / self.height * series)
+
+    def frequencies(self, count: int | None = None) -> np.ndarray:
+        """Return the natural frequencies of the first `count` modes in a can that is held [rad/s], shape (count,).
+
+        By default, here and below, the modes are those that move in the model.
+        """
+        return np.sqrt(self.gravity / self._modes(count).length)
+
+    def slosh_masses(self, count: int | None = None) -> np.ndarray:
+        """Return the masses of the pendulums [kg], shape (count,)."""
+        return self._modes(count).mass
+
+    def pivots(self, count: int | None = None) -> np.ndarray:
+        """Return the heights of the pendulums' pivots above the inside of the bottom [m], shape (count,)."""
+        modes = self._modes(count)
+        return self.height / 2 + modes.bob + modes.length
+
+    def damping_ratios(self, count: int | None = None) -> np.ndarray:
+        """Return the damping of the modes over the critical one, shape (count,).
+
+        It is that of the thin layers on wall and bottom: the mean of rho u^2 sqrt(nu omega/2)/2 over them, with the
+        velocity u of the mode along the wall.
+        """
+        count = self._count(count)
+        if self.damping_ratio is not None:
+            return np.full(count, self.damping_ratio)
+        radius, xi = self.can.radius, _roots(count)
+        depth = self.height / radius
+        inverse_sinh = 2 * np.exp(-2 * xi * depth) / -np.expm1(-4 * xi * depth)
+        layers = (xi**2 + 1) / (xi**2 - 1) + 2 * xi * (1 - depth) * inverse_sinh
+        return np.sqrt(self.viscosity / (2 * self.frequencies(count))) / (2 * radius) * layers
+
+    def elevations(self, count: int | None = None) -> np.ndarray:
+        """Return how high the surface rises at the wall, over R and the sine of each pendulum's angle, (count,)."""
+        return 2 / (_roots(self._count(count)) ** 2 - 1)
+
+    def reaction(self, omega: float | np.ndarray) -> Reaction:
+        """Return force and moment of the liquid alone in a can that is shaken with a frequency `omega` [rad/s].
+
+        The sums are over all modes; there is no damping. X is sideways, Theta about the level axis across it. Weight
+        is included: a tilted liquid's metacentric moment is -g sum(m_n L_n) = -rho g pi R^4/4 per angle.
+
+        Raises:
+          ParameterError: if a frequency is not between 1e-6 and 1e6.
+        """
+        if isinstance(omega, (list, tuple)) or getattr(omega, "ndim", 0) > 0:
+            omega = require.samples("omega", omega, "rad/s")
+        for each in np.atleast_1d(omega):
+            require.within("omega", each, *_SHAKING, "rad/s")
+        omega = np.asarray(omega, float)
+        series = self._modes(_SERIES)
+        square = omega[..., None] ** 2
+        share = series.mass * square / (self.gravity / series.length - square)
+        arm = series.bob + self.gravity / square
+        force, coupling, moment = (np.sum(share * arm**power, axis=-1)[()] for power in range(3))
+        return Reaction(self.mass + force, coupling, self.held_inertia + moment)
+
+    def fixed_moments(self) -> np.ndarray:
+        """Return what the model must have in all: the zeroth, first and second moment of mass about the centroid.
+
+        The modes left out are fixed at their pivots, where slow motion has them: sum(m_n L_n) to the first moment
+        [kg m], sum(m_n (p_n^2 - z_n^2)) to the second [kg m^2].
+        """
+        if self.modes == 0:
+            return np.array([self.mass, 0.0, self.solid_inertia])
+        left = Mode(*(each[self.modes :] for each in self._modes(_SERIES)))
+        pivot = left.bob + left.length
+        second = self.held_inertia + np.sum(left.mass * (pivot**2 - left.bob**2))
+        return np.array([self.mass, np.sum(left.mass * left.length), second])
+
+    def _count(self, count: int | None) -> int:
+        if count is None:
+            return self.modes
+        if not _is_count(count) or not 0 <= count <= _SERIES:
+            raise ParameterError(f"count must be a number of modes up to {_SERIES}, got {require.shown(count)}")
+        return int(count)
+
+    def _modes(self, count: int | None) -> Mode:
+        radius, height, xi = self.can.radius, self.height, _roots(self._count(count))
+        steep = np.tanh(xi * height / radius)
+        mass = self.mass * 2 * radius * steep / (height * xi * (xi**2 - 1))
+        bob = height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius))
+        return Mode(mass, bob, radius / (xi * steep))
+
+
+def standing(
+    liquid: str | Liquid = "beer",
+    fill: float = 0.5,
+    can: Can | None = None,
+    modes: int = 1,
+    damping_ratio: float | None = None,
+    gravity: float = GRAVITY,
+) -> Standing:
+    """Return a can that stands, with a liquid in it that sloshes.
+
+    `liquid` is a name that `mjbeer.liquid` knows, or what `liquid_in` returns. `fill` is the height of the liquid over
+    the can's length. `modes` of the slosh move in the model, the others are fixed to the can; with 0 the liquid is
+    solid. `damping_ratio` is that of every mode; by default it follows from the viscosity, for clean walls and a clean
+    surface: foam or dust doubles it. `gravity` is in [m/s^2]. The default can is `Can.sheet_metal()`.
+
+    A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude.
+
+    Raises:
+      ParameterError: if a parameter is not allowed.
+    """
+    if isinstance(liquid, Liquid):
+        name, density, viscosity = liquid.name, liquid.density, liquid.viscosity
+    else:
+        name = require.choice("liquid", liquid, NAMES)
+        density, viscosity = LIQUIDS[name]
+    can = Can.sheet_metal() if can is None else can
+    made = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
+    if modes > 0 and damping_ratio is None:
+        layer = math.sqrt(2 * viscosity / made.frequencies(1)[0]) / made.can.radius
+        if layer > _THIN:
+            warn_of_liquid(
+                f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.2g} radii, not "
+                f"{_THIN:g} or less; give a damping_ratio",
+                stacklevel=2,
+            )
+    return made
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+
+
+@functools.lru_cache(maxsize=16)
+def _roots(count: int) -> np.ndarray:
+    """Return the first zeros xi > 0 of J1', shape (count,), by Newton's method from McMahon's expansion."""
+    from scipy.special import jv
+
+    beta = (np.arange(1, count + 1) - 0.25) * math.pi
+    xi = beta - 7 / (8 * beta)
+    for _ in range(6):
+        slope = jv(0, xi) - jv(1, xi) / xi  # J1'; Bessel's equation gives its derivative
+        xi = xi - slope / (-slope / xi - (1 - 1 / xi**2) * jv(1, xi))
+    xi.flags.writeable = False
+    return xi

@@ -1,0 +1,145 @@
+"""The theory of a standing can: against polynomials that know no Bessel function, its sums, limits, and refusals."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+
+from mjbeer import Can, LiquidWarning, standing
+from mjbeer.exceptions import ParameterError
+from mjbeer.theory.liquid import liquid_in
+from mjbeer.theory.standing import MOST_MODES, Standing
+from tests.support.laplace import Volume
+
+METAL = Can.sheet_metal()
+RADIUS, GRAVITY, DENSITY, VISCOSITY = METAL.radius, 9.81, 1000.0, 1e-6
+# The condition of the polynomials' matrices, 5e3, times rounding.
+BY_POLYNOMIALS = 1e-12
+# The polynomials lack the fastest modes, whose share grows with the square of the frequency.
+BY_PRESSURE = 1e-6
+DEPTHS = (0.4, 60 / 33, 3.0)
+
+
+def water(depth: float = 60 / 33, modes: int = 1) -> Standing:
+    """Water of a depth in radii, in a can of which it fills half."""
+    return Standing(Can.sheet_metal(length=2 * depth * RADIUS), 0.5, "water", DENSITY, VISCOSITY, modes)
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_modes_are_those_of_laplace_s_equation(depth: float) -> None:
+    """Frequency, mass, pivot and damping of three modes, and what is fixed."""
+    can, volume = water(depth), Volume(depth)
+    omega, masses, bobs = volume.slosh(3)
+    unit = math.sqrt(GRAVITY / RADIUS)
+    assert can.frequencies(3) == pytest.approx(unit * omega, rel=BY_POLYNOMIALS)
+    assert can.slosh_masses(3) == pytest.approx(DENSITY * RADIUS**3 * masses, rel=BY_POLYNOMIALS)
+    pivots = RADIUS * (depth / 2 + bobs + omega**-2)
+    assert can.pivots(3) == pytest.approx(pivots, rel=BY_POLYNOMIALS)
+    reynolds = math.sqrt(GRAVITY * RADIUS**3) / VISCOSITY
+    assert can.damping_ratios(3) == pytest.approx(volume.damping(3) / math.sqrt(reynolds), rel=BY_POLYNOMIALS)
+    assert can.held_inertia == pytest.approx(DENSITY * RADIUS**5 * volume.held_inertia(), rel=BY_POLYNOMIALS)
+
+
+@pytest.mark.parametrize("depth", DEPTHS)
+def test_forces_are_those_of_the_pressure_on_the_walls(depth: float) -> None:
+    """Up to twice the first frequency."""
+    can, volume = water(depth), Volume(depth)
+    first = can.frequencies(1)[0]
+    for share in (0.05, 0.5, 0.9, 1.1, 2.0):
+        found = can.reaction(share * first)
+        expected = volume.reaction(share * first * math.sqrt(RADIUS / GRAVITY))
+        for power, (one, other) in enumerate(zip(found, expected, strict=True)):
+            assert one == pytest.approx(DENSITY * RADIUS ** (3 + power) * other, rel=BY_PRESSURE), (share, power)
+
+
+def test_the_polynomials_tell_wrong_forms_from_right_ones() -> None:
+    """The damping of handbooks, 0.79 over the root of Re, and a moment that forgets the weight of the tilted liquid."""
+    can, volume = water(), Volume(60 / 33)
+    assert volume.damping(1)[0] * 1.39 < 0.79
+    omega = 0.5 * can.frequencies(1)[0]
+    moment, weight = can.reaction(omega).moment, DENSITY * GRAVITY * math.pi * RADIUS**4 / 4
+    assert weight / omega**2 > 0.1 * moment
+
+
+def test_the_numbers_of_a_half_full_can() -> None:
+    """Kept since they were first derived, by other code."""
+    can = water(modes=3)
+    assert can.frequencies(3) == pytest.approx([23.366246869, 39.810708629, 50.374736199], rel=1e-10)
+    assert can.slosh_masses() == pytest.approx([5.1187043195e-2, 1.5443355396e-3, 3.6805389162e-4], rel=1e-10)
+    assert can.pivots() == pytest.approx([0.0445568097, 0.0538118330, 0.0561341667], abs=1e-10)
+    assert can.damping_ratios() == pytest.approx([4.05462818e-3, 1.82184613e-3, 1.55151272e-3], rel=1e-8)
+    assert (can.mass, can.solid_inertia) == pytest.approx((0.205271664, 1.174667097e-4), rel=1e-9)
+    assert can.held_inertia == pytest.approx(1.737013775e-5, rel=1e-9)
+    for share, expected in (
+        (0.5, (2.225109454e-1, 1.184095140e-3, 9.878666234e-5)),
+        (2.0, (1.340301354e-1, -1.266958209e-4, 1.648270558e-5)),
+    ):
+        assert can.reaction(share * can.frequencies(1)[0]) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("depth", [0.05, 1.0, 50.0])
+def test_sums_over_all_modes(depth: float) -> None:
+    """The metacentre; the sum of 2/(xi^2 - 1), whose rest after n terms is 2/(pi^2 n); and slow motion is a solid's."""
+    can, many = water(depth), 4000
+    lengths = GRAVITY / can.frequencies(many) ** 2
+    metacentre = DENSITY * math.pi * RADIUS**4 / 4
+    assert can.slosh_masses(many) @ lengths == pytest.approx(metacentre, rel=1e-10)
+    assert can.elevations(many).sum() == pytest.approx(1 - 2 / (math.pi**2 * many), abs=1e-7)
+    slow = can.reaction(1e-4 * can.frequencies(1)[0])
+    assert slow.force == pytest.approx(can.mass, rel=1e-5)
+    assert slow.coupling == pytest.approx(metacentre, rel=1e-5)
+
+
+@pytest.mark.parametrize("modes", range(MOST_MODES + 1))
+def test_what_is_fixed_is_positive_everywhere(modes: int) -> None:
+    """A body must have a mass and an inertia; the least share is 0.046 for shallow liquids."""
+    for depth in np.geomspace(0.05, 50, 20):
+        can = water(float(depth), modes)
+        mass, first, second = can.fixed_moments()
+        masses, bobs = can.slosh_masses(), can.pivots() - GRAVITY / can.frequencies() ** 2 - can.height / 2
+        left = mass - masses.sum()
+        inertia = second - masses @ bobs**2 - (first - masses @ bobs) ** 2 / left
+        assert min(left / mass, inertia / second) > 0.045
+
+
+def test_damping_may_be_given_and_gravity_scales_time() -> None:
+    assert np.array_equal(standing(damping_ratio=0.02).damping_ratios(2), [0.02, 0.02])
+    moon, earth = standing(gravity=GRAVITY / 4), standing()
+    assert moon.frequencies(2) == pytest.approx(earth.frequencies(2) / 2, rel=1e-14)
+    assert moon.damping_ratios(2) == pytest.approx(earth.damping_ratios(2) * math.sqrt(2), rel=1e-14)
+    assert standing(liquid_in("honey"), damping_ratio=0.5).density == 1420.0
+
+
+def test_a_thick_liquid_warns() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        standing("olive oil"), standing("honey", damping_ratio=0.3), standing("honey", modes=0)
+    with pytest.warns(LiquidWarning, match=r"honey is too thick .* give a damping_ratio"):
+        standing("honey")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"fill": 1.0}, r"fill .* must be between 0 and 1: a full can has no free surface, got 1\.0"),
+        ({"fill": 0.001}, r"height of the liquid over the radius must be between 0\.05 and 50"),
+        ({"can": Can()}, r"a can that stands free must have mass, as Can\.sheet_metal\(\)"),
+        ({"can": "tin"}, "can must be a Can, got 'tin'"),
+        ({"modes": 6}, r"modes must be one of 0, 1, \.\.\. 5, got 6"),
+        ({"modes": True}, "modes must be one of"),
+        ({"damping_ratio": -0.1}, "damping_ratio must be between 0 and 1"),
+        ({"liquid": "bear"}, "liquid must be one of .* did you mean 'beer'"),
+        ({"liquid": METAL}, "liquid must be one of"),
+        ({"gravity": 0.0}, "gravity must be between"),
+    ],
+)
+def test_what_a_can_cannot_be_is_refused(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ParameterError, match=message):
+        standing(**arguments)
+
+
+@pytest.mark.parametrize(("call", "argument"), [("frequencies", 1.5), ("pivots", -1), ("reaction", 0.0)])
+def test_what_theory_cannot_say_is_refused(call: str, argument: float) -> None:
+    with pytest.raises(ParameterError, match=r"(count|omega) must be"):
+        getattr(standing(), call)(argument)
