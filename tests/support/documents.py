@@ -143,10 +143,12 @@ def validity() -> str:
 
 
 def causes() -> str:
-    """The causes of errors in the validation, with the bounds that follow."""
+    """The causes of errors in the validation, each without its particulars, with the bounds that follow."""
     found: dict[tuple[str, str], list[float]] = {}
     for row in checks():
-        found.setdefault((row.reason.partition(":")[0], row.unit), []).append(row.bound)
+        found.setdefault(
+            (re.split("[:;,]", row.reason)[0].replace("as above", "RK4's own error"), row.unit), []
+        ).append(row.bound)
     lines = []
     for (reason, unit), bounds in found.items():
         span = sorted({min(bounds), max(bounds)})

@@ -72,7 +72,7 @@ def rows() -> Iterator[Row]:
     )  # fmt: skip
     yield Row(
         "standing", "tilt at which the can tips over, against a true surface", _tipping, "half full, 1 mode", 2.0,
-        "degrees", "the same tan^2/2",
+        "degrees", "the surface of a true liquid",
     )  # fmt: skip
     for timestep in (2e-3, 5e-3):
         for modes in (1, 3):
