@@ -17,7 +17,8 @@ from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, TUNED, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.stepping import Recorder, Solution, Stepper
+from mjbeer.simulation.recording import Recorder
+from mjbeer.simulation.stepping import Dynamics, Solution, Stepper
 from mjbeer.simulation.tolerance import Solver
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, doubts
@@ -61,9 +62,9 @@ class Prepared:
         if setting.tolerance is not None:
             self._method = Solver(self.model, scene, data)
         elif setting.integrator == DOP853:
-            self._method = Integrator(self.model, data)
+            self._method = Integrator(self.model, Dynamics(self.model, data))
         elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(self.model, Integrator(self.model, data))
+            self._method = GaussJackson(self.model, scene, Dynamics(self.model, data))
         else:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), data)
@@ -141,6 +142,9 @@ class Run(Trajectory):
     spread: Coordinates
     """The motion at its samples and, without a tolerance, at timesteps spread over the whole run, where the uneven run
     is compared with it."""
+
+    def __post_init__(self) -> None:
+        """Check nothing: the start is checked before a run, and its samples are finite after it."""
 
     @property
     def rolling(self) -> str:
