@@ -185,17 +185,13 @@ def _begin(pointers, views, start, step, sums, history):
     return evaluations
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"reassoc", "contract"})
 def _sum(weights, accelerations, end):
-    """Return the weighted sum of the `COUNT` accelerations before index `end`, in four parts that can overlap."""
-    last = accelerations[end - COUNT : end]
-    a = b = c = d = 0.0
-    for k in range(0, COUNT - 3, 4):
-        a += weights[k] * last[k]
-        b += weights[k + 1] * last[k + 1]
-        c += weights[k + 2] * last[k + 2]
-        d += weights[k + 3] * last[k + 3]
-    return (a + b) + (c + d) + weights[COUNT - 1] * last[COUNT - 1]
+    """Return the weighted sum of the `COUNT` accelerations before index `end`, in any order, so that terms overlap."""
+    last, total = accelerations[end - COUNT : end], 0.0
+    for k in range(COUNT):
+        total += weights[k] * last[k]
+    return total
 
 
 @njit(cache=True)

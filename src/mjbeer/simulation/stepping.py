@@ -126,18 +126,12 @@ class Dynamics:
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
         self._model, self.data = model, mujoco.MjData(model) if data is None else data
-        data = self.data
-        actuated = model.nu > 0 and not model.opt.disableflags & _ACTUATION
+        data, self._actuated = self.data, model.nu > 0 and not model.opt.disableflags & _ACTUATION
         constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
-        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or constant)
+        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not self._actuated or constant)
         needed, names = np.ones(model.nq, np.bool_), ("mj_forward",)
         if smooth:
-            names = _SMOOTH if model.ntendon or model.opt.disableflags & _DAMPER != _DAMPER else _WITHOUT_PASSIVE
-            if actuated:  # their forces at the start, which are taken unchanged
-                mujoco.mj_forward(model, data)
-                forces = data.qfrc_actuator.copy()
-                mujoco.mj_resetData(model, data)
-                data.qfrc_actuator[:] = forces
+            names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER and not model.ntendon else _SMOOTH
             if "slide" in (joints := places(model)):
                 # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
                 # from positions in the world, whose rounding would hide a short arm far from the origin.
@@ -146,6 +140,15 @@ class Dynamics:
         views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
         self.kernel = (functions, model._address, data._address, bias), views
         """Addresses and views by which kernels evaluate the accelerations, as `slope` takes them."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Compute the actuators' forces of a model that has changed, which a smooth one then takes unchanged."""
+        if self._actuated and len(self.kernel[0][0]) > 1:
+            mujoco.mj_forward(self._model, self.data)
+            forces = self.data.qfrc_actuator.copy()
+            mujoco.mj_resetData(self._model, self.data)
+            self.data.qfrc_actuator[:] = forces
 
 
 @njit(cache=True, error_model="numpy")

@@ -19,8 +19,8 @@ from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
-_SPREAD = 32
-"""Number of times, evenly spread over a run, at which runs are compared besides the samples that are asked for."""
+_PARTS = np.linspace(0, 1, 33)
+"""Times, over the last one, at which runs are compared besides the samples that are asked for."""
 _SAFETY = 1.5
 """Error estimate over the distance of two runs."""
 _SAFETY_BY_CHANCE = 3.0
@@ -80,8 +80,8 @@ _TRIES = 3
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData) -> None:
-        self._model, self._scene, self._dynamics = model, scene, Dynamics(model, data)
+    def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics) -> None:
+        self._model, self._scene, self._dynamics = model, scene, dynamics
         self._scale, joints = scales(model, scene), places(model)
         self._angles = np.zeros((model.nq + model.nv, 2))  # phi and u/a are sums of components of the state
         for name in joints.keys() & {"phi", "roll", "swing"}:
@@ -120,7 +120,7 @@ class Solver:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
-        along = np.union1d(times, np.linspace(0, times[-1], _SPREAD + 1))
+        along = np.sort(np.concatenate([times, times[-1] * _PARTS]))
         found = None
         if self._gauss_jackson is not None and tolerance <= _LOOSE:
             found = self._by_gauss_jackson(self._gauss_jackson, start, along, tolerance, friction)
