@@ -34,8 +34,8 @@ from mjbeer.theory.scene import Scene
 
 COUNT = 13
 """Number of accelerations that are kept: the method has differences up to the twelfth."""
-BLOCK = 4096
-"""Steps between two returns to Python, so that a long run can be interrupted."""
+BLOCK = 1024
+"""Steps between two returns to Python, so that a long run can be interrupted. Their states fit into a fast cache."""
 LAG = 2
 """Steps after which a state is read off; with more of them only the evaluations grow."""
 _MIDDLE = COUNT // 2
@@ -304,7 +304,7 @@ def _keep_first(start, sums, history, step, last, chosen, kept):
     return row
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def _read(sums, history, end, back, step, chosen, out):
     """Write the state `back` steps before the last acceleration to `out`, with `back` from `LAG` to `_MIDDLE`.
 

@@ -105,17 +105,19 @@ def _extremes(numbers, times, states, found):
     turned, rolled, path, fastest, swing_most, axis, lowest, needed, fails_at, kinetic_most = found[:10]
     energy_change, swing_change, drift, drift_most = found[10:14]
     phi0, u0, speed0, swing0, energy0, last_phi, last_margin, last_time = found[14:]
-    size, moment, sin_incline = states.shape[1] // 2, load_mass * offset, math.sin(incline)
-    weight, arm = all_mass * gravity * math.cos(incline), moment / mass
+    size, moment, arm = states.shape[1] // 2, load_mass * offset, load_mass * offset / mass
+    sin_incline, cos_incline = math.sin(incline), math.cos(incline)
+    sin_bottom, cos_bottom = math.sin(bottom), math.cos(bottom)
+    weight = all_mass * gravity * cos_incline
     for row in range(times.size):
         time, phi, rate = times[row], states[row, size - 1], states[row, 2 * size - 1]
         u, speed = (states[row, 0], states[row, 2]) if size > 1 else (radius * phi, radius * rate)
-        sin, cos, half = math.sin(phi), math.cos(phi), math.sin(phi / 2)
-        inertia = base + chord * half * half + swing * sin * sin
+        sin, cos = math.sin(phi), math.cos(phi)
+        inertia = base + chord * (1 - cos) / 2 + swing * sin * sin
         along, across = speed - offset * cos * rate, offset * sin * rate
         kinetic = can_mass * speed**2 + load_mass * (along**2 + across**2) + load_inertia * rate**2
         kinetic /= 2
-        energy = kinetic - gravity * (all_mass * u * sin_incline + moment * math.cos(incline + phi))
+        energy = kinetic - gravity * (all_mass * u * sin_incline + moment * (cos_incline * cos - sin_incline * sin))
         swings = inertia * rate**2 / 2
         if time == 0.0:
             phi0, u0, speed0, swing0, energy0, last_phi = phi, u, speed - arm * cos * rate, swings, energy, phi
@@ -132,7 +134,7 @@ def _extremes(numbers, times, states, found):
             moved = u - arm * sin - (u0 - arm * math.sin(phi0))
             axis = max(axis, abs(moved - speed0 * time - drive / mass * time**2 / 2))
         bend = chord * sin / 2 + 2 * swing * sin * cos
-        gain = (slope - depth * math.sin(phi - bottom) - bend * rate**2 / 2) / inertia
+        gain = (slope - depth * (sin * cos_bottom - cos * sin_bottom) - bend * rate**2 / 2) / inertia
         normal = weight + moment * (sin * gain + cos * rate**2)
         pull = by_drive * drive + by_swing * moment * (cos * gain - sin * rate**2) + by_turning * gain
         lowest, needed = min(lowest, normal), max(needed, abs(pull) / normal if normal > 0 else math.inf)

@@ -69,7 +69,7 @@ _MORE = 4
 
 _LOOSE = 3e-5
 """Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
-_FINER = 1.2
+_FINER = 1.15
 """Timestep of one run of Gauss-Jackson over that of the next."""
 _GAIN = _FINER**12
 """Error of one run of Gauss-Jackson over that of the next."""
