@@ -48,7 +48,7 @@ _STARTED = 1e-9
 class GaussJackson:
     """The Gauss-Jackson method with second sums around the forward dynamics of one model of a scene, often run.
 
-    A step is one evaluation, where DOP853 has twelve and steps six times as large. A damping or a constraint that
+    A step is one evaluation, where DOP853 has twelve and steps three times as large. A damping or a constraint that
     decays within a few timesteps would make it unstable. The `dynamics` are the model's, if they are there already.
 
     Raises:
