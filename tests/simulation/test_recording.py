@@ -65,3 +65,7 @@ def test_the_nearest_singularity_of_a_pendulum_is_that_of_its_elliptic_function(
 def test_a_brief_passage_is_left_to_long_steps_elsewhere() -> None:
     assert timestep.longest(pendulum(0.1, wheel_mass=1e-2), 1.0, 0.0, 1.0, 1e-9) > 1e-4
     assert timestep.longest(pendulum(0.1, wheel_mass=1e-6), 1.0, 0.0, 1.0, 1e-9) == 0
+
+
+def test_what_does_not_move_may_be_looked_at_seldom() -> None:
+    assert timestep.longest(sliding(gravity=0.0), 1.0, 0.0, 1.0, 1e-9) == 1 / 8

@@ -140,7 +140,10 @@ def _time(numbers, start, phi0, foot, top):
     for node in range(_NODES):
         angle = (node + 0.5) * math.pi / _NODES
         phi = foot + (top - foot) * (1 - math.cos(angle)) / 2
-        slowness = cmath.sqrt(_inertia(numbers, phi) / (2 * _kinetic(numbers, start, phi0, phi)))
+        kinetic = _kinetic(numbers, start, phi0, phi)
+        if kinetic == 0:  # what does not move never gets there
+            return complex(math.inf, math.inf)
+        slowness = cmath.sqrt(_inertia(numbers, phi) / (2 * kinetic))
         if slowness.real * last.real + slowness.imag * last.imag < 0:  # the other root goes on
             slowness = -slowness
         time, last = time + slowness * math.sin(angle), slowness
