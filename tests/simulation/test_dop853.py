@@ -9,7 +9,8 @@ from mjbeer import Can, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
-from mjbeer.simulation.dop853 import Integrator, slope
+from mjbeer.simulation.dop853 import Integrator
+from mjbeer.simulation.stepping import Dynamics, slope
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
@@ -59,10 +60,9 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     """The functions called for a smooth model give mj_forward's acceleration, constant forces included."""
     model = build(scene)
     begin = start(model, scene, 0.7, 2.0)
-    integrator = Integrator(model)
-    assert len(integrator.dynamics[0][0]) > 1
-    rates = np.empty_like(begin)
-    slope(*integrator.dynamics, begin, rates)
+    dynamics, rates = Dynamics(model), np.empty_like(begin)
+    assert len(dynamics.kernel[0][0]) > 1
+    slope(*dynamics.kernel, begin, rates)
     data = mujoco.MjData(model)
     data.qpos, data.qvel = np.split(begin, 2)
     mujoco.mj_forward(model, data)
@@ -73,9 +73,9 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
 
 def test_no_clock_is_read_while_stepping_and_it_is_put_back() -> None:
     model, velocity = build(frozen()), mujoco.mjtTimer.mjTIMER_VELOCITY
-    integrator, seen = Integrator(model), mujoco.MjData(model)
-    integrator.run(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.1)
-    assert integrator._data.timer[velocity].number > 100
-    assert integrator._data.timer[velocity].duration == 0
+    dynamics, seen = Dynamics(model), mujoco.MjData(model)
+    Integrator(model, dynamics).run(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.1)
+    assert dynamics.data.timer[velocity].number > 100
+    assert dynamics.data.timer[velocity].duration == 0
     mujoco.mj_forward(model, seen)
     assert seen.timer[mujoco.mjtTimer.mjTIMER_FORWARD].duration > 0

@@ -48,20 +48,24 @@ def errors(scene: Scene, phi0: float, steps: np.ndarray, times: np.ndarray) -> l
     model = build(scene)
     begin, truth = start(model, scene, phi0, 0.0), exact(scene, times, phi0)
     return [
-        distance(read(model, scene, GaussJackson(model).run(begin, times, float(step)), times), truth, scene.can.radius)
+        distance(
+            read(model, scene, GaussJackson(model, scene).run(begin, times, float(step)), times),
+            truth,
+            scene.can.radius,
+        )
         for step in steps
     ]
 
 
 @pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum()])
 def test_the_error_falls_with_order_thirteen(scene: Scene) -> None:
-    """From 1e-3 to 1e-12 rad. Terms of either sign meet in the error, so that rungs scatter: by 1 in the order."""
-    steps = 0.2 / scene.frequency() / 2.0 ** (np.arange(15) / 4)
+    """From 1e-5 to 1e-12 rad. Terms of either sign meet in the error, so that rungs scatter: by 1.2 in the order."""
+    steps = 0.14 / scene.frequency() / 2.0 ** (np.arange(18) / 6)
     found = np.array(errors(scene, 1.0, steps, np.linspace(0, 2, 65)))
-    fitted = (found < 1e-3) & (found > 1e-12)
+    fitted = (found < 1e-5) & (found > 1e-12)
     assert fitted.sum() >= 7
     assert found.min() < 1e-12
-    assert observed_order(steps[fitted], found[fitted]) == pytest.approx(13, abs=1)
+    assert observed_order(steps[fitted], found[fitted]) == pytest.approx(13, abs=1.3)
 
 
 def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
@@ -72,7 +76,7 @@ def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
     between = np.sort(np.random.default_rng(3).uniform(0, 2, 1000))
     worst = []
     for times in (at, between):
-        found = read(model, scene, GaussJackson(model).run(begin, times, step), times)
+        found = read(model, scene, GaussJackson(model, scene).run(begin, times, step), times)
         truth = exact(scene, times, 1.0)
         worst.append(np.abs(found.phi - truth.phi).max())
         # The rates err by the frequency, 13/s, times the error of phi, or by that of an overtone: the fourth at most.
@@ -85,7 +89,7 @@ def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
 def test_every_step_is_seen_once(last: int) -> None:
     """Also if a run is shorter than the steps that start it, or over blocks."""
     model, seen = build(frozen()), list[list[np.ndarray]]()
-    times, integrator = 1e-3 * np.arange(last + 1), GaussJackson(model)
+    times, integrator = 1e-3 * np.arange(last + 1), GaussJackson(model, frozen())
     found = integrator.run(
         start(model, frozen(), 1.0, 0.0), times, 1e-3, lambda *step: seen.append([part.copy() for part in step[:2]])
     )
@@ -94,8 +98,9 @@ def test_every_step_is_seen_once(last: int) -> None:
     assert states == pytest.approx(found, rel=1e-13, abs=1e-13)
     assert np.abs(found[:, 0] - exact(frozen(), times, 1.0).phi).max() < 1e-11
     if last > 20:
-        # Six steps of DOP853 with samples in them, the accelerations of the start, and two evaluations a step.
-        assert integrator.evaluations == 1 + 6 * 15 + COUNT + 2 * (len(times) - COUNT + LAG)
+        # One a step, and some iterations over the first ones, half of which are before the start.
+        first = integrator.evaluations - (last + LAG - COUNT // 2)
+        assert 1 + 4 * (COUNT - 1) <= first <= 1 + 8 * (COUNT - 1)
 
 
 def test_rounding_does_not_add_up() -> None:
@@ -116,20 +121,18 @@ def test_constraints_and_damping_are_refused(rolling: str) -> None:
     with pytest.raises(ParameterError, match=f"rolling must be 'reduced' with it, got '{rolling}'; DOP853 takes any"):
         simulate(frozen(), 1.0, 1.0, rolling=rolling, integrator="GaussJackson")
     with pytest.raises(UnsupportedError, match="smooth motions only, and this model has constraints"):
-        GaussJackson(build(frozen(), rolling))
+        GaussJackson(build(frozen(), rolling), frozen())
     for place in ("dof_damping", "tendon_damping"):
         model = build(frozen())
         getattr(model, place)[:] = 1e-3
         with pytest.raises(UnsupportedError, match="undamped motions only, and this model has damping"):
-            GaussJackson(model)
+            GaussJackson(model, frozen())
 
 
-@pytest.mark.parametrize("constant", ["_ASTRAY", "_GAIN"])
-def test_a_tolerance_falls_back_on_dop853(constant: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where two runs agree but are far from the first, coarse one, or where they are too far apart."""
-    monkeypatch.setattr(tolerance, constant, 0.0)
-    if constant == "_GAIN":
-        monkeypatch.setattr(tolerance, "_SAFETY", 1e9)
+def test_a_tolerance_falls_back_on_dop853(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where runs stay too far apart."""
+    monkeypatch.setattr(tolerance, "_GAIN", 0.0)
+    monkeypatch.setattr(tolerance, "_SAFETY", 1e9)
     run = simulate(frozen(), 2.0, 1.0, tolerance=1e-8)
     assert run.integrator == "DOP853"
     assert np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max() < 1e-8

@@ -213,7 +213,8 @@ class Stepped:
         mujoco.mj_resetData(model, data)
         with quiet():
             mujoco.mj_setConst(model, data)
-        model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
+        if made.setting.rolling != "reduced":
+            model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
         if made.setting.rigid:
             _make_rigid(model)
         if min(min(body.mass, body.inertia) for body in made.bodies.values()) < mujoco.mjMINVAL:

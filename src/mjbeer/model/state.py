@@ -1,5 +1,6 @@
 """Converts between a scene's coordinates and the joints of its model, which are addressed by name."""
 
+import functools
 from collections.abc import Iterable
 
 import mujoco
@@ -36,6 +37,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     mujoco.mj_forward(model, data)
 
 
+@functools.lru_cache(maxsize=32)
 def places(model: mujoco.MjModel) -> dict[str, int]:
     """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel too."""
     return {model.joint(joint).name: int(model.joint(joint).qposadr[0]) for joint in range(model.njnt)}

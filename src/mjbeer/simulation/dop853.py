@@ -11,16 +11,20 @@ import mujoco
 import numpy as np
 from numba import njit
 
-from mjbeer.model.engine import address
 from mjbeer.model.setting import DOP853
-from mjbeer.model.state import places
-from mjbeer.simulation.stepping import BLOCK_END, DONE, LARGEST, NOT_FINITE, TOO_SMALL, Watcher, call, drive
+from mjbeer.simulation.stepping import (
+    BLOCK_END,
+    DONE,
+    LARGEST,
+    NOT_FINITE,
+    TOO_SMALL,
+    Dynamics,
+    Watcher,
+    copy,
+    drive,
+    slope,
+)
 
-_CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-_ACTUATION = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
-_SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
-"""What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
-the same numbers to the last bit, in three quarters of the time."""
 _ROWS = 16
 """Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""
 # SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
@@ -39,30 +43,11 @@ _KEPT = _BLOCK + 1
 class Integrator:
     """The DOP853 method around the forward dynamics of a model of slides and hinges, set up once and run often.
 
-    Without `data` of the model, in its initial state, it makes its own.
+    The `dynamics` are the model's, if they are there already.
     """
 
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
-        self._size = model.nq + model.nv
-        self._data = data = mujoco.MjData(model) if data is None else data
-        actuated = model.nu > 0 and not model.opt.disableflags & _ACTUATION
-        constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
-        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not actuated or constant)
-        needed = np.ones(model.nq, np.bool_)
-        if smooth:
-            if actuated:  # their forces at the start, which _SMOOTH takes unchanged
-                mujoco.mj_forward(model, data)
-                forces = data.qfrc_actuator.copy()
-                mujoco.mj_resetData(model, data)
-                data.qfrc_actuator[:] = forces
-            if "slide" in (joints := places(model)):
-                # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
-                # from positions in the world, whose rounding would hide a short arm far from the origin.
-                needed[joints["slide"]] = False
-        functions = np.array([address(name) for name in (_SMOOTH if smooth else ("mj_forward",))])
-        views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
-        self._model, self.dynamics = model, ((functions, model._address, data._address), views)
-        """Addresses and views by which the kernels evaluate the accelerations."""
+    def __init__(self, model: mujoco.MjModel, dynamics: Dynamics | None = None) -> None:
+        self._size, self._dynamics = model.nq + model.nv, dynamics or Dynamics(model)
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
@@ -89,31 +74,16 @@ class Integrator:
         scale = np.ones(self._size) if scale is None else scale
         rows, place = _KEPT if watch else 0, (0.0, timestep or 0.0, 0, 0, 1.0)
         kept = np.empty(rows), np.empty((rows, self._size))
-        fixed = *self.dynamics, state, slopes, times, samples, timestep is not None, tolerance, scale, kept
+        fixed = *self._dynamics.kernel, state, slopes, times, samples, timestep is not None, tolerance, scale, kept
         self.evaluations = drive(DOP853, _advance, fixed, place, limit, watch)
         return samples
 
 
 @njit(cache=True, error_model="numpy")
-def slope(pointers, views, state, out):
-    """Write the time derivative of a state to `out`."""
-    functions, model, data = pointers
-    qpos, qvel, qacc, needed = views
-    n = qpos.size
-    for i in range(n):
-        qpos[i] = state[i] if needed[i] else 0.0
-        qvel[i] = state[n + i]
-    for function in functions:
-        call(function, model, data)
-    for i in range(n):
-        out[i] = qvel[i]
-        out[n + i] = qacc[i]
-
-
-@njit(cache=True, error_model="numpy")
 def _combine(weights, count, slopes, out):
     """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
-    out[:] = 0.0
+    for i in range(out.size):
+        out[i] = 0.0
     for j in range(count):
         weight = weights[j]
         if weight != 0.0:
@@ -149,11 +119,12 @@ def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, s
             step = _first_step(pointers, views, state, slopes, tolerance, scale, work)
             evaluations += 1
         if kept_times.size > 0:
-            kept_times[row], kept_states[row] = time, state
+            kept_times[row] = time
+            copy(state, kept_states[row])
             row += 1
     for _ in range(_BLOCK):
         while sample < times.size and times[sample] <= time:
-            samples[sample] = state
+            copy(state, samples[sample])
             sample += 1
         if sample == times.size:
             status = DONE
@@ -191,7 +162,7 @@ def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, s
         while sample < times.size and times[sample] <= last:
             part = (times[sample] - time) / (end - time)
             if part > 1 - 1e-12:
-                samples[sample] = new
+                copy(new, samples[sample])
             else:
                 if not prepared:
                     _prepare(pointers, views, state, new, slopes, step, work, weights)
@@ -200,9 +171,11 @@ def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, s
                 _interpolate(state, weights, part, samples[sample])
             sample += 1
         time = end
-        state[:], slopes[0] = new, slopes[_STAGES]
+        copy(new, state)
+        copy(slopes[_STAGES], slopes[0])
         if kept_times.size > 0:
-            kept_times[row], kept_states[row] = time, state
+            kept_times[row] = time
+            copy(state, kept_states[row])
             row += 1
         if not fixed:
             growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY

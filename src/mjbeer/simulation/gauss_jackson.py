@@ -1,8 +1,13 @@
 """The integrator GaussJackson: a multistep method around MuJoCo's forward dynamics, for smooth motions.
 
-A step predicts the state from the sums and the last accelerations, evaluates the acceleration there, corrects the state
-with it, and evaluates once more (PECE): that makes the method stable at timesteps that are several times as large.
-States are read off two steps later, with accelerations on both sides, where the formula errs far less.
+A step predicts the state from the sums and the last accelerations, evaluates the acceleration there, and corrects the
+state with it. The acceleration of the corrected state then follows from the evaluated one and from theory's derivatives
+of it: the correction is so small that theirs is the effect of a second evaluation (PECE), which makes the method stable
+at timesteps that are several times as large. States are read off two steps later, with accelerations on both sides,
+where the formula errs far less.
+
+A run begins in the middle of its first steps, the start: the six steps before it and the six after it are those that
+agree with the accelerations in all of them, found by iteration.
 
 The weights with which accelerations are added up come from rational arithmetic. With the backward difference z
 (z a_n = a_n - a_(n-1)) and a step h, the time derivative is -ln(1 - z)/h, so that the velocity is h/(-ln(1 - z)) and
@@ -22,106 +27,64 @@ import numpy as np
 from numba import njit
 from numpy.polynomial import polynomial
 
-from mjbeer.exceptions import DivergenceError, UnsupportedError
-from mjbeer.model.engine import quiet, untimed
+from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.setting import GAUSS_JACKSON
-from mjbeer.simulation.dop853 import Integrator, slope
-from mjbeer.simulation.stepping import BLOCK_END, DONE, LARGEST, NOT_FINITE, Watcher, drive
+from mjbeer.simulation.stepping import BLOCK_END, DONE, LARGEST, NOT_FINITE, Dynamics, Watcher, copy, drive, slope
+from mjbeer.theory.scene import Scene
 
 COUNT = 13
 """Number of accelerations that are kept: the method has differences up to the twelfth."""
-BLOCK = 4096
-"""Steps between two returns to Python, so that a long run can be interrupted."""
+BLOCK = 1024
+"""Steps between two returns to Python, so that a long run can be interrupted. Their states fit into a fast cache."""
 LAG = 2
 """Steps after which a state is read off; with more of them only the evaluations grow."""
-_STARTING = 2
-"""Timestep of DOP853, which starts a run, over the timestep: the error is at most a quarter more than at one, and at
-three up to ten times as large (measured down to 1e-12 rad)."""
-_SHARE = 0.046
-"""Timestep for an error of 1e-6 rad over the shortest regular step of DOP853 at a local tolerance of 1. It is smaller
-than needed in three of four random motions."""
-_POWER = 0.07
-"""By which power of the tolerance the timestep falls (measured from 1e-6 to 1e-12; at order 12 it is 1/13 to 1/12)."""
-_LOOSEST = 1e-6
-"""Largest tolerance [rad] for which a timestep is chosen: with larger steps the method's order does not show."""
-_GROWTH = 1.5
-"""Largest factor from one regular step of DOP853 to the next; a run begins with steps that grow more."""
-_FEWEST = 4
-"""Smallest number of regular steps that say how long steps may be."""
-_START = 7 * COUNT + 2 * COUNT
-"""Evaluations before the first step of its own: six and a half a step for DOP853 with samples, and one a state."""
+_MIDDLE = COUNT // 2
+_ITERATIONS = 30
+"""Largest number of iterations of the first steps; a timestep that is not too long takes five to eight."""
+_STARTED = 1e-9
+"""Largest change of the first accelerations in the last iteration, over the largest of them."""
 
 
 class GaussJackson:
-    """The Gauss-Jackson method with second sums around the forward dynamics of one model, set up once and run often.
+    """The Gauss-Jackson method with second sums around the forward dynamics of one model of a scene, often run.
 
-    A step is two evaluations, where DOP853 has twelve and steps three times as large. A damping or a constraint that
-    decays within a few timesteps would make it unstable. The `starter` is the DOP853 integrator of the model.
+    A step is one evaluation, where DOP853 has twelve and steps three times as large. A damping or a constraint that
+    decays within a few timesteps would make it unstable. The `dynamics` are the model's, if they are there already.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
     """
 
-    def __init__(self, model: mujoco.MjModel, starter: Integrator | None = None) -> None:
+    def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics | None = None) -> None:
         if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONSTRAINT:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
         damping = model.dof_damping, model.dof_dampingpoly, model.tendon_damping, model.tendon_dampingpoly
         if any(coefficients.any() for coefficients in damping):
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
-        self._starter, self._size = Integrator(model) if starter is None else starter, model.nv
+        self._dynamics, self.size = dynamics or Dynamics(model), model.nv
+        form, share = scene.oscillator, scene.load.moment / scene.effective_mass
+        depth = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
+        self._form = form.base, form.chord, form.swing, *depth, share  # what theory's derivatives need
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
-    def run(self, start: np.ndarray, times: np.ndarray, timestep: float, watch: Watcher | None = None) -> np.ndarray:
+    def run(
+        self, start: np.ndarray, times: np.ndarray, timestep: float, watch: Watcher | None = None, push: float = 0.0
+    ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        The first twelve steps of `timestep` [s] are DOP853's, and two more are taken than the times need. Between steps
-        the states are those of the polynomial through the accelerations around.
+        Six steps of `timestep` [s] are taken before the start, and two more than the times need. Between steps the
+        states are those of the polynomial through the accelerations around. A `push` [rad/s^2] is added to phi_ddot.
 
         Raises:
           DivergenceError: if the motion stops being finite.
         """
-        size, dynamics = self._size, self._starter.dynamics
-        first = timestep * np.arange(COUNT)
-        begun = int(np.searchsorted(times, first[-1], side="right"))
-        along = np.concatenate([first, times[:begun]])
-        order, states = np.argsort(along, kind="stable"), np.empty((len(along), 2 * size))
-        try:
-            states[order] = self._starter.run(start, along[order], _STARTING * timestep)
-        except DivergenceError as error:
-            raise DivergenceError(f"GaussJackson could not start: {error}") from error
-        samples = np.empty((len(times), 2 * size))
-        states, samples[:begun] = states[:COUNT], states[COUNT:]
-        sums, history = np.empty((4, size)), np.empty((size, COUNT + BLOCK))
-        with quiet(), untimed():
-            _begin(*dynamics, states, timestep, sums, history)
-        if not np.isfinite(sums).all():  # the position over the square of the timestep overflows, or a force does
-            raise DivergenceError(f"GaussJackson could not start: its sums are not finite at t = {first[-1]:.6g} s")
-        if watch:
-            reached = 1 + int(np.searchsorted(first, times[-1]))  # what comes after it is not the run's
-            watch(first[:reached], states[:reached])
-        rows, place = BLOCK if watch else 0, (first[-1], COUNT - 1, timestep, begun)
+        size, rows = self.size, BLOCK + COUNT if watch else 0
+        samples, sums, history = np.empty((len(times), 2 * size)), np.empty((4, size)), np.empty((size, COUNT + BLOCK))
         kept = np.empty(rows), np.empty((rows, 2 * size))
-        fixed = *dynamics, sums, history, times, samples, kept
-        taken = drive(GAUSS_JACKSON, _advance, fixed, place, math.inf, watch)
-        self.evaluations = self._starter.evaluations + COUNT + taken
+        fixed = *self._dynamics.kernel, (*self._form, push), start, sums, history, times, samples, kept
+        self.evaluations = drive(GAUSS_JACKSON, _advance, fixed, (0.0, 0, timestep, 0), math.inf, watch)
         return samples
-
-
-def plan(ends: np.ndarray, tolerance: float, local: float) -> tuple[float, float]:
-    """Return a timestep [s] that should reach a tolerance [rad], and the number of evaluations that it takes.
-
-    `ends` has the times [s] at the start and at the ends of the steps that DOP853 chose with a `local` tolerance. If
-    these are too few to tell, the number of evaluations is infinite.
-    """
-    steps = np.diff(ends)
-    settled = np.flatnonzero(steps[1:] <= _GROWTH * steps[:-1])
-    regular = steps[settled[0] : -1] if len(settled) else steps[:0]  # the last step is cut at the end of the run
-    if len(regular) < _FEWEST:
-        return math.nan, math.inf
-    share = _SHARE * min(1.0, tolerance / _LOOSEST) ** _POWER
-    timestep = share * float(regular.min()) / local ** (1 / 8)
-    return timestep, _START + 2 * float(ends[-1]) / timestep
 
 
 def series(power: int, back: int, terms: int) -> list[Fraction]:
@@ -154,7 +117,7 @@ def weights(power: int, back: int) -> np.ndarray:
 
 
 def _between(power: int) -> np.ndarray:
-    """Return `weights` as polynomials of `back` - `LAG` - 1/2, the lowest power first, shape (terms, COUNT)."""
+    """Return `weights` as polynomials of `back` - `LAG` - 1/2, the highest power first, shape (terms, COUNT)."""
     inverse = [float(term) for term in series(power, 0, COUNT + power)]
     shifts: list[np.ndarray] = [np.ones(1)]
     for j in range(1, COUNT + power):
@@ -166,55 +129,69 @@ def _between(power: int) -> np.ndarray:
             difference[: k + 1] += inverse[j + power - k] * shifts[k]
         for k in range(j + 1):
             ordinates[:, COUNT - 1 - k] += (-1) ** k * math.comb(j, k) * difference
-    return ordinates
+    return ordinates[::-1].copy()
 
 
 _PREDICT_RATE, _PREDICT = weights(1, -1), weights(2, -1)
 _CORRECT_RATE, _CORRECT = weights(1, 0), weights(2, 0)
-_MIDDLE = COUNT // 2
-_MIDDLE_RATE, _MIDDLE_PLACE = weights(1, _MIDDLE), weights(2, _MIDDLE)
-_READ_RATE, _READ_PLACE = weights(1, LAG), weights(2, LAG)
-_BETWEEN_RATE, _BETWEEN_PLACE = _between(1), _between(2)
+_READ = np.concatenate([weights(1, LAG), weights(2, LAG)])
+_BETWEEN = np.concatenate([_between(1), _between(2)], axis=1)
+_FIRST_RATE, _FIRST_PLACE = (np.stack([weights(power, back) for back in range(COUNT - 1, -1, -1)]) for power in (1, 2))
+_MIDDLE_RATE, _MIDDLE_PLACE = _FIRST_RATE[_MIDDLE].copy(), _FIRST_PLACE[_MIDDLE].copy()
+_FIRST_PLACE -= _MIDDLE_PLACE + np.arange(-_MIDDLE, _MIDDLE + 1)[:, None] * _MIDDLE_RATE
+_FIRST_RATE -= _MIDDLE_RATE
+"""Weights of the first accelerations in how rates and places differ from those at the start, in a row for each step."""
 
 
 @njit(cache=True, error_model="numpy")
-def _begin(pointers, views, states, step, sums, history):
-    """Fill the history with the accelerations at the first `COUNT` states, and begin the sums.
+def _begin(pointers, views, start, step, sums, history):
+    """Fill the history with the accelerations at the first `COUNT` steps, and begin the sums; return the evaluations.
 
-    The sums are those that give the state in the middle of the first ones, where the formulas err least.
-
-    `pointers` and `views` are `Integrator.dynamics`; `states`, of shape (COUNT, states), are one timestep
-    `step` [s] apart. `sums`, of shape (4, nv), has the first and the second sum of the accelerations and what rounding
-    took from each; `history` has the accelerations, shape (nv, COUNT + BLOCK).
+    These are 0 if the iteration does not end. `history` has a row for each degree of freedom; `sums`, of shape (4, nv),
+    the first and the second sum of its accelerations, and what rounding took from each.
     """
-    size = sums.shape[1]
-    derivative = np.empty(2 * size)
-    for k in range(COUNT):
-        slope(pointers, views, states[k], derivative)
-        for i in range(size):
-            history[i, k] = derivative[size + i]
-    middle = states[COUNT - 1 - _MIDDLE]
+    size, end = sums.shape[1], history.shape[1] - BLOCK  # `COUNT`, a constant, would compile `_sum` once more
+    state, derivative = np.empty(2 * size), np.empty(2 * size)
+    slope(pointers, views, start, derivative)
     for i in range(size):
-        rate = middle[size + i] / step - _sum(_MIDDLE_RATE, history[i], COUNT)
-        place = middle[i] / step**2 - _sum(_MIDDLE_PLACE, history[i], COUNT)
+        for k in range(COUNT):
+            history[i, k] = derivative[size + i]
+    before = np.inf
+    evaluations = 1
+    for _ in range(_ITERATIONS):
+        change = largest = 0.0
+        evaluations += COUNT - 1
+        for place in range(1, COUNT):  # outwards: a step after the start and one before it, by turns
+            k = _MIDDLE + ((place + 1) // 2 if place % 2 else -place // 2)
+            for i in range(size):
+                rate, moved = _sum(_FIRST_RATE[k], history[i], end), _sum(_FIRST_PLACE[k], history[i], end)
+                state[i] = start[i] + step * ((k - _MIDDLE) * start[size + i] + step * moved)
+                state[size + i] = start[size + i] + step * rate
+            slope(pointers, views, state, derivative)
+            for i in range(size):
+                change = max(change, abs(derivative[size + i] - history[i, k]))
+                largest = max(largest, abs(derivative[size + i]))
+                history[i, k] = derivative[size + i]
+        if not change < np.inf or change <= 1e-16 * largest or (change >= before and change <= _STARTED * largest):
+            break
+        before = change
+    if not change <= _STARTED * largest:
+        return 0
+    for i in range(size):
+        first = start[size + i] / step - _sum(_MIDDLE_RATE, history[i], end)
         # The formulas have the sums up to the last acceleration: first = rate, second = place + (1 + back) first.
-        sums[0, i], sums[1, i] = rate, place + (1 + _MIDDLE) * rate
-        sums[2, i] = sums[3, i] = 0.0
+        second = start[i] / step**2 - _sum(_MIDDLE_PLACE, history[i], end) + (1 + _MIDDLE) * first
+        sums[0, i], sums[1, i], sums[2, i], sums[3, i] = first, second, 0.0, 0.0
+    return evaluations
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"reassoc", "contract"})
 def _sum(weights, accelerations, end):
-    """Return the weighted sum of the `COUNT` accelerations before index `end`, in four parts that can overlap."""
-    first = end - COUNT
-    a = b = c = d = 0.0
-    for k in range(0, COUNT - 3, 4):
-        a += weights[k] * accelerations[first + k]
-        b += weights[k + 1] * accelerations[first + k + 1]
-        c += weights[k + 2] * accelerations[first + k + 2]
-        d += weights[k + 3] * accelerations[first + k + 3]
-    for k in range(COUNT - COUNT % 4, COUNT):
-        a += weights[k] * accelerations[first + k]
-    return (a + b) + (c + d)
+    """Return the weighted sum of the `COUNT` accelerations before index `end`, in any order, so that terms overlap."""
+    last, total = accelerations[end - COUNT : end], 0.0
+    for k in range(COUNT):
+        total += weights[k] * last[k]
+    return total
 
 
 @njit(cache=True)
@@ -226,26 +203,36 @@ def _add(sums, row, i, term):
     sums[row, i] = total
 
 
-@njit(cache=True, nogil=True)
-def _advance(pointers, views, sums, history, times, samples, kept, place):
+@njit(cache=True, nogil=True, error_model="numpy")
+def _advance(pointers, views, form, start, sums, history, times, samples, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
-    `sums` and `history` are as `_begin` or the block before left them. The rows of `samples` whose `times` [s] are
-    passed are filled in. `place` is time [s] and number of the last step, the timestep [s] and the next sample.
-    `kept` takes times and states at the steps that are read off, from that after the first `COUNT` on: it has room for
-    `BLOCK` of them, or for none.
+    `form` has what theory's derivatives of an acceleration need, and the push. `sums` and `history` are as `_begin` or
+    the block before left them. The rows of `samples` whose `times` [s] are passed are filled in. `place` is time [s]
+    and number of the last step, the timestep [s] and the next sample. `kept` takes times and states at the steps that
+    are read off: it has room for `COUNT` more than a `BLOCK` of them, or for none.
     """
     _, steps, step, sample = place
     kept_times, kept_states = kept
     size = sums.shape[1]
-    work, derivative = np.empty(2 * size), np.empty(2 * size)
-    rate_weights, place_weights = np.empty(COUNT), np.empty(COUNT)
-    status, taken, row = BLOCK_END, 0, 0
+    state, moved, derivative = np.empty(2 * size), np.empty(2 * size), np.empty(2 * size)
+    chosen = np.empty(2 * COUNT)
+    status, taken, row, evaluations = BLOCK_END, 0, 0, 0
+    if steps == 0:
+        evaluations = _begin(pointers, views, start, step, sums, history)
+        if evaluations == 0:
+            return NOT_FINITE, place, 0, 0
+        steps = _MIDDLE
+        if times[0] == 0.0:
+            copy(start, samples[0])
+            sample = 1
+        if kept_times.size > 0:
+            row = _keep_first(start, sums, history, step, times[-1], chosen, kept)
     while True:
         end = COUNT + taken
         while sample < times.size and times[sample] <= (steps - LAG) * step * (1 + 1e-14):
             back = steps - times[sample] / step
-            _read(sums, history, end, back, step, rate_weights, place_weights, samples[sample])
+            _read(sums, history, end, back, step, chosen, samples[sample])
             sample += 1
         if sample == times.size:
             status = DONE
@@ -253,53 +240,88 @@ def _advance(pointers, views, sums, history, times, samples, kept, place):
         if taken == BLOCK:
             break
         for i in range(size):
-            work[i] = step**2 * (sums[1, i] + _sum(_PREDICT, history[i], end))
-            work[size + i] = step * (sums[0, i] + _sum(_PREDICT_RATE, history[i], end))
-        slope(pointers, views, work, derivative)
+            state[i] = step**2 * (sums[1, i] + _sum(_PREDICT, history[i], end))
+            state[size + i] = step * (sums[0, i] + _sum(_PREDICT_RATE, history[i], end))
+        slope(pointers, views, state, derivative)
         for i in range(size):
             history[i, end] = derivative[size + i]
-            work[i] = step**2 * (sums[1, i] + _sum(_CORRECT, history[i], end + 1))
-            work[size + i] = step * (sums[0, i] + history[i, end] + _sum(_CORRECT_RATE, history[i], end + 1))
-        slope(pointers, views, work, derivative)
+            moved[i] = step**2 * (sums[1, i] + _sum(_CORRECT, history[i], end + 1)) - state[i]
+            rate = sums[0, i] + history[i, end] + _sum(_CORRECT_RATE, history[i], end + 1)
+            moved[size + i] = step * rate - state[size + i]
+        _correct(form, state, moved, derivative, history, end)
         finite = True
         for i in range(size):
-            history[i, end] = derivative[size + i]
-            _add(sums, 0, i, derivative[size + i])
+            _add(sums, 0, i, history[i, end])
             _add(sums, 1, i, sums[0, i])
-            finite = finite and abs(work[i]) < LARGEST and abs(work[size + i]) < LARGEST
-            finite = finite and math.isfinite(derivative[size + i])
+            finite = finite and abs(state[i]) < LARGEST and abs(state[size + i]) < LARGEST
+            finite = finite and math.isfinite(history[i, end])
         steps += 1
         if not finite:
             status = NOT_FINITE
             break
         taken += 1
-        if kept_times.size > 0 and steps - LAG >= COUNT:
+        if kept_times.size > 0:
             kept_times[row] = (steps - LAG) * step
-            _read(sums, history, end + 1, float(LAG), step, rate_weights, place_weights, kept_states[row])
+            _read(sums, history, end + 1, float(LAG), step, chosen, kept_states[row])
             row += 1
     for i in range(size):
         for k in range(COUNT):
             history[i, k] = history[i, taken + k]
-    return status, (steps * step, steps, step, sample), 2 * taken, row
+    return status, (steps * step, steps, step, sample), evaluations + taken, row
+
+
+@njit(cache=True, error_model="numpy")
+def _correct(form, state, moved, derivative, history, end):
+    """Change the accelerations that end the history, evaluated at a state, to those where that has `moved` a little.
+
+    The derivatives are those of `Oscillator.acceleration` and of eq. (46).
+    """
+    base, chord, swing, along, across, share, push = form
+    phi = history.shape[0] - 1
+    sin, cos, rate, gain = math.sin(state[phi]), math.cos(state[phi]), state[2 * phi + 1], derivative[2 * phi + 1]
+    square = rate * rate
+    inertia = base + chord * (1 - cos) / 2 + swing * sin * sin
+    bend, bent = sin * (chord / 2 + 2 * swing * cos), chord / 2 * cos + 2 * swing * (cos * cos - sin * sin)
+    pull = along * sin + across * cos + bent * square / 2 + bend * gain
+    change = -(pull * moved[phi] + bend * rate * moved[2 * phi + 1]) / inertia
+    history[phi, end] += change + push
+    if phi > 0:
+        turned = (sin * gain + cos * square) * moved[phi] + 2 * sin * rate * moved[2 * phi + 1]
+        history[0, end] += share * (cos * change - turned)
 
 
 @njit(cache=True)
-def _read(sums, history, end, back, step, rate_weights, place_weights, out):
-    """Write the state `back` steps before the last acceleration to `out`, with `back` from `LAG` to one more.
+def _keep_first(start, sums, history, step, last, chosen, kept):
+    """Keep the states at the first steps, from the start to the last one that can be read off or to the `last` time."""
+    times, states = kept
+    end = history.shape[1] - BLOCK
+    copy(start, states[0])
+    times[0], row = 0.0, 1
+    while row <= _MIDDLE - LAG and times[row - 1] < last:
+        times[row] = row * step
+        _read(sums, history, end, float(_MIDDLE - row), step, chosen, states[row])
+        row += 1
+    return row
 
-    The weights are work space of shape (COUNT,).
+
+@njit(cache=True, fastmath={"contract"})
+def _read(sums, history, end, back, step, chosen, out):
+    """Write the state `back` steps before the last acceleration to `out`, with `back` from `LAG` to `_MIDDLE`.
+
+    The weights that are `chosen` for rate and place are work space, of shape (2 COUNT,).
     """
-    x = back - LAG - 0.5
     if back == LAG:
-        rate_weights[:], place_weights[:] = _READ_RATE, _READ_PLACE
+        for k in range(2 * COUNT):
+            chosen[k] = _READ[k]
     else:
-        rate_weights[:] = place_weights[:] = 0.0
-        for power in range(COUNT + 1, -1, -1):
-            for k in range(COUNT):
-                rate_weights[k] = rate_weights[k] * x + _BETWEEN_RATE[power, k]
-                place_weights[k] = place_weights[k] * x + _BETWEEN_PLACE[power, k]
+        x = back - LAG - 0.5
+        for k in range(2 * COUNT):
+            chosen[k] = 0.0
+        for row in range(COUNT + 2):
+            for k in range(2 * COUNT):
+                chosen[k] = chosen[k] * x + _BETWEEN[row, k]
     size = sums.shape[1]
     for i in range(size):
-        place = _sum(place_weights, history[i], end) - (1 + back) * sums[0, i]
+        place = _sum(chosen[COUNT:], history[i], end) - (1 + back) * sums[0, i]
         out[i] = step**2 * (sums[1, i] + place)
-        out[size + i] = step * (sums[0, i] + _sum(rate_weights, history[i], end))
+        out[size + i] = step * (sums[0, i] + _sum(chosen[:COUNT], history[i], end))

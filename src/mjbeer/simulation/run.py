@@ -14,10 +14,11 @@ from mjbeer.model import check, state
 from mjbeer.model.build import Stepped
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, TUNED, Setting
+from mjbeer.model.setting import DOP853, OWN, TUNED, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.stepping import Recorder, Solution, Stepper
+from mjbeer.simulation.recording import Recorder
+from mjbeer.simulation.stepping import Dynamics, Solution, Stepper
 from mjbeer.simulation.tolerance import Solver
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, doubts
@@ -27,8 +28,8 @@ from mjbeer.theory.trajectory import Trajectory, distance
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number, so that no rate of rotation has the same phase at the ends of both parts."""
-_idle: dict[Kind, Stepped] = {}
-"""Models that nobody uses, one of each kind."""
+_idle: dict[Kind, tuple[Stepped, Dynamics | None]] = {}
+"""Models that nobody uses, one of each kind, and how mjbeer's own integrators evaluate them if they have."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
@@ -47,23 +48,32 @@ class Prepared:
 
     If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
     integrators, so that an even and an uneven run have no timestep by which both could be wrong alike. The model may be
-    `made` already, with the scene's numbers.
+    `made` already, with the scene's numbers, and so may its `dynamics`.
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
     """
 
-    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False, made: Stepped | None = None) -> None:
-        made = made or Stepped(_numbers(scene, setting, uneven))
+    def __init__(
+        self,
+        scene: Scene,
+        setting: Setting,
+        uneven: bool = False,
+        made: Stepped | None = None,
+        dynamics: Dynamics | None = None,
+    ) -> None:
+        made, self.dynamics = made or Stepped(_numbers(scene, setting, uneven)), dynamics
         self.scene, self.setting, self.model, data = scene, setting, made.model, made.data
         self._step = setting.timestep * (_GREATER if uneven else 1)
         self._method: Solver | Integrator | GaussJackson | Stepper
-        if setting.tolerance is not None:
-            self._method = Solver(self.model, scene, data)
-        elif setting.integrator == DOP853:
-            self._method = Integrator(self.model, data)
-        elif setting.integrator == GAUSS_JACKSON:
-            self._method = GaussJackson(self.model, Integrator(self.model, data))
+        if setting.tolerance is not None or setting.integrator in OWN:
+            self.dynamics = dynamics = dynamics or Dynamics(self.model, data)
+            if setting.tolerance is not None:
+                self._method = Solver(self.model, scene, dynamics)
+            elif setting.integrator == DOP853:
+                self._method = Integrator(self.model, dynamics)
+            else:
+                self._method = GaussJackson(self.model, scene, dynamics)
         else:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), data)
@@ -76,14 +86,18 @@ class Prepared:
         All that was done in it before is gone: a motion has the same bits as in a new one.
         """
         numbers = _numbers(scene, setting, uneven=False)
-        if (made := _idle.pop(numbers.kind, None)) is None:  # popped at once, so that no two threads get it
+        made, dynamics = _idle.pop(numbers.kind, (None, None))  # popped at once, so that no two threads get it
+        if made is None:
             made = Stepped(numbers)
         else:
             made.write(numbers)
+        if dynamics is not None:
+            dynamics.begin()
+        prepared = cls(scene, setting, made=made, dynamics=dynamics)
         try:
-            yield cls(scene, setting, made=made)
+            yield prepared
         finally:
-            _idle[numbers.kind] = made
+            _idle[numbers.kind] = made, prepared.dynamics or dynamics
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
@@ -141,6 +155,9 @@ class Run(Trajectory):
     spread: Coordinates
     """The motion at its samples and, without a tolerance, at timesteps spread over the whole run, where the uneven run
     is compared with it."""
+
+    def __post_init__(self) -> None:
+        """Check nothing: the start is checked before a run, and its samples are finite after it."""
 
     @property
     def rolling(self) -> str:

@@ -1,10 +1,9 @@
 """What all steppers share, and the one that steps a model with MuJoCo's own integrators, in compiled code."""
 
-import copy
 import ctypes
-import math
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, nullcontext
+from copy import copy as copy_model
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,10 +16,8 @@ from numba.extending import intrinsic
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.engine import address, quiet, untimed
-from mjbeer.model.state import read
-from mjbeer.theory.equations import accelerations
+from mjbeer.model.state import places
 from mjbeer.theory.record import Record
-from mjbeer.theory.scene import Scene
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
@@ -31,6 +28,15 @@ Watcher = Callable[[np.ndarray, np.ndarray], None]
 _BLOCK = 4096
 """Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
 cache."""
+_CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+_ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
+_SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
+"""What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
+the same numbers to the last bit, in three quarters of the time."""
+_WITHOUT_PASSIVE = (
+    "mj_kinematics", "mj_comPos", "mj_crb", "mj_factorM", "mj_comVel", "mj_rne", "mj_fwdAcceleration",
+)  # fmt: skip
+"""What that leaves of these in a model that has no tendons and no damping either: another quarter less."""
 _COMPILING = "mjbeer: compiling this integrator for this machine, once: up to 4 s"
 
 
@@ -46,52 +52,6 @@ class Solution:
     """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
     integrator: str | None = None
     """The name of the integrator, if it was chosen for a tolerance."""
-
-
-class Recorder:
-    """The record of a run of one model of a scene, a `Watcher`.
-
-    The steps of DOP853 are so long that forces are looked for `within` them, too.
-    """
-
-    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, within: bool = False) -> None:
-        self._model, self._scene, self._within, self.record = model, scene, within, Record(scene, friction)
-        self._last = np.empty((7, 0))
-
-    def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
-        """Add the next steps."""
-        motion = read(self._model, self._scene, states, times)
-        if not self._within:
-            self.record.add(motion)
-            return
-        self.record.add_conserved(motion)
-        rates = motion.phi_dot, motion.u_dot
-        gains = accelerations(self._scene, motion.phi, *rates)[::-1]
-        ends = np.concatenate([self._last, np.stack([times, motion.phi, motion.u, *rates, *gains])], axis=1)
-        self._last = ends[:, -1:]
-        self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
-
-
-# A polynomial of fifth degree over a step, from its change, rates and second derivatives at both ends, at parts of it.
-_PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
-_ENDS = np.array([[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]])
-_POWER, _TERMS = np.arange(1, 6), np.linalg.inv(_ENDS)
-_CHANGES, _RATES = _PART**_POWER @ _TERMS, _POWER * _PART ** (_POWER - 1) @ _TERMS
-
-
-def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return times [s], phi, phi_dot and u_dot within steps, from both coordinates and their derivatives at the ends.
-
-    These have shape (2, ends); a single end is returned as it is.
-    """
-    if len(time) == 1:
-        return time, place[0], *rate
-    step = np.diff(time)
-    first, bend = step * rate[:, :-1], step**2 * gain[:, :-1]
-    last, bent = step * rate[:, 1:], step**2 * gain[:, 1:]
-    ends, step = np.stack([np.diff(place), first, bend, last, bent], axis=-1), step[:, None]
-    phi, (phi_dot, u_dot) = place[0, :-1, None] + ends[0] @ _CHANGES.T, ends @ _RATES.T / step
-    return tuple(each.ravel() for each in (time[:-1, None] + step * _PART.T, phi, phi_dot, u_dot))
 
 
 class _Compiling(event.Listener):
@@ -142,16 +102,80 @@ def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: f
 
 
 @intrinsic
-def call(typing_context, function, model, data):
-    """Call the C function at the address `function` with two pointers; no address is compiled in, so caching works."""
+def call(typing_context, function, model, data, flag, result):
+    """Call the C function at the address `function`; no address is compiled in, so that caching works.
+
+    It gets two pointers, a number and a third pointer. A function that takes fewer does not look at the others: those
+    that MuJoCo is built for pass them in registers.
+    """
 
     def generate(context, builder, signature, arguments):
         pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
-        function_type = ir.FunctionType(ir.VoidType(), [pointer, pointer])
+        function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
         builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
         return context.get_dummy_value()
 
-    return types.void(types.intp, types.intp, types.intp), generate
+    return types.void(types.intp, types.intp, types.intp, types.intp, types.intp), generate
+
+
+class Dynamics:
+    """The forward dynamics of a model of slides and hinges, as kernels evaluate it.
+
+    Without `data` of the model, in its initial state, it makes its own.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
+        self._model, self.data = model, mujoco.MjData(model) if data is None else data
+        data, self._actuated = self.data, model.nu > 0 and not model.opt.disableflags & _ACTUATION
+        constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
+        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not self._actuated or constant)
+        needed, names = np.ones(model.nq, np.bool_), ("mj_forward",)
+        if smooth:
+            names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER and not model.ntendon else _SMOOTH
+            if "slide" in (joints := places(model)):
+                # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
+                # from positions in the world, whose rounding would hide a short arm far from the origin.
+                needed[joints["slide"]] = False
+        functions, bias = np.array([address(name) for name in names]), data.qfrc_bias.__array_interface__["data"][0]
+        views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
+        self.kernel = (functions, model._address, data._address, bias), views
+        """Addresses and views by which kernels evaluate the accelerations, as `slope` takes them."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Compute the actuators' forces of a model that has changed, which a smooth one then takes unchanged."""
+        if self._actuated and len(self.kernel[0][0]) > 1:
+            mujoco.mj_forward(self._model, self.data)
+            forces = self.data.qfrc_actuator.copy()
+            mujoco.mj_resetData(self._model, self.data)
+            self.data.qfrc_actuator[:] = forces
+
+
+@njit(cache=True, error_model="numpy")
+def slope(pointers, views, state, out):
+    """Write the time derivative of a state to `out`.
+
+    `pointers` are the addresses of the functions that compute an acceleration, of model and data, and of the forces in
+    which mj_rne puts its result; `views` are qpos, qvel and acceleration in the data, and which of qpos are needed.
+    """
+    functions, model, data, bias = pointers
+    qpos, qvel, qacc, needed = views
+    n = qpos.size
+    for i in range(n):
+        qpos[i] = state[i] if needed[i] else 0.0
+        qvel[i] = state[n + i]
+    for function in functions:
+        call(function, model, data, 0, bias)
+    for i in range(n):
+        out[i] = qvel[i]
+        out[n + i] = qacc[i]
+
+
+@njit(cache=True)
+def copy(values, out):
+    """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
+    for i in range(values.size):
+        out[i] = values[i]
 
 
 class Stepper:
@@ -159,7 +183,7 @@ class Stepper:
 
     def __init__(self, model: mujoco.MjModel, parts: tuple[float, ...] = (), data: mujoco.MjData | None = None) -> None:
         self._timestep = model.opt.timestep
-        self._models = [copy.copy(model) for _ in parts] or [model]
+        self._models = [copy_model(model) for _ in parts] or [model]
         for changed, part in zip(self._models, parts, strict=bool(parts)):
             changed.opt.timestep = part * self._timestep
         self._data = mujoco.MjData(model) if data is None else data
@@ -215,7 +239,7 @@ def _advance(function, models, data, views, states):
     size = qpos.size
     for row in range(len(states)):
         for model in models:
-            call(function, model, data)
+            call(function, model, data, 0, 0)
         for i in range(size):
             states[row, i] = qpos[i]
             states[row, size + i] = qvel[i]

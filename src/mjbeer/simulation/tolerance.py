@@ -9,17 +9,18 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
 from mjbeer.model import check
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
-from mjbeer.model.state import read
+from mjbeer.model.state import places, read
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.gauss_jackson import GaussJackson, plan
-from mjbeer.simulation.stepping import LARGEST, Recorder, Solution
+from mjbeer.simulation.gauss_jackson import GaussJackson
+from mjbeer.simulation.recording import Recorder, SmoothRecorder
+from mjbeer.simulation.stepping import LARGEST, Dynamics, Solution
+from mjbeer.simulation.timestep import longest
 from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import angle_distance
 
-_SPREAD = 32
-"""Number of times, evenly spread over a run, at which runs are compared besides the samples that are asked for."""
+_PARTS = np.linspace(0, 1, 33)
+"""Times, over the last one, at which runs are compared besides the samples that are asked for."""
 _SAFETY = 1.5
 """Error estimate over the distance of two runs."""
 _SAFETY_BY_CHANCE = 3.0
@@ -30,6 +31,9 @@ _ASYMPTOTIC = (1e-11, 1e-5)
 _NUDGE = 4e-14
 """Distance of the first run's start from the given start, relative to `scales`. The distance of the first two runs then
 includes the effect of a small change of the start, which is large beside a separatrix."""
+_PUSH = 2e-15
+"""Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows how much a small change of the energy
+on the way matters, as for a swing that comes near a barrier's top, where the start does not."""
 _ROUNDING_OVER_NUDGE = 3 / 40
 """Estimated effect of rounding over that of the nudge: a run's rounding is like a nudge of some 1e-15; safety is 3."""
 _CANCELLED = 0.1
@@ -65,32 +69,32 @@ _MORE = 4
 
 _LOOSE = 3e-5
 """Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
-_PILOT = 1e-4
-"""Local tolerance of the run of DOP853 that shows how long a timestep of Gauss-Jackson may be."""
-_ASTRAY = 0.1
-"""Largest distance [rad], relative beyond 1 rad, of that run from those of Gauss-Jackson at the end."""
-_FINER = 1.2
+_FINER = 1.15
 """Timestep of one run of Gauss-Jackson over that of the next."""
-_GAIN = 9.0
-"""Error of one run of Gauss-Jackson over that of the next, 1.2^12."""
-_CHEAPER = 0.8
-"""Largest number of evaluations of Gauss-Jackson over those of DOP853 to the tolerance, at which it is tried: it takes
-two runs that are nearly alike, where the first of two runs of DOP853 takes three quarters of the second one."""
+_GAIN = _FINER**12
+"""Error of one run of Gauss-Jackson over that of the next."""
+_TRIES = 3
+"""Largest number of finer runs of Gauss-Jackson."""
 
 
 class Solver:
     """A model of a scene, set up to be integrated to global tolerances."""
 
-    def __init__(self, model: mujoco.MjModel, scene: Scene, data: mujoco.MjData) -> None:
-        self._model, self._scene, self._dop853 = model, scene, Integrator(model, data)
-        self._scale, size = scales(model, scene), model.nq + model.nv
-        unit = read(model, scene, np.eye(size), times=np.zeros(size))  # phi and u/a are sums of components of the state
-        self._angles = np.column_stack([unit.phi, unit.u / scene.can.radius])
+    def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics) -> None:
+        self._model, self._scene, self._dynamics = model, scene, dynamics
+        self._scale, joints = scales(model, scene), places(model)
+        self._angles = np.zeros((model.nq + model.nv, 2))  # phi and u/a are sums of components of the state
+        for name in joints.keys() & {"phi", "roll", "swing"}:
+            self._angles[joints[name], 0] = 1.0
+        self._angles[:, 1] = self._angles[:, 0]
+        if "slide" in joints:
+            self._angles[:, 1] = 0.0
+            self._angles[joints["slide"], 1] = 1 / scene.can.radius
         rounding = max(1.0, _CANCELLED * scene.oscillator.swing / scene.oscillator.base)
         self._rounded = rounding > 1
         self._nudge, self._smallest = _NUDGE * rounding * self._scale, _SMALLEST * max(1.0, rounding / _RATIO**2)
         try:
-            self._gauss_jackson: GaussJackson | None = GaussJackson(model, self._dop853)
+            self._gauss_jackson: GaussJackson | None = GaussJackson(model, scene, self._dynamics)
         except UnsupportedError:
             self._gauss_jackson = None
 
@@ -103,7 +107,7 @@ class Solver:
         From the third run on a share of the distance before counts if that is larger. None of these shows the effect of
         rounding; it is estimated by further runs where it may matter, and what an equality loses by its accelerations.
 
-        Where Gauss-Jackson needs fewer evaluations, two of its runs are tried first. Otherwise all runs are DOP853's.
+        Of a smooth motion, runs of Gauss-Jackson are tried first. Otherwise all runs are DOP853's.
         The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
         Raises:
@@ -116,7 +120,7 @@ class Solver:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
-        along = np.union1d(times, np.linspace(0, times[-1], _SPREAD + 1))
+        along = np.sort(np.concatenate([times, times[-1] * _PARTS]))
         found = None
         if self._gauss_jackson is not None and tolerance <= _LOOSE:
             found = self._by_gauss_jackson(self._gauss_jackson, start, along, tolerance, friction)
@@ -127,46 +131,50 @@ class Solver:
     def _by_gauss_jackson(
         self, method: GaussJackson, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
     ) -> Solution | None:
-        """Return the solution, or None if it is not within the `tolerance` [rad], or DOP853 is cheaper.
+        """Return the solution, or None if it is not within the `tolerance` [rad].
 
-        A coarse run of DOP853 shows how long a timestep may be, and that two runs have not gone the same wrong way.
+        The first run is nudged, at its start and all along. Where rounding counts, every second one is.
         """
-        ends, local = list[np.ndarray](), _FIRST * tolerance / _RATIO
+        timestep = longest(self._scene, start[method.size - 1], start[-1], times[-1], tolerance)
+        if not timestep * _EVALUATIONS > _FINER**_TRIES * times[-1]:
+            return None
+        share = 1.0 if self._rounded else min(1.0, tolerance / _ASYMPTOTIC[0])
+        push = share * _PUSH * (self._scale[-1] / self._scale[method.size - 1]) ** 2
+        coarse, safety, nudged, begun = None, 0.0, False, 0.0
         try:
-            last = self._dop853.run(
-                start, times[-1:], None, _PILOT, self._scale, _EVALUATIONS, lambda times, _: ends.append(times.copy())
-            )
-            timestep, evaluations = plan(np.concatenate(ends), tolerance, _PILOT)
-            if not evaluations < _CHEAPER * self._dop853.evaluations * (_PILOT / local) ** (1 / 8):
-                return None
-            coarse, safety, rounding = method.run(start + self._nudge, times, timestep), self._safety(tolerance), 0.0
-            for _ in range(2):
+            for _ in range(_TRIES):
+                if coarse is None:
+                    begun, safety, nudged = 0.0, self._safety(tolerance), False
+                    coarse = method.run(start + share * self._nudge, times, timestep, push=push)
                 timestep /= _FINER
-                recorder = Recorder(self._model, self._scene, friction)
-                fine = method.run(start, times, timestep, recorder)
-                distance = self._distance(coarse, fine, start)
-                rounding = rounding or _ROUNDING_OVER_NUDGE * distance  # the first distance includes the nudge
-                error = max(safety * distance, self._drift(recorder.record), rounding)
-                if error <= tolerance and self._distance(last, fine[-1:], start) <= _ASTRAY:
-                    return Solution(fine, recorder.record, error, GAUSS_JACKSON)
-                if _SAFETY_BY_CHANCE * distance > _GAIN * tolerance:  # the next run would not reach it
-                    return None
-                coarse, safety = fine, _SAFETY_BY_CHANCE
+                recorder = SmoothRecorder(self._scene, friction)
+                aside = share * self._nudge if nudged else 0.0
+                fine = method.run(start + aside, times, timestep, recorder, push * nudged)
+                distance, record = self._distance(coarse, fine, start), recorder.record
+                begun = begun or distance
+                drift = max(_DRIFT * record.swing_error, record.axis_error)
+                error = max(safety * distance, drift, _ROUNDING_OVER_NUDGE / share * begun)
+                if error <= tolerance:
+                    return Solution(fine, record, error, GAUSS_JACKSON)
+                if _SAFETY_BY_CHANCE * distance <= _GAIN * tolerance:  # the next run would reach it
+                    coarse, safety, nudged = fine, _SAFETY_BY_CHANCE, self._rounded and not nudged
+                else:
+                    coarse, timestep = None, timestep * (tolerance / (_SAFETY_BY_CHANCE * distance)) ** (1 / 12)
         except DivergenceError:
             pass
         return None
 
     def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return the solution by ever finer runs of DOP853."""
-        limit = _EVALUATIONS
+        integrator, limit = Integrator(self._model, self._dynamics), _EVALUATIONS
 
         def run(start: np.ndarray, local: float, recorder: Recorder | None = None) -> np.ndarray:
             nonlocal limit
             try:
-                states = self._dop853.run(start, times, None, local, self._scale, limit, recorder)
+                states = integrator.run(start, times, None, local, self._scale, limit, recorder)
             except DivergenceError as error:
                 raise _not_reached(tolerance, str(error)) from error
-            limit = min(_EVALUATIONS, _MORE * self._dop853.evaluations)
+            limit = min(_EVALUATIONS, _MORE * integrator.evaluations)
             return states
 
         local = max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest)
@@ -200,8 +208,9 @@ class Solver:
 
     def _distance(self, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
         """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
-        angles = zip((coarse @ self._angles).T, (fine @ self._angles).T, start @ self._angles, strict=True)
-        return max(angle_distance(*each) for each in angles)
+        found = fine @ self._angles
+        turned = np.maximum.accumulate(np.abs(found - start @ self._angles))
+        return float((np.abs(found - coarse @ self._angles) / np.maximum(1.0, turned)).max())
 
     def _drift(self, record: Record) -> float:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum in a record implies."""
@@ -252,6 +261,6 @@ def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
     """
     radius = scene.can.radius
-    positions = np.where(model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE, radius, 1.0)
-    rate = np.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
-    return np.concatenate([positions, positions * rate])
+    positions = [radius if name in ("slide", "lift") else 1.0 for name in places(model)]
+    rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
+    return np.array([*positions, *(rate * each for each in positions)])

@@ -44,8 +44,9 @@ _SAVE_EVERY, _SAVING = 5.0, 20.0
 """Time between two savings of what is there so far [s], and its smallest ratio to the time that saving takes."""
 _LARGEST_PIECE = 1000
 """Largest number of scenes that are handed out in one piece."""
-_UNKNOWN_WORKERS = 128
-"""Number of workers that an executor is taken to have that does not tell: a cluster's."""
+_UNKNOWN_WORKERS, _SMALLEST_PIECE = 128, 16
+"""Number of workers that an executor is taken to have that does not tell, a cluster's, and the smallest piece that it
+is given: to hand one out takes as long as a few scenes there."""
 
 Asked = str | Callable[[Run], float]
 """A quantity that is measured if it is asked for: its name, or a function of a trajectory."""
@@ -325,12 +326,13 @@ def _carried_out(
                 "what makes the scenes, and functions of their runs, must be defined at the top of a module to be sent "
                 f"to processes: {' '.join(str(error).split())}"
             ) from error
-    workers = getattr(executor, "_max_workers", None) or _UNKNOWN_WORKERS
+    known = getattr(executor, "_max_workers", None)
+    workers, least = (known, 1) if known else (_UNKNOWN_WORKERS, _SMALLEST_PIECE)
     waiting, left, out = [scenes], len(scenes), dict[Future[Any], np.ndarray]()
     try:
         while left or out:
             while left and len(out) < 2 * workers:
-                size = min(math.ceil(left / (4 * workers)), _LARGEST_PIECE)
+                size = min(max(math.ceil(left / (4 * workers)), least), _LARGEST_PIECE)
                 piece, rest = np.split(waiting.pop(), [size])
                 waiting += [rest] * bool(len(rest))
                 left -= len(piece)
