@@ -130,4 +130,4 @@ def sweeps(study: Benchmark) -> Table:
 
 def _ratio(value: float) -> str:
     """Return a ratio of run times as text; it is 0, NaN or infinite where one of the two did not reach the error."""
-    return f"{value:.2g}" if 0 < value < math.inf else "-"
+    return f"{float(f'{value:.2g}'):g}" if 0 < value < math.inf else "-"
