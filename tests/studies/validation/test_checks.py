@@ -1,6 +1,7 @@
 """The validation table passes row by row, and each kind of row fails on a wrong model or a misprint."""
 
 import dataclasses
+import json
 import math
 
 import numpy as np
@@ -8,9 +9,9 @@ import pytest
 
 from mjbeer import Can, exact, hoop, simulate, sliding
 from mjbeer.model import looks
-from mjbeer.studies.rows import Row
+from mjbeer.studies.rows import Result, Row
 from mjbeer.studies.validation import motions
-from mjbeer.studies.validation.run import rows
+from mjbeer.studies.validation.run import Validation, rows
 from mjbeer.theory import exact as theory
 from mjbeer.theory import trajectory
 
@@ -26,6 +27,12 @@ def test_row(row: Row) -> None:
 
 def test_rows_are_told_apart() -> None:
     assert len(ROWS) == len(rows())
+
+
+def test_rows_can_be_written() -> None:
+    """A bound that NumPy computed would make the verdict one of its own, which JSON does not have."""
+    results = [Result(row.group, row.name, row.by, row.bound, row.unit, row.reason, 0.0) for row in ROWS.values()]
+    assert len(json.loads(Validation(results, []).json())["checks"]) == len(ROWS)
 
 
 def test_a_wrong_motion_is_found_out() -> None:

@@ -37,63 +37,105 @@ def rows() -> Iterator[Row]:
     """Yield the rows of standing and of lying cans."""
     for fill in _FILLS:
         yield Row(
-            "standing", "frequencies of 3 modes, by the eigenvalues of M and K",
-            partial(_eigenvalues, water(3, fill, damping_ratio=0.0)), f"{fill:.0%} full, held", 1e-9, "relative",
+            "standing",
+            "frequencies of 3 modes, by the eigenvalues of M and K",
+            partial(_eigenvalues, water(3, fill, damping_ratio=0.0)),
+            f"{fill:.0%} full, held",
+            1e-9,
+            "relative",
             "rounding",
-        )  # fmt: skip
+        )
     yield Row(
-        "standing", f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
-        lambda: let_go(water(damping_ratio=0.0))[0], "half full, held, RK4, 1 ms", 2e-8, "relative",
+        "standing",
+        f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
+        lambda: let_go(water(damping_ratio=0.0))[0],
+        "half full, held, RK4, 1 ms",
+        2e-8,
+        "relative",
         "RK4: (omega h)^4/120, 2.5e-9",
-    )  # fmt: skip
+    )
     yield Row(
-        "standing", "logarithmic decrement", lambda: let_go(water())[1], "half full, held, RK4, 1 ms", 1e-4, "relative",
+        "standing",
+        "logarithmic decrement",
+        lambda: let_go(water())[1],
+        "half full, held, RK4, 1 ms",
+        1e-4,
+        "relative",
         "breaking waves, which take the square of the angle: 4e-6; and the samples at the peaks",
-    )  # fmt: skip
+    )
     for modes in (1, 2, 3, 5):
         can = water(modes)
         for place, name in ((0, "force under shaking"), (2, "moment under pitching")):
             yield Row(
-                "standing", f"{name} at 8 frequencies, 0.2 to 4 of the first, against the infinite series",
+                "standing",
+                f"{name} at 8 frequencies, 0.2 to 4 of the first, against the infinite series",
                 lambda can=can, place=place: np.abs(reaction_errors(can)[place]).max(),
                 f"half full, {modes} mode{'s' * (modes > 1)}",
-                _ROUNDED * np.abs(left_out(can)[place]).max(), "relative",
+                float(_ROUNDED * np.abs(left_out(can)[place]).max()),
+                "relative",
                 "the modes left out, whose share the bound is",
-            )  # fmt: skip
+            )
     for name, place in (("mass", 0), ("centre of mass", 1), ("inertia", 2)):
         yield Row(
-            "standing", f"{name} of can and liquid", lambda place=place: _moments(water(3))[place],
-            "half full, 3 modes", 1e-13, "relative", "rounding",
-        )  # fmt: skip
+            "standing",
+            f"{name} of can and liquid",
+            lambda place=place: _moments(water(3))[place],
+            "half full, 3 modes",
+            1e-13,
+            "relative",
+            "rounding",
+        )
     yield Row(
-        "standing", "moment of the liquid in a can tilted by 20 degrees, against rho g pi R^4/4 sin",
+        "standing",
+        "moment of the liquid in a can tilted by 20 degrees, against rho g pi R^4/4 sin",
         lambda: tilted(math.radians(20)),
-        "half full, 1 mode, held", 1e-12, "relative", "rounding; a true surface has tan^2/2 more, 6.6 %",
-    )  # fmt: skip
+        "half full, 1 mode, held",
+        1e-12,
+        "relative",
+        "rounding; a true surface has tan^2/2 more, 6.6 %",
+    )
     yield Row(
-        "standing", "tilt at which the can tips over, against a true surface", _tipping, "half full, 1 mode", 2.0,
-        "degrees", "the surface of a true liquid",
-    )  # fmt: skip
+        "standing",
+        "tilt at which the can tips over, against a true surface",
+        _tipping,
+        "half full, 1 mode",
+        2.0,
+        "degrees",
+        "the surface of a true liquid",
+    )
     for timestep in (2e-3, 5e-3):
         for modes in (1, 3):
             yield Row(
-                "standing", f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy",
+                "standing",
+                f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy",
                 partial(thrown, water(modes), timestep),
-                f"half full, {modes} mode{'s' * (modes > 1)}, implicitfast, {1e3 * timestep:g} ms", 0, "",
+                f"half full, {modes} mode{'s' * (modes > 1)}, implicitfast, {1e3 * timestep:g} ms",
+                0,
+                "",
                 "stable or not",
-            )  # fmt: skip
+            )
     for name, scene, phi0 in (
-        ("frozen", frozen(math.radians(8), can=_METAL), 2.0), ("sliding", sliding(math.radians(8), can=_METAL), 1.0),
-    ):  # fmt: skip
+        ("frozen", frozen(math.radians(8), can=_METAL), 2.0),
+        ("sliding", sliding(math.radians(8), can=_METAL), 1.0),
+    ):
         yield Row(
-            "lying", "phi over 2 s", lambda scene=scene, phi0=phi0: np.abs(lying(scene, phi0)[0]).max(),
-            f"{name}, metal can, free in space, RK4, 0.5 ms", 1e-6, "rad", "softness of the contact",
-        )  # fmt: skip
+            "lying",
+            "phi over 2 s",
+            lambda scene=scene, phi0=phi0: np.abs(lying(scene, phi0)[0]).max(),
+            f"{name}, metal can, free in space, RK4, 0.5 ms",
+            1e-6,
+            "rad",
+            "softness of the contact",
+        )
         yield Row(
-            "lying", "turn about the vertical over 2 s of a can that starts askew on level ground",
+            "lying",
+            "turn about the vertical over 2 s of a can that starts askew on level ground",
             lambda scene=scene, phi0=phi0: lying(Scene(scene.can, scene.load, 0.0, scene.attachment), phi0, 0.5)[1],
-            f"{name}, metal can, free in space, RK4, 0.5 ms", 1e-9, "rad", "rounding",
-        )  # fmt: skip
+            f"{name}, metal can, free in space, RK4, 0.5 ms",
+            1e-9,
+            "rad",
+            "rounding",
+        )
 
 
 def water(modes: int = 1, fill: float = 0.5, damping_ratio: float | None = None) -> Standing:
