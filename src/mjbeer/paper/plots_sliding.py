@@ -59,7 +59,7 @@ def draw_trivial(path: pathlib.Path) -> None:
     """Draw φ, u and s of beer that is let go along the incline, and at 60 degrees to it."""
     runs = {degrees: let_go(degrees) for degrees in (0.0, 60.0)}
     scene, times = runs[0.0].scene, runs[0.0].time
-    title = "However the beer swings, its centre of mass moves down the incline evenly"
+    title = "However the beer swings, its centre of mass accelerates down the incline evenly"
     with chart(path, 1, 3, width=12, height=4.6, title=title, subtitle=in_words(scene)) as (angle, axis, centre):
         for panel in (axis, centre):
             panel.plot(times, scene.acceleration() * times**2 / 2, label="exact theory: ½ g sin α t²", **THEORY)
