@@ -252,6 +252,17 @@ def test_the_solver_of_a_contact_does_not_take_a_light_load_for_nothing() -> Non
     assert phi_error(run) < 2e-8
 
 
+@pytest.mark.parametrize(
+    "setting",
+    [{"tolerance": 1e-9}, {"integrator": "DOP853", "timestep": 7e-3}, {"integrator": "GaussJackson", "timestep": 2e-3}],
+)
+def test_a_record_ends_with_the_run(setting: dict[str, Any]) -> None:
+    """The can parts at 0.83389 s; the last steps of mjbeer's own integrators go beyond the last sample."""
+    run = simulate(frozen(), 0.8335, math.pi, times=[0.0, 0.8335], **setting)
+    assert run.rolls_until() == math.inf
+    assert run.trusted
+
+
 def test_degrees_in_place_of_radians_are_a_warning() -> None:
     with pytest.warns(
         AngleWarning, match=r"phi0 = 60 is taken as radians, 9.549 turns: .* math.radians\(60\)"

@@ -88,7 +88,7 @@ def build(
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling, friction=friction, softness=softness, phi0=phi0, phi_dot0=phi_dot0)
         return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep))
-    require.instance("scene", scene, Scene)
+    refuse_held(scene, free)
     visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
     spec = compose(scene, setting, visuals)
@@ -119,7 +119,7 @@ def specify(
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling, friction=friction, softness=softness)
         return free_cans.compose(scene, visuals, free, integrator, timestep)
-    require.instance("scene", scene, Scene)
+    refuse_held(scene, free)
     visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
     spec = compose(scene, setting, visuals)
@@ -138,6 +138,17 @@ def refuse_others(**given: object) -> None:
     for name, value in given.items():
         if value != defaults[name]:
             raise ParameterError(f"a standing can has no {name}, got {require.shown(value)}")
+
+
+def refuse_held(scene: Scene, free: bool) -> None:
+    """Check that what is no standing can is a scene, and that it is not to be held: its can always rolls.
+
+    Raises:
+      ParameterError: if not.
+    """
+    require.instance("scene", scene, Scene)
+    if not require.boolean("free", free):
+        raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
 
 
 def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:

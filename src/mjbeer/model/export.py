@@ -18,7 +18,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
 from mjbeer.model import check, looks, setting, state
-from mjbeer.model.build import START, add_start, compile_spec, compose, refuse_others
+from mjbeer.model.build import START, add_start, compile_spec, compose, refuse_held, refuse_others
 from mjbeer.model.engine import library
 from mjbeer.model.free import compose as compose_free
 from mjbeer.model.numbers import mass_unit
@@ -49,7 +49,8 @@ precision, but in single precision, as in mujoco_warp, the solver then ends with
 _WHAT = """
     body_mass body_inertia body_ipos body_iquat jnt_axis dof_armature dof_damping dof_dampingpoly tendon_armature
     tendon_damping tendon_dampingpoly wrap_prm actuator_gainprm actuator_biasprm eq_data eq_solref eq_solimp
-    pair_friction pair_solref pair_solimp key_qpos key_qvel geom_contype geom_conaffinity
+    pair_friction pair_solref pair_solimp key_qpos key_qvel geom_contype geom_conaffinity geom_condim geom_priority
+    geom_friction geom_solref geom_solimp
 """
 _ARRAYS = tuple(_WHAT.split())
 _OPTIONS = ("timestep", "integrator", "gravity", "cone", "impratio", "enableflags", "disableflags")
@@ -95,7 +96,7 @@ def export(
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling, phi0=phi0, phi_dot0=phi_dot0, friction=friction)
     else:
-        require.instance("scene", scene, Scene)
+        refuse_held(scene, free)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
         raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")

@@ -83,7 +83,8 @@ def attach(
     child = _lying(can) if isinstance(can, Scene) else dressed(require.instance("can", can, Standing), visuals=True)
     reasons = _settle(parent.option, can)
     if isinstance(can, Scene):
-        integrator = _KINDS(parent.option.integrator).name.removeprefix("mjINT_")
+        kind = _KINDS(parent.option.integrator).name.removeprefix("mjINT_")
+        integrator = next(each for each in INTEGRATORS if each.upper() == kind)
         child.geom("can").solref = [numbers.stiffest(integrator, parent.option.timestep, contact=True), 1]
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
     root = child.body("can")
@@ -212,7 +213,7 @@ def lie(can: mujoco.MjsBody, load: mujoco.MjsBody, scene: Scene) -> None:
                 "a can without mass and inertia around a sliding load cannot move freely; give it some, as "
                 "can=Can.sheet_metal()"
             )
-        law = scene.damping_law.coefficients if scene.damping_law else (0.0, 0.0, 0.0)
+        law = scene.damping_law.coefficients
         load.add_joint(name="swing", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0], damping=law)
     across = transverse_inertia(shell)
     _inertial(can, shell.mass, 0.0, [across, shell.inertia, across])

@@ -7,6 +7,7 @@ import sys
 import warnings
 from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import matplotlib as mpl
 import numpy as np
@@ -44,13 +45,15 @@ class Carry:
 
     def reel(self) -> Reel:
         """Compute both motions, and return what is needed to draw them."""
-        return Reel(0.0, _MOVE + _AFTER, self.speed, self._draw)
-
-    def _draw(self, times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         cans = {name: standing(modes=modes) for name, (_, modes, _) in _NAMES.items()}
         runs = {name: carry(can, _DISTANCE, _MOVE, _AFTER) for name, can in cans.items()}
+        return Reel(0.0, _MOVE + _AFTER, self.speed, partial(self._draw, cans, runs))
+
+    def _draw(
+        self, cans: dict[str, Standing], runs: dict[str, Carried], times: np.ndarray, width: int, height: int
+    ) -> Generator[np.ndarray]:
         with mpl.rc_context(plots.STYLE):
-            figure = Figure(figsize=(8, 8 * height / width), dpi=width / 8)
+            figure = Figure(figsize=(8, 8 * (height + 0.5) / width), dpi=width / 8)  # a part of a pixel is cut off
             stage, chart = figure.subplots(2, 1, height_ratios=[2.2, 1])
             moving = _scenery(stage, cans)
             for name, run in runs.items():
@@ -58,16 +61,17 @@ class Carry:
             now = chart.axvline(0, **plots.REFERENCE)
             plots.label(chart, "time [s]", "force [N]", xlim=(0, _MOVE + _AFTER))
             chart.legend(loc="upper right", ncols=2)
-            for time in times:
-                for name, (wall, beer) in moving.items():
-                    shell, liquid = _outline(cans[name], runs[name], float(time), _LOWER * (name == "beer"))
-                    wall.set_xy(shell)
-                    beer.set_xy(liquid)
-                now.set_xdata([time, time])
-                stage.set_title(f"Two cans, one gripper: t = {time:.2f} s, {self.speed:g} times as fast as in reality")
-                picture = io.BytesIO()
+        for time in times:
+            for name, (wall, beer) in moving.items():
+                shell, liquid = _outline(cans[name], runs[name], float(time), _LOWER * (name == "beer"))
+                wall.set_xy(shell)
+                beer.set_xy(liquid)
+            now.set_xdata([time, time])
+            stage.set_title(f"Two cans, one gripper: t = {time:.2f} s, {self.speed:g} times as fast as in reality")
+            picture = io.BytesIO()
+            with mpl.rc_context(plots.STYLE):
                 figure.savefig(picture, format="rgba", facecolor="white")
-                yield np.frombuffer(picture.getvalue(), np.uint8).reshape(height, width, 4)[..., :3].copy()
+            yield np.frombuffer(picture.getvalue(), np.uint8).reshape(height, width, 4)[..., :3].copy()
 
 
 def _scenery(stage: Axes, cans: dict[str, Standing]) -> dict[str, tuple[Polygon, Polygon]]:
@@ -110,8 +114,10 @@ def draw_plot(path: pathlib.Path, moves: Sequence[float] = _MOVES) -> None:
         warnings.simplefilter("ignore", LiquidWarning)  # the plot says where
         for name, (_, modes, _) in _NAMES.items():
             runs[name] = [carry(standing(modes=modes), _DISTANCE, move, _AFTER) for move in (*moves, _MOVE)]
-    peaks = {name: np.array([_peak(run, 0.0, move) for run, move in zip(all_, moves, strict=False)])
-             for name, all_ in runs.items()}  # fmt: skip
+    peaks = {
+        name: np.array([_peak(run, 0.0, move) for run, move in zip(found, moves, strict=False)])
+        for name, found in runs.items()
+    }
     after = np.array([_peak(run, move, math.inf) for run, move in zip(runs["beer"], moves, strict=False)])
     highest = np.array([np.abs(run.rise).max() for run in runs["beer"][:-1]])
     title, subtitle = "A can on its gripper", "half a 12-oz can of beer, moved by 0.4 m with the least jerk"

@@ -174,8 +174,8 @@ def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, s
         copy(new, state)
         copy(slopes[_STAGES], slopes[0])
         if kept_times.size > 0:
-            kept_times[row] = time
-            copy(state, kept_states[row])
+            kept_times[row] = min(time, times[-1])  # a fixed step may go beyond the last sample, which is there by now
+            copy(samples[times.size - 1] if time > times[-1] else state, kept_states[row])
             row += 1
         if not fixed:
             growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY

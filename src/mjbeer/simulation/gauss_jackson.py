@@ -261,8 +261,9 @@ def _advance(pointers, views, form, start, sums, history, times, samples, kept, 
             break
         taken += 1
         if kept_times.size > 0:
-            kept_times[row] = (steps - LAG) * step
-            _read(sums, history, end + 1, float(LAG), step, chosen, kept_states[row])
+            kept_times[row] = min((steps - LAG) * step, times[-1])  # the last step may go beyond the last sample
+            back = max(float(LAG), steps - times[-1] / step)
+            _read(sums, history, end + 1, back, step, chosen, kept_states[row])
             row += 1
     for i in range(size):
         for k in range(COUNT):
@@ -298,8 +299,8 @@ def _keep_first(start, sums, history, step, last, chosen, kept):
     copy(start, states[0])
     times[0], row = 0.0, 1
     while row <= _MIDDLE - LAG and times[row - 1] < last:
-        times[row] = row * step
-        _read(sums, history, end, float(_MIDDLE - row), step, chosen, states[row])
+        times[row] = min(row * step, last)
+        _read(sums, history, end, max(float(_MIDDLE - row), _MIDDLE - last / step), step, chosen, states[row])
         row += 1
     return row
 

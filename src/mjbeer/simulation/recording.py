@@ -80,6 +80,7 @@ class SmoothRecorder:
             0.0 if scene.attachment == "sliding" else -scene.mass * can.radius,
         )
         self._found = (*(0.0,) * 6, math.inf, 0.0, math.inf, *(0.0,) * (len(_NAMES) - 9), *(0.0,) * 8)
+        assert vars(self._record).keys() >= set(_NAMES)
 
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps."""
@@ -88,7 +89,7 @@ class SmoothRecorder:
     @property
     def record(self) -> Record:
         """Return the record of the steps so far."""
-        vars(self._record).update(zip(_NAMES, self._found, strict=False))
+        vars(self._record).update(zip(_NAMES, self._found[: len(_NAMES)], strict=True))
         return self._record
 
 

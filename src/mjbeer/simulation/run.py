@@ -28,8 +28,9 @@ from mjbeer.theory.trajectory import Trajectory, distance
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number, so that no rate of rotation has the same phase at the ends of both parts."""
-_idle: dict[Kind, tuple[Stepped, Dynamics | None]] = {}
-"""Models that nobody uses, one of each kind, and how mjbeer's own integrators evaluate them if they have."""
+_idle: dict[Kind, list[tuple[Stepped, Dynamics | None]]] = {}
+"""Models that nobody uses, at most as many of a kind as there were threads, and how mjbeer's own integrators evaluate
+them if they have."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
@@ -86,9 +87,11 @@ class Prepared:
         All that was done in it before is gone: a motion has the same bits as in a new one.
         """
         numbers = _numbers(scene, setting, uneven=False)
-        made, dynamics = _idle.pop(numbers.kind, (None, None))  # popped at once, so that no two threads get it
-        if made is None:
-            made = Stepped(numbers)
+        idle = _idle.setdefault(numbers.kind, [])
+        try:
+            made, dynamics = idle.pop()  # at once, so that no two threads get it
+        except IndexError:
+            made, dynamics = Stepped(numbers), None
         else:
             made.write(numbers)
         if dynamics is not None:
@@ -97,7 +100,7 @@ class Prepared:
         try:
             yield prepared
         finally:
-            _idle[numbers.kind] = made, prepared.dynamics or dynamics
+            idle.append((made, prepared.dynamics or dynamics))
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""

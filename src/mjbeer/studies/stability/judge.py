@@ -61,8 +61,9 @@ _LAST_DIGITS = 4.0
 """The same in roundings of the angle itself, which has few digits left after many turns."""
 _ASIDE = 1e-13
 """Distance of starts that count as the same [rad], relative beyond 1 rad: some hundred roundings."""
-_SAFETY = 2.5
-"""Error estimate of a run over what a second run shows, at least."""
+_SENSITIVE = 2.5
+"""What is trusted over the effect of a start aside, from which on a start is sensitive: the estimate of a run, which is
+3 times what a second run shows or a little more, is then at the edge of what is trusted."""
 _SAMPLES = "steps", "every", "moments"
 """The fields that say which samples are asked for."""
 
@@ -287,7 +288,7 @@ def _is_sensitive(trial: Trial, times: np.ndarray) -> bool:
     except (DivergenceError, *REFUSALS):
         return True
     motion, *beside = (Angles.of(trial.scene, motion, trial.phi0, trial.phi_dot0) for motion in motions)
-    return not max(motion.off(other.phi, other.roll) for other in beside) * _SAFETY <= ERROR
+    return not max(motion.off(other.phi, other.roll) for other in beside) * _SENSITIVE <= ERROR
 
 
 def _verdict(run: Run, motion: Truth, error: float) -> str:

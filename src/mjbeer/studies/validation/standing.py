@@ -61,7 +61,7 @@ def rows() -> Iterator[Row]:
         "half full, held, RK4, 1 ms",
         1e-4,
         "relative",
-        "breaking waves, which take the square of the angle: 4e-6; and the samples at the peaks",
+        "breaking waves, which take the square of the angle: 4e-6; and the rates at crossings between samples",
     )
     for modes in (1, 2, 3, 5):
         can = water(modes)
