@@ -30,7 +30,7 @@ from mjbeer.cli.app import main
 from mjbeer.drawing.viewer import Player
 from mjbeer.exceptions import MjbeerError, ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import free, looks
-from mjbeer.model.export import stand
+from mjbeer.model.export import present_standing
 from mjbeer.model.setting import Setting
 from mjbeer.studies.validation import standing as measured
 from tests.support.scenes import METAL
@@ -206,7 +206,7 @@ WRITTEN = 1e-12
 
 def test_the_template_of_a_standing_can_is_the_model() -> None:
     template = mujoco.MjModel.from_xml_path(str(looks.folder() / "standing.xml"))
-    made = stand(standing(), True, Setting()).compile()
+    made = present_standing(standing(), True, Setting()).compile()
     for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority"):
         if name.startswith("geom"):  # the floor is made last
             pairs = [(getattr(template.geom(each), name[5:]), getattr(made.geom(each), name[5:])) for each in GEOMS]
@@ -271,7 +271,7 @@ def test_the_command_line_exports_a_standing_can(tmp_path: pathlib.Path, capsys:
 
 
 def test_the_viewer_s_model_of_a_standing_can_starts() -> None:
-    player = Player(stand(standing(), True, Setting()).compile())
+    player = Player(present_standing(standing(), True, Setting()).compile())
     player.press(32)
     player.advance(0.01)
     assert player.data.time > 0

@@ -57,3 +57,8 @@ def test_a_surface_that_rises_too_high_warns() -> None:
 def test_what_is_no_move_is_refused(arguments: dict[str, float]) -> None:
     with pytest.raises(ParameterError, match=next(iter(arguments))):
         carry(standing(), **arguments)
+
+
+def test_a_move_without_end_is_refused() -> None:
+    with pytest.raises(ParameterError, match=r"a move has 1e\+06 timesteps at most, got 2e\+12"):
+        carry(standing(), duration=1e9)

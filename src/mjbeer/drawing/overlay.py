@@ -16,7 +16,7 @@ from mjbeer.model import looks
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.named import in_words
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["phi", "paths", "forces", "ghost", "skid"]
@@ -165,7 +165,7 @@ class Marks:
         until = np.searchsorted(self.fine, time, side="right")
         (u, _, roll, lift), radius = self.positions.T, self.trajectory.scene.can.radius
         slip = np.gradient(u - radius * roll, self.fine)
-        fall = math.sqrt(2 * (self.trajectory.scene.gravity or strip.EARTH) * radius)
+        fall = math.sqrt(2 * (self.trajectory.scene.gravity or GRAVITY) * radius)
         slips = (np.abs(slip) > _SLOW * fall) & (lift < _SLOW * radius)
         foot = np.stack([np.where(slips, u / radius, np.nan), np.full(len(u), -WALL)], axis=1)[:until]
         pen.line(foot, 0.12, _SKID)

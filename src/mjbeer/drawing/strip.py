@@ -18,7 +18,7 @@ from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import solution
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
 _MUJOCO = (0.0, 0.447, 0.698)
@@ -33,8 +33,6 @@ _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
 }
-EARTH = 9.81
-"""Gravity on earth [m/s^2]."""
 _INTERVALS = 50
 """Number of intervals of a motion over which forces are averaged."""
 _SMOOTH = 1500
@@ -143,7 +141,7 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
 
 def weight(scene: Scene) -> float:
     """Return the weight of can and load [N], in which forces are drawn; without gravity, that on earth."""
-    return scene.mass * (scene.gravity or EARTH)
+    return scene.mass * (scene.gravity or GRAVITY)
 
 
 def _ahead(scene: Scene, motion: Coordinates) -> np.ndarray:

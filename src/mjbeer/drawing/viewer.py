@@ -9,7 +9,7 @@ from mjbeer import require
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import RenderingError, UnsupportedError
 from mjbeer.model.build import START, compile_spec, refuse_others
-from mjbeer.model.export import CAMERA, present, stand
+from mjbeer.model.export import CAMERA, present, present_standing
 from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting, supported
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
@@ -107,7 +107,7 @@ def view(
     require.positive("speed", speed)
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling or "reduced", phi0=phi0, phi_dot0=phi_dot0, friction=friction)
-        model = stand(scene, True, Setting(integrator=integrator, timestep=timestep)).compile()
+        model = present_standing(scene, True, Setting(integrator=integrator, timestep=timestep)).compile()
     else:
         rolling = rolling or ("equality" if supported(scene, "equality") else "reduced")
         setting = Setting(rolling, integrator, timestep, friction=friction)

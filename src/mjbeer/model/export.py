@@ -113,7 +113,7 @@ def export(
         )
     # The comment replaces the template's.
     if isinstance(scene, Standing):
-        spec = stand(scene, free, made)
+        spec = present_standing(scene, free, made)
         spec.comment = f" Written by mjbeer: {scene!r}. "
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
@@ -156,7 +156,7 @@ def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco
     return spec
 
 
-def stand(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
+def present_standing(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
     """Return the specification of a standing can to be shown; if it is free, with its keyframes.
 
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, and "fall" leans beyond where cans tip.

@@ -6,9 +6,14 @@ import mujoco
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import warn_of_liquid
+from mjbeer.exceptions import ParameterError, warn_of_liquid
 from mjbeer.model.build import build
 from mjbeer.theory.standing import INDICATIVE, Standing
+
+_MOST_STEPS = 1_000_000
+"""Largest number of timesteps of a move and of what follows: a minute of computing."""
+_FORCE_X = 3
+"""Place of the level force in MuJoCo's force of a body on its parent: the moment comes first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,14 +43,16 @@ def carry(
     A `LiquidWarning` says where the surface rises by more than 0.3 radii: linear theory is no picture of it then.
 
     Raises:
-      ParameterError: if a number is not greater than 0.
+      ParameterError: if a number is not greater than 0, the timestep is not allowed, or there are too many of them.
     """
     require.instance("can", can, Standing)
     for name, value, unit in (("distance", distance, "m"), ("duration", duration, "s"), ("after", after, "s")):
         require.positive(name, value, unit)
+    if (steps := (duration + after) / require.within("timestep", timestep, *require.TIMESTEP, "s")) > _MOST_STEPS:
+        raise ParameterError(f"a move has {_MOST_STEPS:g} timesteps at most, got {steps:.3g}")
     model = build(can, free=False, timestep=timestep)
     data, body = mujoco.MjData(model), model.body("can").id
-    time = model.opt.timestep * np.arange(round((duration + after) / timestep) + 1)
+    time = timestep * np.arange(round((duration + after) / timestep) + 1)
     place, acceleration = minimum_jerk(time, distance, duration)
     _, pushed = minimum_jerk(time + timestep / 2, distance, duration)  # a step has the gravity of its middle
     force, rise = np.empty_like(time), np.zeros_like(time)
@@ -53,7 +60,7 @@ def carry(
         model.opt.gravity[0] = -now
         mujoco.mj_forward(model, data)
         mujoco.mj_rnePostConstraint(model, data)
-        force[step] = data.cfrc_int[body, 3]
+        force[step] = data.cfrc_int[body, _FORCE_X]
         rise[step] = sum(data.sensor(f"slosh{mode}_rise").data[0] for mode in range(1, can.modes + 1))
         model.opt.gravity[0] = -pushed[step]
         mujoco.mj_step(model, data)
