@@ -14,7 +14,7 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS, NAMES, centrifugal, liquid_in
+from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
 from mjbeer.theory.load import segment
 from mjbeer.theory.named import frozen, in_degrees, in_words, sliding
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
@@ -106,16 +106,6 @@ def _simulated(incline: float, friction: float = 1.0, drag: float = 0.0) -> tupl
     scenes = [water_in(float(volume), incline, friction, drag) for volume in _VOLUMES]
     runs = [let_go(scene, times_of(scene)) for scene in scenes]
     return np.array([over_first_metre(run) for run in runs]), np.array([lump_until(run) > _WAY for run in runs])
-
-
-def film_holds(incline: float) -> float:
-    """Return the volume [mL] of water that a film on the wall can hold at the end of the first metre.
-
-    There the can has the speed that it would have with half of g sin(alpha), sqrt(g sin(alpha) 1 m).
-    """
-    water, gravity = LIQUIDS["water"], sliding().gravity
-    speed = math.sqrt(gravity * math.sin(incline) * _WAY)
-    return 1e6 * FILM_LOAD * math.sqrt(water.viscosity * speed / gravity) * CAN.radius * CAN.length
 
 
 def draw_first_metre(path: pathlib.Path) -> None:

@@ -71,7 +71,9 @@ _LOOSE = 3e-5
 """Largest tolerance for which Gauss-Jackson is tried; from there on its least evaluations are more than DOP853's."""
 _FINER = 1.15
 """Timestep of one run of Gauss-Jackson over that of the next."""
-_GAIN = _FINER**12
+_ORDER = 12
+"""Power of the timestep with which an error of Gauss-Jackson falls, on the safe side of its order, 13."""
+_GAIN = _FINER**_ORDER
 """Error of one run of Gauss-Jackson over that of the next."""
 _TRIES = 3
 """Largest number of finer runs of Gauss-Jackson."""
@@ -159,7 +161,7 @@ class Solver:
                 if _SAFETY_BY_CHANCE * distance <= _GAIN * tolerance:  # the next run would reach it
                     coarse, safety, nudged = fine, _SAFETY_BY_CHANCE, self._rounded and not nudged
                 else:
-                    coarse, timestep = None, timestep * (tolerance / (_SAFETY_BY_CHANCE * distance)) ** (1 / 12)
+                    coarse, timestep = None, timestep * (tolerance / (_SAFETY_BY_CHANCE * distance)) ** (1 / _ORDER)
         except DivergenceError:
             pass
         return None

@@ -27,7 +27,7 @@ DEPTHS = 0.05, 50.0
 MOST_MODES = 5
 _SHAKING = 1e-6, 1e6
 """Frequencies that are allowed [rad/s]."""
-_SERIES = 4000
+SERIES = 4000
 """Number of terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13."""
 _THIN = 0.1
 """Largest thickness of the layer on the walls, sqrt(2 nu/omega) over R, with which it counts as thin."""
@@ -122,7 +122,7 @@ class Standing:
     @property
     def held_inertia(self) -> float:
         """Return the moment of inertia about a level axis of the liquid under a lid on its surface, I_F [kg m^2]."""
-        radius, xi = self.can.radius, _roots(_SERIES)
+        radius, xi = self.can.radius, _roots(SERIES)
         series = float(np.sum(np.tanh(xi * self.height / (2 * radius)) / (xi**3 * (xi**2 - 1))))
         return self.mass * (self.height**2 / 12 - 0.75 * radius**2 + 16 * radius**3 / self.height * series)
 
@@ -175,7 +175,7 @@ class Standing:
         for each in np.atleast_1d(omega):
             require.within("omega", each, *_SHAKING, "rad/s")
         omega = np.asarray(omega, float)
-        series = self._modes(_SERIES)
+        series = self._modes(SERIES)
         square = omega[..., None] ** 2
         share = series.mass * square / (self.gravity / series.length - square)
         arm = series.bob + self.gravity / square
@@ -190,7 +190,7 @@ class Standing:
         """
         if self.modes == 0:
             return np.array([self.mass, 0.0, self.solid_inertia])
-        left = Mode(*(each[self.modes :] for each in self._modes(_SERIES)))
+        left = Mode(*(each[self.modes :] for each in self._modes(SERIES)))
         pivot = left.bob + left.length
         second = self.held_inertia + np.sum(left.mass * (pivot**2 - left.bob**2))
         return np.array([self.mass, np.sum(left.mass * left.length), second])
@@ -198,8 +198,8 @@ class Standing:
     def _count(self, count: int | None) -> int:
         if count is None:
             return self.modes
-        if not _is_count(count) or not 0 <= count <= _SERIES:
-            raise ParameterError(f"count must be a number of modes up to {_SERIES}, got {require.shown(count)}")
+        if not _is_count(count) or not 0 <= count <= SERIES:
+            raise ParameterError(f"count must be a number of modes up to {SERIES}, got {require.shown(count)}")
         return int(count)
 
     def _modes(self, count: int | None) -> Mode:
