@@ -72,9 +72,9 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
 
 
 def test_no_clock_is_read_while_stepping_and_it_is_put_back() -> None:
-    model, velocity = build(frozen()), mujoco.mjtTimer.mjTIMER_VELOCITY
+    model, velocity = build(sliding(can=Can.sheet_metal(), damping=1e-3)), mujoco.mjtTimer.mjTIMER_VELOCITY
     dynamics, seen = Dynamics(model), mujoco.MjData(model)
-    Integrator(model, dynamics).run(np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.1)
+    Integrator(model, dynamics).run(np.array([0.0, 1.0, 0.0, 0.0]), np.array([0.0, 1.0]), 0.1)
     assert dynamics.data.timer[velocity].number > 100
     assert dynamics.data.timer[velocity].duration == 0
     mujoco.mj_forward(model, seen)

@@ -62,91 +62,99 @@ _NAMES = (
     "turned", "rolled", "path", "fastest", "swing", "axis_drift", "lowest_normal", "needed", "fails_at", "_kinetic",
     "_energy_change", "_swing_change", "_swing_drift", "_largest_swing_drift",
 )  # fmt: skip
-"""What `_extremes` finds, by the names of `Record`."""
+"""The first numbers that `see` finds, by the names of `Record`."""
+(
+    TURNED, ROLLED, PATH, FASTEST, SWING, AXIS, LOWEST, NEEDED, FAILS_AT, KINETIC, ENERGY_CHANGE, SWING_CHANGE, DRIFT,
+    LARGEST_DRIFT, PHI0, U0, SPEED0, SWING0, ENERGY0, LAST_PHI, LAST_MARGIN, LAST_TIME,
+) = range(22)  # fmt: skip
+"""The places of all of them. What is not in a record is phi, u, the speed of the axis less its swing, J phi_dot^2 / 2
+and the energy at the start; and the last phi, margin of the forces and time."""
 
 
 class SmoothRecorder:
-    """The record of a run of a reduced model without damping, as `Recorder` makes it, in compiled code."""
+    """The record of a run of a reduced model without damping, as `Recorder` makes it, for compiled code."""
 
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
         self._record, form, can, load = Record(scene, friction), scene.oscillator, scene.can, scene.load
-        mass, turning = scene.effective_mass, can.inertia / can.radius**2
-        self._numbers = (
+        mass, turning, sliding = scene.effective_mass, can.inertia / can.radius**2, scene.attachment == "sliding"
+        numbers = (
             *(form.base, form.chord, form.swing, form.slope, form.depth, form.bottom),
             *(can.radius, can.effective_mass, load.mass, load.offset, load.inertia, scene.gravity, scene.incline),
             *(scene.mass, mass, scene.drive, friction),
             # Friction over drive, over the force of the swinging load, and over phi_ddot.
-            *((turning / mass,) * 2 if scene.attachment == "sliding" else (1.0, 1.0)),
-            0.0 if scene.attachment == "sliding" else -scene.mass * can.radius,
+            *((turning / mass, turning / mass, 0.0) if sliding else (1.0, 1.0, -scene.mass * can.radius)),
         )
-        self._found = (*(0.0,) * 6, math.inf, 0.0, math.inf, *(0.0,) * (len(_NAMES) - 9), *(0.0,) * 8)
-        assert vars(self._record).keys() >= set(_NAMES)
-
-    def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
-        """Add the next steps."""
-        self._found = _extremes(self._numbers, times, states, self._found)
+        found = np.zeros(LAST_TIME + 1)
+        found[LOWEST] = found[FAILS_AT] = math.inf
+        self.kernel = numbers, found
+        """The numbers of the scene, and what `see` has found so far."""
 
     @property
     def record(self) -> Record:
         """Return the record of the steps so far."""
-        vars(self._record).update(zip(_NAMES, self._found[: len(_NAMES)], strict=True))
+        vars(self._record).update(zip(_NAMES, self.kernel[1].tolist(), strict=False))
         return self._record
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _extremes(numbers, times, states, found):
-    """Return what was `found` so far with more steps, as `Record.add_conserved` and `Record.add_forces` find it.
-
-    It has the values of `_NAMES` and what the next call needs: phi, u, the speed of the axis without that of the load,
-    J phi_dot^2 / 2 and the energy at the start, and the last phi, margin of the forces and time, 0 at the start.
-    """
+@njit(cache=True, error_model="numpy")
+def see(numbers, found, time, state):
+    """Add a state at a time [s] to what was `found`, as `Record.add_conserved` and `Record.add_forces` do."""
     base, chord, swing, slope, depth, bottom = numbers[:6]
     radius, can_mass, load_mass, offset, load_inertia, gravity, incline, all_mass, mass, drive = numbers[6:16]
-    friction, by_drive, by_swing, by_turning = numbers[16:]
-    turned, rolled, path, fastest, swing_most, axis, lowest, needed, fails_at, kinetic_most = found[:10]
-    energy_change, swing_change, drift, drift_most = found[10:14]
-    phi0, u0, speed0, swing0, energy0, last_phi, last_margin, last_time = found[14:]
-    size, moment, arm = states.shape[1] // 2, load_mass * offset, load_mass * offset / mass
+    size, moment, arm = state.size // 2, load_mass * offset, load_mass * offset / mass
     sin_incline, cos_incline = math.sin(incline), math.cos(incline)
-    sin_bottom, cos_bottom = math.sin(bottom), math.cos(bottom)
-    weight = all_mass * gravity * cos_incline
-    for row in range(times.size):
-        time, phi, rate = times[row], states[row, size - 1], states[row, 2 * size - 1]
-        u, speed = (states[row, 0], states[row, 2]) if size > 1 else (radius * phi, radius * rate)
-        sin, cos = math.sin(phi), math.cos(phi)
-        inertia = base + chord * (1 - cos) / 2 + swing * sin * sin
-        along, across = speed - offset * cos * rate, offset * sin * rate
-        kinetic = can_mass * speed**2 + load_mass * (along**2 + across**2) + load_inertia * rate**2
-        kinetic /= 2
-        energy = kinetic - gravity * (all_mass * u * sin_incline + moment * (cos_incline * cos - sin_incline * sin))
-        swings = inertia * rate**2 / 2
-        if time == 0.0:
-            phi0, u0, speed0, swing0, energy0, last_phi = phi, u, speed - arm * cos * rate, swings, energy, phi
-        turned, rolled = max(turned, abs(phi - phi0)), max(rolled, abs(u - u0))
-        fastest, swing_most, kinetic_most = max(fastest, abs(rate)), max(swing_most, swings), max(kinetic_most, kinetic)
-        covered = abs(phi - last_phi)
-        path += covered
-        drop = slope * (phi - phi0) - 2 * depth * math.sin((phi + phi0) / 2 - bottom) * math.sin((phi - phi0) / 2)
-        gained = swings - swing0 - drop
-        energy_change, swing_change = max(energy_change, abs(energy - energy0)), max(swing_change, abs(gained))
-        drift += gained * covered
-        drift_most = max(drift_most, abs(drift))
-        if size > 1:
-            moved = u - arm * sin - (u0 - arm * math.sin(phi0))
-            axis = max(axis, abs(moved - speed0 * time - drive / mass * time**2 / 2))
-        bend = chord * sin / 2 + 2 * swing * sin * cos
-        gain = (slope - depth * (sin * cos_bottom - cos * sin_bottom) - bend * rate**2 / 2) / inertia
-        normal = weight + moment * (sin * gain + cos * rate**2)
-        pull = by_drive * drive + by_swing * moment * (cos * gain - sin * rate**2) + by_turning * gain
-        lowest, needed = min(lowest, normal), max(needed, abs(pull) / normal if normal > 0 else math.inf)
-        margin = normal
-        if friction < math.inf:
-            margin = min(margin, friction * normal - abs(pull))
-        if margin < 0 and fails_at == math.inf:
-            fails_at = time
-            if time > 0:
-                fails_at = last_time + last_margin / (last_margin - margin) * (time - last_time)
-        last_phi, last_margin, last_time = phi, margin, time
-    extremes = turned, rolled, path, fastest, swing_most, axis, lowest, needed, fails_at, kinetic_most
-    drifts = energy_change, swing_change, drift, drift_most
-    return extremes + drifts + (phi0, u0, speed0, swing0, energy0, last_phi, last_margin, last_time)
+    phi, rate = state[size - 1], state[2 * size - 1]
+    u, speed = (state[0], state[2]) if size > 1 else (radius * phi, radius * rate)
+    sin, cos = math.sin(phi), math.cos(phi)
+    inertia, square = base + chord * (1 - cos) / 2 + swing * sin * sin, rate * rate
+    along, across = speed - offset * cos * rate, offset * sin * rate
+    kinetic = (can_mass * speed * speed + load_mass * (along * along + across * across) + load_inertia * square) / 2
+    energy = kinetic - gravity * (all_mass * u * sin_incline + moment * (cos_incline * cos - sin_incline * sin))
+    swings = inertia * square / 2
+    if time == 0.0:
+        found[PHI0], found[U0], found[SPEED0] = phi, u, speed - arm * cos * rate
+        found[SWING0], found[ENERGY0], found[LAST_PHI] = swings, energy, phi
+    phi0 = found[PHI0]
+    found[TURNED], found[ROLLED] = max(found[TURNED], abs(phi - phi0)), max(found[ROLLED], abs(u - found[U0]))
+    found[FASTEST], found[SWING] = max(found[FASTEST], abs(rate)), max(found[SWING], swings)
+    found[KINETIC] = max(found[KINETIC], kinetic)
+    covered = abs(phi - found[LAST_PHI])
+    found[PATH] += covered
+    drop = slope * (phi - phi0) - 2 * depth * math.sin((phi + phi0) / 2 - bottom) * math.sin((phi - phi0) / 2)
+    gained = swings - found[SWING0] - drop
+    found[ENERGY_CHANGE] = max(found[ENERGY_CHANGE], abs(energy - found[ENERGY0]))
+    found[SWING_CHANGE] = max(found[SWING_CHANGE], abs(gained))
+    found[DRIFT] += gained * covered
+    found[LARGEST_DRIFT] = max(found[LARGEST_DRIFT], abs(found[DRIFT]))
+    if size > 1:
+        moved = u - arm * sin - (found[U0] - arm * math.sin(phi0))
+        found[AXIS] = max(found[AXIS], abs(moved - time * (found[SPEED0] + drive / mass * time / 2)))
+    normal, pull, margin = forces(numbers, phi, rate)
+    found[LOWEST] = min(found[LOWEST], normal)
+    found[NEEDED] = max(found[NEEDED], pull / normal if normal > 0 else math.inf)
+    if margin < 0 and found[FAILS_AT] == math.inf:
+        share = found[LAST_MARGIN] / (found[LAST_MARGIN] - margin) if time > 0 else 0.0
+        found[FAILS_AT] = found[LAST_TIME] + share * (time - found[LAST_TIME])
+    found[LAST_PHI], found[LAST_MARGIN], found[LAST_TIME] = phi, margin, time
+
+
+@njit(cache=True, error_model="numpy")
+def forces(numbers, phi, rate):
+    """Return N and |F| [N] that rolling needs at a place and a rate, and the less of N and of what F leaves to slipping."""
+    base, chord, swing, slope, depth, bottom = numbers[:6]
+    load_mass, offset, gravity, incline, all_mass, drive = (
+        numbers[8],
+        numbers[9],
+        numbers[11],
+        numbers[12],
+        numbers[13],
+        numbers[15],
+    )
+    friction, by_drive, by_swing, by_turning = numbers[16:]
+    sin, cos, square, moment = math.sin(phi), math.cos(phi), rate * rate, load_mass * offset
+    bend = chord * sin / 2 + 2 * swing * sin * cos
+    torque = slope - depth * math.sin(phi - bottom) - bend * square / 2
+    gain = torque / (base + chord * (1 - cos) / 2 + swing * sin * sin)
+    normal = all_mass * gravity * math.cos(incline) + moment * (sin * gain + cos * square)
+    pull = abs(by_drive * drive + by_swing * moment * (cos * gain - sin * square) + by_turning * gain)
+    return normal, pull, min(normal, friction * normal - pull) if friction < math.inf else normal

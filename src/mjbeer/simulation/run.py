@@ -17,7 +17,7 @@ from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, OWN, TUNED, Setting
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.recording import Recorder
+from mjbeer.simulation.recording import Recorder, SmoothRecorder
 from mjbeer.simulation.stepping import Dynamics, Solution, Stepper
 from mjbeer.simulation.tolerance import Solver
 from mjbeer.theory.equations import Coordinates
@@ -119,6 +119,9 @@ class Prepared:
         if isinstance(method, Solver):
             assert setting.tolerance is not None
             return method.run(start, times, setting.tolerance, math.inf if friction is None else friction)
+        if isinstance(method, GaussJackson):
+            smooth = None if friction is None else SmoothRecorder(self.scene, friction)
+            return Solution(method.run(start, times, self._step, smooth), record=smooth.record if smooth else None)
         within = isinstance(method, Integrator)
         recorder = None if friction is None else Recorder(self.model, self.scene, friction, within)
         if isinstance(method, Stepper):

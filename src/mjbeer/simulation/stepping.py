@@ -34,9 +34,11 @@ _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_f
 """What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
 the same numbers to the last bit, in three quarters of the time."""
 _WITHOUT_PASSIVE = (
-    "mj_kinematics", "mj_comPos", "mj_crb", "mj_factorM", "mj_comVel", "mj_rne", "mj_fwdAcceleration",
+    "mj_kinematics", "mj_comPos", "mj_tendon", "mj_crb", "mj_tendonArmature", "mj_factorM", "mj_comVel", "mj_rne",
+    "mj_tendonBias", "mj_fwdAcceleration",
 )  # fmt: skip
-"""What that leaves of these in a model that has no tendons and no damping either: another quarter less."""
+"""What that leaves of these in a model that has no damping either: another quarter less. Without tendons, those of the
+tendons are left out, too."""
 _COMPILING = "mjbeer: compiling this integrator for this machine, once: up to 4 s"
 
 
@@ -131,12 +133,14 @@ class Dynamics:
         smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not self._actuated or constant)
         needed, names = np.ones(model.nq, np.bool_), ("mj_forward",)
         if smooth:
-            names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER and not model.ntendon else _SMOOTH
+            names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER else _SMOOTH
+            names = tuple(name for name in names if model.ntendon or "endon" not in name)
             if "slide" in (joints := places(model)):
                 # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
                 # from positions in the world, whose rounding would hide a short arm far from the origin.
                 needed[joints["slide"]] = False
-        functions, bias = np.array([address(name) for name in names]), data.qfrc_bias.__array_interface__["data"][0]
+        bias = data.qfrc_bias.__array_interface__["data"][0]
+        functions = np.array([(address(name), bias if name == "mj_tendonBias" else 0) for name in names])
         views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
         self.kernel = (functions, model._address, data._address, bias), views
         """Addresses and views by which kernels evaluate the accelerations, as `slope` takes them."""
@@ -155,8 +159,9 @@ class Dynamics:
 def slope(pointers, views, state, out):
     """Write the time derivative of a state to `out`.
 
-    `pointers` are the addresses of the functions that compute an acceleration, of model and data, and of the forces in
-    which mj_rne puts its result; `views` are qpos, qvel and acceleration in the data, and which of qpos are needed.
+    `pointers` are the addresses of the functions that compute an acceleration, with the third argument of each, of
+    model and data, and of the forces in which mj_rne puts its result; `views` are qpos, qvel and acceleration in the
+    data, and which of qpos are needed.
     """
     functions, model, data, bias = pointers
     qpos, qvel, qacc, needed = views
@@ -164,8 +169,8 @@ def slope(pointers, views, state, out):
     for i in range(n):
         qpos[i] = state[i] if needed[i] else 0.0
         qvel[i] = state[n + i]
-    for function in functions:
-        call(function, model, data, 0, bias)
+    for k in range(len(functions)):
+        call(functions[k, 0], model, data, functions[k, 1], bias)
     for i in range(n):
         out[i] = qvel[i]
         out[n + i] = qacc[i]
