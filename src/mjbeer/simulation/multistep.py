@@ -51,7 +51,7 @@ _PUNCTUAL, _ATTEMPTS = 3e-5, 5
 the most attempts."""
 
 Form = namedtuple("Form", "base uneven turns slope along across share height period push digits scale")
-Form.__doc__ = """J = base + uneven sin^2(turns phi), -V' = slope + along cos(phi) - across sin(phi), and the steps' numbers.
+Form.__doc__ = """J = base + uneven sin^2(turns phi), -V' = slope + along cos(phi) - across sin(phi), and more.
 
 The `share` of the swing in u is u's change with sin(phi) [m]. J vanishes at a complex angle of some `height` [rad], in
 each `period` [rad]. The `push` [rad/s^2] is added to phi_ddot. `digits`, half of ln(1/precision), are those to which

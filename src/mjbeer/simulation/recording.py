@@ -140,7 +140,7 @@ def see(numbers, found, time, state):
 
 @njit(cache=True, error_model="numpy")
 def forces(numbers, phi, rate):
-    """Return N and |F| [N] that rolling needs at a place and a rate, and the less of N and of what F leaves to slipping."""
+    """Return N and |F| [N] that rolling needs, and the lesser of N and what F leaves until the can would slip."""
     base, chord, swing, slope, depth, bottom = numbers[:6]
     load_mass, offset, gravity, incline, all_mass, drive = (
         numbers[8],
