@@ -10,7 +10,7 @@ from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
 from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.stepping import Dynamics, slope
+from mjbeer.simulation.kernels import Dynamics, slope
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 

@@ -12,8 +12,8 @@ from mjbeer.model.build import build
 from mjbeer.model.state import read, start
 from mjbeer.simulation import tolerance
 from mjbeer.simulation.gauss_jackson import GaussJackson
+from mjbeer.simulation.kernels import SmoothRecorder
 from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, weights
-from mjbeer.simulation.recording import SmoothRecorder
 from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance

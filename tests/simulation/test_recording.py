@@ -9,8 +9,9 @@ from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.model.build import build
 from mjbeer.model.state import start
 from mjbeer.simulation.gauss_jackson import GaussJackson, _by_theory
+from mjbeer.simulation.kernels import _NAMES, SmoothRecorder, see
 from mjbeer.simulation.multistep import form, pace
-from mjbeer.simulation.recording import _NAMES, Recorder, SmoothRecorder, see
+from mjbeer.simulation.stepping import Recorder
 from mjbeer.simulation.tolerance import _longest
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, SCENES

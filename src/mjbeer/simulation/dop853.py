@@ -12,18 +12,8 @@ import numpy as np
 from numba import njit
 
 from mjbeer.model.setting import DOP853
-from mjbeer.simulation.stepping import (
-    BLOCK_END,
-    DONE,
-    LARGEST,
-    NOT_FINITE,
-    TOO_SMALL,
-    Dynamics,
-    Watcher,
-    copy,
-    drive,
-    slope,
-)
+from mjbeer.simulation.kernels import BLOCK_END, DONE, NOT_FINITE, TOO_SMALL, Dynamics, copy, drive, slope
+from mjbeer.simulation.stepping import LARGEST, Watcher
 
 _ROWS = 16
 """Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""

@@ -27,9 +27,19 @@ from numba import njit
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.setting import GAUSS_JACKSON
+from mjbeer.simulation.kernels import (
+    BLOCK_END,
+    DONE,
+    NOT_FINITE,
+    Dynamics,
+    SmoothRecorder,
+    copy,
+    drive,
+    see,
+    slope,
+)
 from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, add, form, pace, read_off, weights
-from mjbeer.simulation.recording import SmoothRecorder, see
-from mjbeer.simulation.stepping import BLOCK_END, DONE, LARGEST, NOT_FINITE, Dynamics, copy, drive, slope
+from mjbeer.simulation.stepping import LARGEST
 from mjbeer.theory.scene import Scene
 
 _MIDDLE = COUNT // 2

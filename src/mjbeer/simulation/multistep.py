@@ -23,7 +23,7 @@ from numba import njit
 from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 
-from mjbeer.simulation.recording import FAILS_AT, forces, see
+from mjbeer.simulation.kernels import FAILS_AT, forces, see
 from mjbeer.theory.scene import Scene
 
 COUNT = 13

@@ -1,11 +1,13 @@
 """A scene set up to be stepped, a simulated motion with the record of all its steps, and its error by a second run."""
 
 import math
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from mjbeer import require
@@ -15,22 +17,23 @@ from mjbeer.model.build import Stepped
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, OWN, TUNED, Setting
-from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.recording import Recorder, SmoothRecorder
-from mjbeer.simulation.stepping import Dynamics, Solution, Stepper
-from mjbeer.simulation.tolerance import Solver
+from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, doubts
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
+if TYPE_CHECKING:
+    from mjbeer.simulation.kernels import Dynamics
+
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number, so that no rate of rotation has the same phase at the ends of both parts."""
-_idle: dict[Kind, list[tuple[Stepped, Dynamics | None]]] = {}
+_idle: dict[Kind, list[tuple[Stepped, "Dynamics | None"]]] = {}
 """Models that nobody uses, at most as many of a kind as there were threads, and how mjbeer's own integrators evaluate
 them if they have."""
+_Solve = Callable[[np.ndarray, np.ndarray, float | None], Solution]
+"""`Prepared.solve`, by mjbeer's own integrators."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
@@ -61,23 +64,20 @@ class Prepared:
         setting: Setting,
         uneven: bool = False,
         made: Stepped | None = None,
-        dynamics: Dynamics | None = None,
+        dynamics: "Dynamics | None" = None,
     ) -> None:
         made, self.dynamics = made or Stepped(_numbers(scene, setting, uneven)), dynamics
-        self.scene, self.setting, self.model, data = scene, setting, made.model, made.data
-        self._step = setting.timestep * (_GREATER if uneven else 1)
-        self._method: Solver | Integrator | GaussJackson | Stepper
-        if setting.tolerance is not None or setting.integrator in OWN:
-            self.dynamics = dynamics = dynamics or Dynamics(self.model, data)
-            if setting.tolerance is not None:
-                self._method = Solver(self.model, scene, dynamics)
-            elif setting.integrator == DOP853:
-                self._method = Integrator(self.model, dynamics)
-            else:
-                self._method = GaussJackson(self.model, scene, dynamics)
-        else:
+        self.scene, self.setting, self.model = scene, setting, made.model
+        self._method: Stepper | _Solve
+        if setting.tolerance is None and setting.integrator not in OWN:
             self.model.opt.timestep = setting.timestep
-            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), data)
+            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), made.data)
+        else:
+            from mjbeer.simulation.kernels import Dynamics  # only here, as in `_own`
+
+            self.dynamics = dynamics or Dynamics(self.model, made.data)
+            timestep = setting.timestep * (_GREATER if uneven else 1)
+            self._method = _own(self.model, scene, setting, timestep, self.dynamics)
 
     @classmethod
     @contextmanager
@@ -115,24 +115,44 @@ class Prepared:
           DivergenceError: if the motion stops being finite.
           ToleranceError: if the tolerance is not reached.
         """
-        method, setting = self._method, self.setting
-        if isinstance(method, Solver):
-            assert setting.tolerance is not None
-            return method.run(start, times, setting.tolerance, math.inf if friction is None else friction)
-        if isinstance(method, GaussJackson):
-            smooth = None if friction is None else SmoothRecorder(self.scene, friction)
-            return Solution(method.run(start, times, self._step, smooth), record=smooth.record if smooth else None)
-        within = isinstance(method, Integrator)
-        recorder = None if friction is None else Recorder(self.model, self.scene, friction, within)
-        if isinstance(method, Stepper):
-            states = method.run(start, np.rint(times / setting.timestep).astype(np.int64), recorder)
-        else:
-            states = method.run(start, times, self._step, watch=recorder)
+        method = self._method
+        if not isinstance(method, Stepper):
+            return method(start, times, friction)
+        recorder = None if friction is None else Recorder(self.model, self.scene, friction)
+        states = method.run(start, np.rint(times / self.setting.timestep).astype(np.int64), recorder)
         return Solution(states, record=recorder.record if recorder else None)
 
     def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
         """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
         return state.read(self.model, self.scene, states=states, times=times)
+
+
+def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float, dynamics: "Dynamics") -> _Solve:
+    """Return how mjbeer's own integrators solve a model to a tolerance, or with a `timestep` [s]."""
+    # Imported only here: numba, which compiles them, takes longer to import than all else together.
+    from mjbeer.simulation.dop853 import Integrator
+    from mjbeer.simulation.gauss_jackson import GaussJackson
+    from mjbeer.simulation.kernels import SmoothRecorder
+    from mjbeer.simulation.tolerance import Solver
+
+    if (tolerance := setting.tolerance) is not None:
+        solver = Solver(model, scene, dynamics)
+        return lambda start, times, friction: solver.run(
+            start, times, tolerance, math.inf if friction is None else friction
+        )
+    method = Integrator(model, dynamics) if setting.integrator == DOP853 else GaussJackson(model, scene, dynamics)
+
+    def solve(start: np.ndarray, times: np.ndarray, friction: float | None) -> Solution:
+        recorder: Recorder | SmoothRecorder | None = None
+        if isinstance(method, Integrator):
+            recorder = None if friction is None else Recorder(model, scene, friction, within=True)
+            states = method.run(start, times, timestep, watch=recorder)
+        else:
+            recorder = None if friction is None else SmoothRecorder(scene, friction)
+            states = method.run(start, times, timestep, recorder)
+        return Solution(states, record=recorder.record if recorder else None)
+
+    return solve
 
 
 def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
@@ -274,8 +294,9 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     along, samples = times, slice(None)
     if setting.tolerance is None:
         last = max(1, int(times[-1] / setting.timestep))
-        spread = setting.timestep * np.unique(np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64))
-        along = np.union1d(times, spread[spread <= times[-1]])
+        spread = setting.timestep * np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64)
+        along = np.sort(np.concatenate([times, spread[spread <= times[-1]]]))
+        along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
         if len(along) > len(times):
             samples = np.searchsorted(along, times)
     with quiet(), Prepared.borrowed(scene, setting) as prepared:

@@ -1,26 +1,21 @@
-"""What all steppers share, and the one that steps a model with MuJoCo's own integrators, in compiled code."""
+"""MuJoCo's own integrators, stepping a model, and the record of all steps of a run, made while it is stepped."""
 
-import ctypes
-from collections.abc import Callable, Generator
-from contextlib import contextmanager, nullcontext
-from copy import copy as copy_model
+import math
+from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
-from typing import Any
 
 import mujoco
 import numpy as np
-from llvmlite import ir
-from numba import njit, types
-from numba.core import event
-from numba.extending import intrinsic
+from mujoco.rollout import rollout
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.engine import address, quiet, untimed
-from mjbeer.model.state import places
+from mjbeer.model.engine import quiet, untimed
+from mjbeer.model.state import read
+from mjbeer.theory.equations import accelerations
 from mjbeer.theory.record import Record
+from mjbeer.theory.scene import Scene
 
-DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
-"""The statuses with which a kernel can end."""
 LARGEST = 1e10
 """Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
 Watcher = Callable[[np.ndarray, np.ndarray], None]
@@ -28,18 +23,8 @@ Watcher = Callable[[np.ndarray, np.ndarray], None]
 _BLOCK = 4096
 """Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
 cache."""
-_CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
-_ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
-_SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
-"""What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
-the same numbers to the last bit, in three quarters of the time."""
-_WITHOUT_PASSIVE = (
-    "mj_kinematics", "mj_comPos", "mj_tendon", "mj_crb", "mj_tendonArmature", "mj_factorM", "mj_comVel", "mj_rne",
-    "mj_tendonBias", "mj_fwdAcceleration",
-)  # fmt: skip
-"""What that leaves of these in a model that has no damping either: another quarter less. Without tendons, those of the
-tendons are left out, too."""
-_COMPILING = "mjbeer: compiling this integrator for this machine, once: up to 4 s"
+_STATE, _GUESSED = mujoco.mjtState.mjSTATE_FULLPHYSICS, mujoco.mjtState.mjSTATE_INTEGRATION
+"""MuJoCo's state of a run, time, positions and rates first; and with it where the solver of constraints begins."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,145 +41,16 @@ class Solution:
     """The name of the integrator, if it was chosen for a tolerance."""
 
 
-class _Compiling(event.Listener):
-    """Says once, if somebody may see it, that numba compiles; what is read from its cache is not compiled."""
-
-    said = False
-
-    def on_start(self, _: Any) -> None:
-        from mjbeer.output import terminal
-
-        if not _Compiling.said and terminal.is_seen():
-            _Compiling.said = True
-            terminal.say(_COMPILING)
-
-    def on_end(self, _: Any) -> None: ...
-
-
-@contextmanager
-def stepping(kernel: Any) -> Generator[None]:
-    """Let a compiled `kernel` step in the block: MuJoCo is quiet and reads no clock."""
-    heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
-    with quiet(), untimed(), heard:
-        yield
-
-
-def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, watch: Watcher | None) -> int:
-    """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
-
-    It takes `fixed` arguments, the last of which has room for what is shown to `watch`, and a `place`, which begins
-    with the time [s]. It returns the status, the new place, and the numbers of evaluations and of kept rows.
-
-    Raises:
-      DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
-    """
-    status, total = BLOCK_END, 0
-    with stepping(kernel):
-        while status == BLOCK_END:
-            if total > limit:
-                raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
-            status, place, evaluations, count = kernel(*fixed, place)
-            total += evaluations
-            if watch and count:
-                watch(*(rows[:count] for rows in fixed[-1]))
-    if status != DONE:
-        cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
-        raise DivergenceError(f"the {name} run diverged at t = {place[0]:.6g} s: {cause}")
-    return total
-
-
-@intrinsic
-def call(typing_context, function, model, data, flag, result):
-    """Call the C function at the address `function`; no address is compiled in, so that caching works.
-
-    It gets two pointers, a number and a third pointer. A function that takes fewer does not look at the others: those
-    that MuJoCo is built for pass them in registers.
-    """
-
-    def generate(context, builder, signature, arguments):
-        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
-        function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
-        builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
-        return context.get_dummy_value()
-
-    return types.void(types.intp, types.intp, types.intp, types.intp, types.intp), generate
-
-
-class Dynamics:
-    """The forward dynamics of a model of slides and hinges, as kernels evaluate it.
-
-    Without `data` of the model, in its initial state, it makes its own.
-    """
-
-    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
-        self._model, self.data = model, mujoco.MjData(model) if data is None else data
-        data, self._actuated = self.data, model.nu > 0 and not model.opt.disableflags & _ACTUATION
-        constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
-        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not self._actuated or constant)
-        needed, names = np.ones(model.nq, np.bool_), ("mj_forward",)
-        if smooth:
-            names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER else _SMOOTH
-            names = tuple(name for name in names if model.ntendon or "endon" not in name)
-            if "slide" in (joints := places(model)):
-                # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
-                # from positions in the world, whose rounding would hide a short arm far from the origin.
-                needed[joints["slide"]] = False
-        bias = data.qfrc_bias.__array_interface__["data"][0]
-        functions = np.array([(address(name), bias if name == "mj_tendonBias" else 0) for name in names])
-        views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
-        self.kernel = (functions, model._address, data._address, bias), views
-        """Addresses and views by which kernels evaluate the accelerations, as `slope` takes them."""
-        self.begin()
-
-    def begin(self) -> None:
-        """Compute the actuators' forces of a model that has changed, which a smooth one then takes unchanged."""
-        if self._actuated and len(self.kernel[0][0]) > 1:
-            mujoco.mj_forward(self._model, self.data)
-            forces = self.data.qfrc_actuator.copy()
-            mujoco.mj_resetData(self._model, self.data)
-            self.data.qfrc_actuator[:] = forces
-
-
-@njit(cache=True, error_model="numpy")
-def slope(pointers, views, state, out):
-    """Write the time derivative of a state to `out`.
-
-    `pointers` are the addresses of the functions that compute an acceleration, with the third argument of each, of
-    model and data, and of the forces in which mj_rne puts its result; `views` are qpos, qvel and acceleration in the
-    data, and which of qpos are needed.
-    """
-    functions, model, data, bias = pointers
-    qpos, qvel, qacc, needed = views
-    n = qpos.size
-    for i in range(n):
-        qpos[i] = state[i] if needed[i] else 0.0
-        qvel[i] = state[n + i]
-    for k in range(len(functions)):
-        call(functions[k, 0], model, data, functions[k, 1], bias)
-    for i in range(n):
-        out[i] = qvel[i]
-        out[n + i] = qacc[i]
-
-
-@njit(cache=True)
-def copy(values, out):
-    """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
-    for i in range(values.size):
-        out[i] = values[i]
-
-
 class Stepper:
     """A model set up to be stepped with its own timestep, which may be taken in several `parts`, whose sum is 1."""
 
     def __init__(self, model: mujoco.MjModel, parts: tuple[float, ...] = (), data: mujoco.MjData | None = None) -> None:
         self._timestep = model.opt.timestep
-        self._models = [copy_model(model) for _ in parts] or [model]
+        self._models = [copy(model) for _ in parts] or [model]
         for changed, part in zip(self._models, parts, strict=bool(parts)):
             changed.opt.timestep = part * self._timestep
         self._data = mujoco.MjData(model) if data is None else data
-        self._addresses = np.array([changed._address for changed in self._models])
-        self._views = self._data.qpos, self._data.qvel, self._data.qacc
-        self._states = np.empty((_BLOCK, model.nq + model.nv))
+        self._rows = np.empty((1, _BLOCK, mujoco.mj_stateSize(model, _STATE)))
 
     def run(self, start: np.ndarray, samples: np.ndarray, watch: Watcher | None = None) -> np.ndarray:
         """Return the states after increasing numbers of steps, `samples`, as an array of shape (samples, nq + nv).
@@ -210,21 +66,51 @@ class Stepper:
         if watch:
             watch(np.zeros(1), start[None])
         last = int(samples[-1])
-        with stepping(_advance):
+        before = np.empty(mujoco.mj_stateSize(self._models[0], _GUESSED))
+        with quiet(), untimed():
             for first in range(0, last, _BLOCK):
-                block = self._states[: min(_BLOCK, last - first)]
-                count = _advance(address("mj_step"), self._addresses, data._address, self._views, block)
-                end, cause = (first + count) * step, _warnings(data)
-                if count < len(block):
-                    cause = cause or "its state is no longer finite"
-                    raise DivergenceError(f"the run diverged at t = {end:.6g} s: {cause}")
-                if cause:  # as of an inertia that rounding loses: what follows is finite, and may be anything
-                    raise DivergenceError(f"the run diverged before t = {end:.6g} s: {cause}")
+                mujoco.mj_getState(self._models[0], data, before, _GUESSED)
+                block = self._advance(min(_BLOCK, last - first))
+                if _warnings(data) or not max(np.abs(block).max(), np.abs(data.qacc).max()) < LARGEST:
+                    raise self._divergence(before, first, len(block))
                 begin, after = np.searchsorted(samples, [first + 1, first + len(block) + 1])
                 states[begin:after] = block[samples[begin:after] - first - 1]
                 if watch:
                     watch(step * np.arange(first + 1, first + len(block) + 1), block)
         return states
+
+    def _advance(self, count: int) -> np.ndarray:
+        """Take so many steps, and return the states at their ends, which the next call overwrites.
+
+        What follows a warning of MuJoCo's is no motion.
+        """
+        data, rows = self._data, self._rows[:, :count]
+        states, size = rows[0, :, 1 : 1 + len(data.qpos) + len(data.qvel)], len(data.qpos)
+        if len(self._models) == 1:
+            state, guess = np.empty((1, rows.shape[2])), data.qacc_warmstart[None]
+            mujoco.mj_getState(self._models[0], data, state[0], _STATE)
+            rollout(self._models, data, state, nstep=count, initial_warmstart=guess, state=rows)
+            return states
+        qpos, qvel, places, rates = data.qpos, data.qvel, states[:, :size], states[:, size:]
+        for row in range(count):
+            for model in self._models:
+                mujoco.mj_step(model, data)
+            places[row], rates[row] = qpos, qvel
+        return states
+
+    def _divergence(self, before: np.ndarray, first: int, count: int) -> DivergenceError:
+        """Take `count` steps again, after the `first` ones and from the state `before` them, and say what is wrong."""
+        data, step = self._data, self._timestep
+        mujoco.mj_resetData(self._models[0], data)
+        mujoco.mj_setState(self._models[0], data, before, _GUESSED)
+        for row in range(first, first + count):
+            for model in self._models:
+                mujoco.mj_step(model, data)
+            if not all(abs(number) < LARGEST for number in (*data.qpos, *data.qvel, *data.qacc)):
+                cause = _warnings(data) or "its state is no longer finite"
+                return DivergenceError(f"the run diverged at t = {row * step:.6g} s: {cause}")
+        # As of an inertia that rounding loses: what follows is finite, and may be anything.
+        return DivergenceError(f"the run diverged before t = {(first + count) * step:.6g} s: {_warnings(data)}")
 
 
 def _warnings(data: mujoco.MjData) -> str:
@@ -233,21 +119,47 @@ def _warnings(data: mujoco.MjData) -> str:
     return "; ".join(mujoco.mju_warningText(kind, 0) for kind in kinds if data.warning[kind].number)
 
 
-@njit(cache=True, nogil=True)
-def _advance(function, models, data, views, states):
-    """Take a step for each row of `states`, fill it with the state at its end, and return the number of finite rows.
+class Recorder:
+    """The record of a run of one model of a scene, a `Watcher`.
 
-    `function` is the address of mj_step, `models` has those of the models with which the parts of each step are taken,
-    `data` is that of their common data, and `views` are its qpos, qvel and qacc.
+    The steps of DOP853 are so long that forces are looked for `within` them, too.
     """
-    qpos, qvel, qacc = views
-    size = qpos.size
-    for row in range(len(states)):
-        for model in models:
-            call(function, model, data, 0, 0)
-        for i in range(size):
-            states[row, i] = qpos[i]
-            states[row, size + i] = qvel[i]
-            if not (abs(qpos[i]) < LARGEST and abs(qvel[i]) < LARGEST and abs(qacc[i]) < LARGEST):
-                return row
-    return len(states)
+
+    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, within: bool = False) -> None:
+        self._model, self._scene, self._within, self.record = model, scene, within, Record(scene, friction)
+        self._last = np.empty((7, 0))
+
+    def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
+        """Add the next steps."""
+        motion = read(self._model, self._scene, states, times)
+        if not self._within:
+            self.record.add(motion)
+            return
+        self.record.add_conserved(motion)
+        rates = motion.phi_dot, motion.u_dot
+        gains = accelerations(self._scene, motion.phi, *rates)[::-1]
+        ends = np.concatenate([self._last, np.stack([times, motion.phi, motion.u, *rates, *gains])], axis=1)
+        self._last = ends[:, -1:]
+        self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
+
+
+# A polynomial of fifth degree over a step, from its change, rates and second derivatives at both ends, at parts of it.
+_PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
+_ENDS = np.array([[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]])
+_POWER, _TERMS = np.arange(1, 6), np.linalg.inv(_ENDS)
+_CHANGES, _RATES = _PART**_POWER @ _TERMS, _POWER * _PART ** (_POWER - 1) @ _TERMS
+
+
+def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return times [s], phi, phi_dot and u_dot within steps, from both coordinates and their derivatives at the ends.
+
+    These have shape (2, ends); a single end is returned as it is.
+    """
+    if len(time) == 1:
+        return time, place[0], *rate
+    step = np.diff(time)
+    first, bend = step * rate[:, :-1], step**2 * gain[:, :-1]
+    last, bent = step * rate[:, 1:], step**2 * gain[:, 1:]
+    ends, step = np.stack([np.diff(place), first, bend, last, bent], axis=-1), step[:, None]
+    phi, (phi_dot, u_dot) = place[0, :-1, None] + ends[0] @ _CHANGES.T, ends @ _RATES.T / step
+    return tuple(each.ravel() for each in (time[:-1, None] + step * _PART.T, phi, phi_dot, u_dot))

@@ -12,8 +12,8 @@ from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.model.state import places, read
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.recording import Recorder, SmoothRecorder
-from mjbeer.simulation.stepping import LARGEST, Dynamics, Solution
+from mjbeer.simulation.kernels import Dynamics, SmoothRecorder
+from mjbeer.simulation.stepping import LARGEST, Recorder, Solution
 from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
