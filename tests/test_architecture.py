@@ -24,7 +24,8 @@ THEORY = [
 ]
 IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.row"))
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
-HEAVY = {"mujoco", "numba", "llvmlite", "matplotlib", "mediapy", "OpenGL"}
+COMPILER = {"numba", "llvmlite"}
+HEAVY = {"mujoco", *COMPILER, "matplotlib", "mediapy", "OpenGL"}
 """What takes most of the time to import: the simulator, the compiler, and what draws."""
 
 
@@ -53,10 +54,14 @@ def test_a_file_of_numbers_needs_no_plots(tmp_path: pathlib.Path) -> None:
     assert path.read_text().startswith("time [s],u [m],")
 
 
+def test_the_integrators_of_mujoco_need_no_compiler() -> None:
+    assert loaded("import mjbeer; mjbeer.simulate(mjbeer.sliding(), 1.0, 0.1).warnings").isdisjoint(COMPILER)
+
+
 @pytest.mark.costly
 def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
     """Without this, a misspelt name or a blind test would pass those above."""
-    assert loaded("import mjbeer.simulation.simulate, matplotlib, mediapy, OpenGL") >= HEAVY
+    assert loaded("import mjbeer.simulation.tolerance, matplotlib, mediapy, OpenGL") >= HEAVY
 
 
 def imported(folder: str) -> set[str]:

@@ -89,7 +89,7 @@ class Stepper:
         if len(self._models) == 1:
             state, guess = np.empty((1, rows.shape[2])), data.qacc_warmstart[None]
             mujoco.mj_getState(self._models[0], data, state[0], _STATE)
-            rollout(self._models, data, state, nstep=count, initial_warmstart=guess, state=rows)
+            rollout(self._models, data, state, nstep=count, initial_warmstart=guess, state=rows, skip_checks=True)
             return states
         qpos, qvel, places, rates = data.qpos, data.qvel, states[:, :size], states[:, size:]
         for row in range(count):
@@ -115,8 +115,7 @@ class Stepper:
 
 def _warnings(data: mujoco.MjData) -> str:
     """Return what MuJoCo warns of in a run; empty if it does not."""
-    kinds = [kind for name, kind in mujoco.mjtWarning.__members__.items() if name != "mjNWARNING"]
-    return "; ".join(mujoco.mju_warningText(kind, 0) for kind in kinds if data.warning[kind].number)
+    return "; ".join(mujoco.mju_warningText(kind, 0) for kind in np.flatnonzero(data.warning.number))
 
 
 class Recorder:
