@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from mjbeer.model.setting import DOP853
-from mjbeer.simulation.kernels import BLOCK_END, DONE, NOT_FINITE, TOO_SMALL, Dynamics, copy, drive, slope
+from mjbeer.simulation.kernels import BLOCK_END, DONE, NOT_FINITE, TOO_SMALL, Dynamics, copy, drive, inner, slope
 from mjbeer.simulation.stepping import LARGEST, Watcher
 
 _ROWS = 16
@@ -69,7 +69,7 @@ class Integrator:
         return samples
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _combine(weights, count, slopes, out):
     """Write the weighted sum of the first `count` slopes to `out`, slope by slope, so that additions can overlap."""
     for i in range(out.size):
@@ -176,7 +176,7 @@ def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, s
     return status, (time, step, sample, steps, before), evaluations, row
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     """Return the first step [s], by Hairer's algorithm in section II.4.
 
@@ -202,7 +202,7 @@ def _first_step(pointers, views, state, slopes, tolerance, scale, work):
     return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _error(state, new, slopes, step, tolerance, scale, five, three):
     """Return the estimated error of a step over the tolerated one."""
     fifth, third, stages = 0.0, 0.0, _A.shape[0]
@@ -216,7 +216,7 @@ def _error(state, new, slopes, step, tolerance, scale, five, three):
     return abs(step) * fifth / size if size > 0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _prepare(pointers, views, state, new, slopes, step, work, weights):
     """Write the coefficients of the continuous output over the last step to `weights`."""
     for row in range(3):
@@ -235,7 +235,7 @@ def _prepare(pointers, views, state, new, slopes, step, work, weights):
             weights[3 + k, i] *= step
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _interpolate(state, weights, part, out):
     """Write the state after the fraction `part` of a step from `state` to `out`."""
     for i in range(state.size):

@@ -35,6 +35,7 @@ from mjbeer.simulation.kernels import (
     SmoothRecorder,
     copy,
     drive,
+    inner,
     see,
     slope,
 )
@@ -122,7 +123,7 @@ def _by_theory(form, phi, rate, turned, sped):
     return gain, ((pulled - bent * rate * rate / 2 - bend * gain) * turned - bend * rate * sped) / inertia
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _by_mujoco(pointers, views, form, phi, rate, work):
     """Return the second derivative of phi in the method's own time, and the acceleration of the axis less its swing.
 
@@ -143,7 +144,7 @@ def _by_mujoco(pointers, views, form, phi, rate, work):
     return fast * fast * gain + bend * speed * speed / 2, drawn
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _begin(pointers, views, form, phi, rate, step, sums, history, work):
     """Fill the history of the first `COUNT` steps, and begin the sums of phi; return the evaluations.
 
@@ -182,7 +183,7 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
     return evaluations
 
 
-@njit(cache=True, fastmath={"reassoc", "contract"})
+@inner(fastmath={"reassoc", "contract"})
 def _sum(weights, accelerations, end):
     """Return the weighted sum of the `COUNT` accelerations before index `end`, in any order, so that terms overlap."""
     last, total = accelerations[end - COUNT : end], 0.0

@@ -8,6 +8,7 @@ import ctypes
 import math
 from collections.abc import Generator
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from typing import Any
 
 import mujoco
@@ -26,6 +27,8 @@ from mjbeer.theory.scene import Scene
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
+inner = partial(njit, cache=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Compiles what compiled code alone may call: its entry for Python, in all a seventh of the work, is left out."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
@@ -171,7 +174,7 @@ def slope(pointers, views, state, out):
         out[n + i] = qacc[i]
 
 
-@njit(cache=True)
+@inner
 def copy(values, out):
     """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
     for i in range(values.size):
@@ -245,7 +248,7 @@ def see(numbers, found, time, state):
     found[LAST_PHI], found[LAST_MARGIN], found[LAST_TIME] = phi, margin, time
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def forces(numbers, phi, rate):
     """Return N and |F| [N] that rolling needs, and the lesser of N and what F leaves until the can would slip."""
     base, chord, swing, slope, depth, bottom = numbers[:6]

@@ -23,7 +23,7 @@ from numba import njit
 from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 
-from mjbeer.simulation.kernels import FAILS_AT, forces, see
+from mjbeer.simulation.kernels import FAILS_AT, forces, inner, see
 from mjbeer.theory.scene import Scene
 
 COUNT = 13
@@ -148,7 +148,7 @@ def pace(form, phi):
     return math.sqrt((form.base + form.uneven * sin * sin) / form.scale)
 
 
-@njit(cache=True, fastmath={"reassoc", "contract"})
+@inner(fastmath={"reassoc", "contract"})
 def _line(history, end, sums, step, back, curve):
     """Return phi around the step that many steps `back`, by the accelerations before index `end` of the `history`."""
     for row in range(COUNT + 2):
@@ -159,7 +159,7 @@ def _line(history, end, sums, step, back, curve):
     return _Line(curve, sums[0, 0], sums[0, 1], step, back + 1.0)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@inner(fastmath={"contract"})
 def _angle(line, passed):
     """Return phi [rad] and its rate in the method's own time."""
     x, place, rate = line.back - passed - LAG - 0.5, 0.0, 0.0
@@ -170,7 +170,7 @@ def _angle(line, passed):
     return line.step * line.step * place, line.step * (line.first - rate)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _part(form, line, left, right, before, after, seen):
     """Return the end of the part of a step from `left` to `right`, phi and its rate there, and the points it needs.
 
@@ -195,7 +195,7 @@ def _part(form, line, left, right, before, after, seen):
         after = _angle(line, right)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
+@inner(fastmath={"contract"})
 def _duration(form, line, begin, end, count, work):
     """Return the time [s] that passes between two places in a step, by so many points; no number without points."""
     if count == 0:
@@ -212,7 +212,7 @@ def _duration(form, line, begin, end, count, work):
     return line.step * length * total
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _write(form, sums, angle, since, drawn, out):
     """Write the state at an angle and its rate, `since` [s] after the place of the `sums`, to `out`.
 
@@ -226,7 +226,7 @@ def _write(form, sums, angle, since, drawn, out):
         out[1 + last] = sums[0, 4] + since * drawn + form.share * math.cos(phi) * rate
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _find(form, line, part, count, since, work):
     """Return the share of a step that has passed `since` [s] after the beginning of a `part`.
 
@@ -254,7 +254,7 @@ def _find(form, line, part, count, since, work):
     return passed
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def add(sums, row, term):
     """Add a term to a sum, and the rounding of the addition before (Kahan)."""
     term -= sums[1, row]
@@ -263,7 +263,7 @@ def add(sums, row, term):
     sums[0, row] = total
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def read_off(form, sums, node, history, end, back, step, work, state, times, sample, samples, record):
     """Go on to the step that many steps `back`, in parts: fill in the samples and the `record` on the way.
 
