@@ -178,6 +178,8 @@ def _refused(what: str, unit: str, value: object) -> ParameterError:
 
 def _float(value: Any) -> float:
     """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
+    if type(value) is float:  # as nearly always
+        return value
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
     try:

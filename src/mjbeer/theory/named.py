@@ -17,12 +17,11 @@ Parameters = ParamSpec("Parameters")
 
 def named(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
     """Return a function that makes a scene, and has it remember by which arguments."""
-    signature = inspect.signature(make)
 
     @functools.wraps(make)
     def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.store(scene, made_by=(made, signature.bind(*arguments, **others).arguments))
+        require.store(scene, made_by=(made, arguments, others))
         return scene
 
     return made
