@@ -127,10 +127,10 @@ def _by_mujoco(pointers, views, form, phi, rate, work):
     gain, drawn = change[2 * last + 1], 0.0
     if last > 0:
         drawn = change[last + 1] - form.share * (math.cos(phi) * gain - math.sin(phi) * speed * speed)
-    if form.digits == 0:
-        return gain, drawn
-    bend = form.uneven * form.turns * math.sin(2 * form.turns * phi) / form.scale  # J' over `scale`
-    return fast * fast * gain + bend * speed * speed / 2, drawn
+    if form.digits > 0:  # t'^2 phi_ddot + t'' phi_dot, and t'^2 is J over `scale`
+        bend = form.uneven * form.turns * math.sin(2 * form.turns * phi) / form.scale
+        gain = fast * fast * gain + bend * speed * speed / 2
+    return gain, drawn
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,7 +1,6 @@
 """The scenes that have a name, as functions that make them; and what a scene is in words."""
 
 import functools
-import inspect
 import math
 from collections.abc import Callable, Collection
 from typing import ParamSpec
