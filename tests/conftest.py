@@ -4,6 +4,7 @@ What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the en
 """
 
 import functools
+import gc
 import os
 import pathlib
 import shutil
@@ -12,11 +13,14 @@ import pytest
 
 from mjbeer.drawing import opengl
 from mjbeer.model import looks
-from mjbeer.studies.benchmark.peers import absent
-from tests.support import browser, screen
+from tests.support import screen
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE"):
     os.environ.pop(each, None)
+
+# Nothing of what is imported and collected, a million objects, is rubbish, and to look through it again and again takes
+# a tenth of all the time.
+gc.disable()
 
 _no_opengl = functools.cache(opengl.problem)
 """Asked once a process, before any test makes OpenGL fail."""
@@ -29,10 +33,19 @@ def pytest_configure(config: pytest.Config) -> None:
       UsageError: in that case.
     """
     if os.environ.get("MJBEER_EVERYTHING") and not hasattr(config, "workerinput"):  # and not once more in each worker
+        from mjbeer.studies.benchmark.peers import absent
+        from tests.support import browser
+
         lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]
         lacking += [reason for reason in (_no_opengl(), screen.problem(), browser.problem()) if reason]
         if lacking:
             raise pytest.UsageError("MJBEER_EVERYTHING is set, and not all is here:\n" + "\n".join(lacking))
+
+
+def pytest_collection_finish() -> None:
+    """Look from now on for the rubbish of the tests."""
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -42,8 +55,11 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         pytest.skip(f"no OpenGL; this brings it to Debian and Ubuntu: {opengl.INSTALL}")
     if item.get_closest_marker("views") and (reason := screen.problem()):
         pytest.skip(reason)
-    if item.get_closest_marker("browses") and (reason := browser.problem()):
-        pytest.skip(reason)
+    if item.get_closest_marker("browses"):
+        from tests.support import browser
+
+        if reason := browser.problem():
+            pytest.skip(reason)
 
 
 @pytest.fixture

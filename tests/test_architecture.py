@@ -1,6 +1,7 @@
 """The folders are as `docs/architecture.md` says, and theory needs neither a simulator nor a compiler."""
 
 import ast
+import functools
 import pathlib
 import re
 import subprocess
@@ -29,13 +30,19 @@ HEAVY = {"mujoco", *COMPILER, "matplotlib", "mediapy", "OpenGL"}
 """What takes most of the time to import: the simulator, the compiler, and what draws."""
 
 
+@functools.cache
+def installed() -> set[str]:
+    """The packages that are installed but mjbeer."""
+    return set(packages_distributions()) - {"mjbeer"}
+
+
 def loaded(code: str) -> set[str]:
     """Which of the installed packages `code` loads in a new process; mjbeer is left out."""
     program = f"import sys; started = {{*sys.modules}}; {code}; print(*{{*sys.modules}} - started)"
     command = [sys.executable, "-c", program]
     ran = subprocess.run(command, capture_output=True, text=True, check=False)
     assert ran.stderr == ""
-    return set(ran.stdout.split()) & set(packages_distributions()) - {"mjbeer"}
+    return set(ran.stdout.split()) & installed()
 
 
 def test_importing_the_package_loads_numpy_alone() -> None:

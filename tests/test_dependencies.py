@@ -6,6 +6,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 
+import pytest
 from packaging.requirements import Requirement
 
 import mjbeer
@@ -33,6 +34,7 @@ def imported(*modules: pathlib.Path) -> Iterator[str]:
             yield from (INSTALLED_AS.get(package, package) for package in packages)
 
 
+@pytest.mark.slow
 def test_what_is_imported_is_declared_and_what_is_declared_is_imported() -> None:
     assert set(imported(*PACKAGE.rglob("*.py"))) == ALWAYS | OPTIONAL
 

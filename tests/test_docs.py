@@ -51,6 +51,7 @@ BLOCKS = [block for path in DOCUMENTS for block in blocks(path)]
 COMMANDS = list(dict.fromkeys(command for block in BLOCKS if block.language in SHELLS for command in block.commands))
 
 
+@pytest.mark.slow
 def test_python_runs_and_has_what_the_text_names(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Block after block, as a reader would run it; videos are not drawn."""
     monkeypatch.chdir(tmp_path)
@@ -107,6 +108,7 @@ def test_a_wrong_number_between_the_marks_is_found() -> None:
     assert documents.anew(text).endswith("\n<!-- end -->\nOn.\n")
 
 
+@pytest.mark.slow
 def test_the_counts_of_a_stability_study_are_taken(tmp_path: pathlib.Path) -> None:
     batch = search.batch(0, len(search.REGIONS))
     swing = {"stable": 2.02, "stable_predicted": 2.0, "accurate": 0.9, "accurate_predicted": 1.0}

@@ -44,12 +44,14 @@ def test_a_loop_of_one_s_own_moves_as_theory_says() -> None:
     assert example["error"](times, phi) < OWN
 
 
+@pytest.mark.slow
 def test_cans_on_a_slope_of_one_s_own_move_as_theory_says() -> None:
     errors = load("attach")["errors"]()
     assert set(errors) == {"frozen", "sliding"}
     assert max(errors.values()) < ATTACHED
 
 
+@pytest.mark.slow
 def test_cans_that_are_carried_are_felt_as_theory_says() -> None:
     """The forces and the ringing of `simulation/carry.py`; the weld of the gripper is softer by 1 %."""
     times, forces = load("carry")["forces"]()

@@ -29,6 +29,7 @@ def test_no_text_covers_what_moves_or_another_text(name: str) -> None:
     assert faults(ALL[name][0]) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ALL)
 def test_nothing_turns_so_fast_that_the_eye_is_deceived(name: str) -> None:
     film, fps = ALL[name]

@@ -96,7 +96,8 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
         array = np.asarray(None)
     if array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
         raise _refused(f"{name} must be a list or a one-dimensional array of one or more numbers", unit, value)
-    for index in np.flatnonzero(~np.isfinite(array)):
+    if not (finite := np.isfinite(array)).all():
+        index = int(np.argmin(finite))
         number(f"{name}[{index}]", array[index], unit)
     return array.astype(float, copy=False)
 
@@ -106,11 +107,13 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     if not increasing and math.isfinite(_float(value)):
         return np.array([non_negative(name, value, "s")])
     array = samples(name, value, "s").copy()
-    for index in np.flatnonzero(array < 0):
+    if array.min() < 0:
+        index = int(np.argmax(array < 0))
         non_negative(f"{name}[{index}]", array[index], "s")
-    if increasing and len(back := np.flatnonzero(np.diff(array) <= 0) + 1):
-        earlier, later = (shown(array[index]) for index in (back[0] - 1, back[0]))
-        raise ParameterError(f"{name} must increase, but {name}[{back[0]}] is {later} s after {earlier} s")
+    if increasing and (falls := array[1:] <= array[:-1]).any():
+        index = int(np.argmax(falls)) + 1
+        earlier, later = (shown(array[place]) for place in (index - 1, index))
+        raise ParameterError(f"{name} must increase, but {name}[{index}] is {later} s after {earlier} s")
     return array
 
 
@@ -178,6 +181,8 @@ def _refused(what: str, unit: str, value: object) -> ParameterError:
 
 def _float(value: Any) -> float:
     """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
+    if type(value) is float:  # as nearly always
+        return value
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
     try:

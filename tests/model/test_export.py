@@ -210,7 +210,7 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
 
 
 @pytest.mark.slow
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=20, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-4, 4), st.floats(-5, 5), st.sampled_from([0.0, 1e-3, 1.0]))
 def test_no_can_goes_farther_than_the_bound(scene: Scene, phi0: float, swing: float, damping: float) -> None:
     rate = math.sqrt(scene.gravity / scene.can.radius)

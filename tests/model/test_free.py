@@ -239,6 +239,7 @@ def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> 
         )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("portable", [False, True])
 def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> None:
     """The export itself compares what it wrote; portable, it has only what MuJoCo 3.3 knows."""
@@ -277,6 +278,7 @@ def test_the_viewer_s_model_of_a_standing_can_starts() -> None:
     assert player.data.time > 0
 
 
+@pytest.mark.slow
 def test_the_rows_find_a_wrong_model(monkeypatch: pytest.MonkeyPatch) -> None:
     """Modes left out at their bobs instead of their pivots, and no breaking waves."""
     can, other = measured.water(2, 0.45), measured.water(2, 0.55)

@@ -15,7 +15,6 @@ from mjbeer.studies.benchmark.measure import applied_share
 from mjbeer.studies.benchmark.points import USUAL
 
 SLIDE_FIRST = USUAL["equality, slide first"]
-REFSAFE = int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
 
 
 @pytest.mark.parametrize("written", USUAL)

@@ -1,5 +1,6 @@
 """MJCF templates: as a stock MuJoCo user finds them, missing, and edited, which changes looks and never a motion."""
 
+import functools
 import math
 import pathlib
 import re
@@ -156,6 +157,7 @@ def stepped(name: str) -> list[np.ndarray]:
     return found
 
 
+unedited = functools.cache(stepped)
 BODY, OUTER = '<body name="can" pos="0 0 0.033">', "</mujoco>"
 SAME, REFUSED = "same", "refused"
 # In which file, what is replaced by what, and what comes of it: the same motion, or a TemplateError.
@@ -231,7 +233,7 @@ def edit(folder: pathlib.Path, name: str) -> str:
 def test_an_edited_template_moves_alike_or_is_refused(name: str, copy: pathlib.Path, tmp_path: pathlib.Path) -> None:
     """To the bit where it is seen; what is only stepped does not depend on it; and so is a specification or export."""
     template, wanted = ("sliding" if EDITS[name][0] == "shared" else EDITS[name][0]), EDITS[name][-1]
-    before = stepped(template)
+    before = unedited(template)
     edit(copy, name)
     assert simulate(TEMPLATES[template], 0.01, 0.7).trusted
     makes = [
@@ -249,6 +251,7 @@ def test_an_edited_template_moves_alike_or_is_refused(name: str, copy: pathlib.P
         assert np.array_equal(one, other)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["colour", "camera", "mesh"])
 def test_looks_are_the_user_s(name: str, copy: pathlib.Path) -> None:
     ordinary = build(TEMPLATES["sliding"], visuals=True)

@@ -109,6 +109,7 @@ def test_a_link_stays_and_leads_to_the_new_file_and_a_device_is_not_replaced(tmp
     assert pipe.is_fifo()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["benchmark", "stability"])
 def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -11,6 +11,8 @@ from PIL import Image
 from mjbeer.output import plots
 from tests.support import figures
 
+pytestmark = pytest.mark.slow
+
 
 def draw(path: pathlib.Path) -> None:
     with plots.chart(path, width=4, height=3) as (axes,):

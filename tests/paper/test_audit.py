@@ -71,6 +71,7 @@ def test_kinds_of_what_is_wrong() -> None:
             assert (row.misprint.of in slips) == (row.misprint.kind == CONSEQUENCE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", [row for row in ROWS if row.verdict != CONFIRMED], ids=lambda row: row.equation)
 def test_a_misprint_that_is_none_is_found_out(row: Row) -> None:
     """The row would fail if the printed form were right, and if the right form were the printed one."""
@@ -89,6 +90,7 @@ def broken(terms: Terms, index: int, factor: float) -> Terms:
     return tuple(each * factor if i == index else each for i, each in enumerate(terms))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("row", ROWS, ids=NAMES)
 def test_each_term_counts(row: Row) -> None:
     """A form with any one of its terms off by a hundredth fails, but for terms that are themselves next to nothing."""

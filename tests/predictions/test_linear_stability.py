@@ -76,6 +76,7 @@ def test_limits_on_the_imaginary_axis() -> None:
     assert linear_stability.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str) -> None:
     hard, soft = (soft_constraint.spring(1e-3, 1.0, each) for each in (0.9999, 0.5))

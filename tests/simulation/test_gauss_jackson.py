@@ -17,6 +17,7 @@ from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, weights
 from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
+from tests.support.scenes import METAL
 
 
 @pytest.mark.parametrize("power", [1, 2])
@@ -151,11 +152,9 @@ def test_constraints_and_damping_are_refused(rolling: str) -> None:
         simulate(frozen(), 1.0, 1.0, rolling=rolling, integrator="GaussJackson")
     with pytest.raises(UnsupportedError, match="smooth motions only, and this model has constraints"):
         GaussJackson(build(frozen(), rolling), frozen())
-    for place in ("dof_damping", "tendon_damping"):
-        model = build(frozen())
-        getattr(model, place)[:] = 1e-3
+    for damped in (sliding(damping=1e-3, can=METAL), sliding(drag=0.1)):
         with pytest.raises(UnsupportedError, match="undamped motions only, and this model has damping"):
-            GaussJackson(model, frozen())
+            GaussJackson(build(damped), damped)
 
 
 def test_a_tolerance_falls_back_on_dop853(monkeypatch: pytest.MonkeyPatch) -> None:

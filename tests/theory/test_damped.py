@@ -137,6 +137,7 @@ def test_motion_seen_from_behind_and_without_damping() -> None:
     assert (plain.phi == without.phi).all()
 
 
+@pytest.mark.slow
 def test_unstable_balance() -> None:
     """On level ground the top is an equilibrium; beside it rounding decides, and there is an error before it changes
     phi by 1e-4, and not long before: here it grows tenfold in 0.13 s."""
@@ -157,6 +158,7 @@ def test_unstable_balance() -> None:
     assert known > 0.8
 
 
+@pytest.mark.slow
 def test_a_corner_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four of them in each period on the level, of |w| and |roll_dot|, which the swing passes until it dies away."""
     scene = sliding(0.0, can=METAL, damping=Damping(0, 1e-6, 0), drag=1e-3)

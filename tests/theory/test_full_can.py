@@ -12,6 +12,7 @@ FULL = FullCan(Can.sheet_metal())
 OIL = FullCan(Can.massless(), LIQUIDS["olive oil"].density, LIQUIDS["olive oil"].viscosity)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("full", [FULL, OIL])
 @pytest.mark.parametrize("time", [0.1, 1.0, 8.0])
 def test_the_way_is_the_inverse_of_the_transform(full: FullCan, time: float) -> None:

@@ -255,6 +255,7 @@ def test_beside_the_steepest_incline() -> None:
     assert np.quantile(found, 0.9) < BESIDE_STEEPEST
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-6, 6), st.floats(-8, 8))
 def test_energy_and_momentum(scene: Scene, phi0: float, swing: float) -> None:

@@ -67,6 +67,7 @@ def test_steady_rolling_ends_at_the_largest_incline() -> None:
     assert sliding(1.5, drag=0.01).terminal_tilt() == pytest.approx(-1.5, rel=ROUNDING)  # the load hangs down
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(scenes(), st.floats(-3, 3), st.sampled_from([0.0, 1.0, 100.0]), st.floats(-0.95, 0.95))
 def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: float) -> None:

@@ -6,8 +6,6 @@ import secrets
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
 
-from filelock import FileLock, Timeout
-
 from mjbeer.exceptions import OutputError
 
 
@@ -50,6 +48,8 @@ def locked(folder: pathlib.Path) -> Generator[None]:
     Raises:
       OutputError: if another command holds the lock, or the folder cannot be created or written to.
     """
+    from filelock import FileLock, Timeout  # which only studies need, and which takes long to import
+
     lock = FileLock(folder / ".lock", blocking=False)
     try:
         _create(folder)

@@ -11,8 +11,8 @@ from mjbeer.theory.scene import Scene
 
 _DIFFERENCE = 1e-5
 """Step of the central differences [rad, or rad/s in units of sqrt(g/a)]: their relative error is 1e-10."""
-_TOLERANCE = 1e-12
-"""Tolerance of the perturbed motion."""
+_TOLERANCE = 1e-10
+"""Tolerance of the perturbed motion: a timestep is to show in it by far more."""
 _SIGN = {"Euler": 1, "implicitfast": 1, "discrete": 1, "implicit": -1}
 """Sign of the energy that forces proportional to the square of the rate add in each step."""
 _NODES = 40

@@ -55,6 +55,7 @@ _MIDDLE_RATE, _MIDDLE_PLACE = _FIRST_RATE[_MIDDLE].copy(), _FIRST_PLACE[_MIDDLE]
 _FIRST_PLACE -= _MIDDLE_PLACE + np.arange(-_MIDDLE, _MIDDLE + 1)[:, None] * _MIDDLE_RATE
 _FIRST_RATE -= _MIDDLE_RATE
 """Weights of the first accelerations in how rates and places differ from those at the start, in a row for each step."""
+_CONSTRAINT, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _NO_RECORD = (0.0,) * 20, np.empty(0)
 
 
@@ -69,10 +70,9 @@ class GaussJackson:
     """
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics | None = None) -> None:
-        if not model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_CONSTRAINT:
+        if not model.opt.disableflags & _CONSTRAINT:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
-        damping = model.dof_damping, model.dof_dampingpoly, model.tendon_damping, model.tendon_dampingpoly
-        if any(coefficients.any() for coefficients in damping):
+        if not model.opt.disableflags & _DAMPER:
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
         self._dynamics, self._scene, self.size = dynamics or Dynamics(model), scene, model.nv
         self.evaluations = 0
@@ -138,10 +138,10 @@ def _by_mujoco(pointers, views, form, phi, rate, work):
     gain, drawn = change[2 * last + 1], 0.0
     if last > 0:
         drawn = change[last + 1] - form.share * (math.cos(phi) * gain - math.sin(phi) * speed * speed)
-    if form.digits == 0:
-        return gain, drawn
-    bend = form.uneven * form.turns * math.sin(2 * form.turns * phi) / form.scale  # J' over `scale`
-    return fast * fast * gain + bend * speed * speed / 2, drawn
+    if form.digits > 0:  # t'^2 phi_ddot + t'' phi_dot, and t'^2 is J over `scale`
+        bend = form.uneven * form.turns * math.sin(2 * form.turns * phi) / form.scale
+        gain = fast * fast * gain + bend * speed * speed / 2
+    return gain, drawn
 
 
 @inner

@@ -188,8 +188,10 @@ class SmoothRecorder:
         self._record, form, can, load = Record(scene, friction), scene.oscillator, scene.can, scene.load
         mass, turning, sliding = scene.effective_mass, can.inertia / can.radius**2, scene.attachment == "sliding"
         numbers = (
-            *(form.base, form.chord, form.swing, form.slope, form.depth, form.bottom),
-            *(can.radius, can.effective_mass, load.mass, load.offset, load.inertia, scene.gravity, scene.incline),
+            *(form.base, form.chord, form.swing, form.slope),
+            *(form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)),
+            *(can.radius, can.effective_mass, load.mass, load.offset, load.inertia),
+            *(scene.gravity * math.sin(scene.incline), scene.gravity * math.cos(scene.incline)),
             *(scene.mass, mass, scene.drive, friction),
             # Friction over drive, over the force of the swinging load, and over phi_ddot.
             *((turning / mass, turning / mass, 0.0) if sliding else (1.0, 1.0, -scene.mass * can.radius)),
@@ -209,17 +211,16 @@ class SmoothRecorder:
 @njit(cache=True, error_model="numpy")
 def see(numbers, found, time, state):
     """Add a state at a time [s] to what was `found`, as `Record.add_conserved` and `Record.add_forces` do."""
-    base, chord, swing, slope, depth, bottom = numbers[:6]
-    radius, can_mass, load_mass, offset, load_inertia, gravity, incline, all_mass, mass, drive = numbers[6:16]
+    base, chord, swing, slope, lean, weight, radius, can_mass, load_mass, offset, load_inertia = numbers[:11]
+    down, normally, all_mass, mass, drive = numbers[11:16]
     size, moment, arm = state.size // 2, load_mass * offset, load_mass * offset / mass
-    sin_incline, cos_incline = math.sin(incline), math.cos(incline)
     phi, rate = state[size - 1], state[2 * size - 1]
     u, speed = (state[0], state[2]) if size > 1 else (radius * phi, radius * rate)
-    sin, cos = math.sin(phi), math.cos(phi)
-    inertia, square = base + chord * (1 - cos) / 2 + swing * sin * sin, rate * rate
+    sin, cos, square = math.sin(phi), math.cos(phi), rate * rate
+    inertia = base + chord * (1 - cos) / 2 + swing * sin * sin
     along, across = speed - offset * cos * rate, offset * sin * rate
     kinetic = (can_mass * speed * speed + load_mass * (along * along + across * across) + load_inertia * square) / 2
-    energy = kinetic - gravity * (all_mass * u * sin_incline + moment * (cos_incline * cos - sin_incline * sin))
+    energy = kinetic - all_mass * u * down - moment * (normally * cos - down * sin)
     swings = inertia * square / 2
     if time == 0.0:
         found[PHI0], found[U0], found[SPEED0] = phi, u, speed - arm * cos * rate
@@ -230,8 +231,9 @@ def see(numbers, found, time, state):
     found[KINETIC] = max(found[KINETIC], kinetic)
     covered = abs(phi - found[LAST_PHI])
     found[PATH] += covered
-    drop = slope * (phi - phi0) - 2 * depth * math.sin((phi + phi0) / 2 - bottom) * math.sin((phi - phi0) / 2)
-    gained = swings - found[SWING0] - drop
+    middle = (phi + phi0) / 2
+    pulled = weight * math.sin(middle) - lean * math.cos(middle)
+    gained = swings - found[SWING0] - slope * (phi - phi0) + 2 * pulled * math.sin((phi - phi0) / 2)
     found[ENERGY_CHANGE] = max(found[ENERGY_CHANGE], abs(energy - found[ENERGY0]))
     found[SWING_CHANGE] = max(found[SWING_CHANGE], abs(gained))
     found[DRIFT] += gained * covered
@@ -239,7 +241,7 @@ def see(numbers, found, time, state):
     if size > 1:
         moved = u - arm * sin - (found[U0] - arm * math.sin(phi0))
         found[AXIS] = max(found[AXIS], abs(moved - time * (found[SPEED0] + drive / mass * time / 2)))
-    normal, pull, margin = forces(numbers, phi, rate)
+    normal, pull, margin = forces(numbers, sin, cos, square)
     found[LOWEST] = min(found[LOWEST], normal)
     found[NEEDED] = max(found[NEEDED], pull / normal if normal > 0 else math.inf)
     if margin < 0 and found[FAILS_AT] == math.inf:
@@ -249,22 +251,16 @@ def see(numbers, found, time, state):
 
 
 @inner
-def forces(numbers, phi, rate):
-    """Return N and |F| [N] that rolling needs, and the lesser of N and what F leaves until the can would slip."""
-    base, chord, swing, slope, depth, bottom = numbers[:6]
-    load_mass, offset, gravity, incline, all_mass, drive = (
-        numbers[8],
-        numbers[9],
-        numbers[11],
-        numbers[12],
-        numbers[13],
-        numbers[15],
-    )
+def forces(numbers, sin, cos, square):
+    """Return N and |F| [N] that rolling needs, and the lesser of N and what F leaves until the can would slip.
+
+    Where the load is they depend on the sine and cosine of phi, and on the square of its rate.
+    """
+    base, chord, swing, slope, lean, weight = numbers[:6]
+    moment, normally, all_mass, drive = numbers[8] * numbers[9], numbers[12], numbers[13], numbers[15]
     friction, by_drive, by_swing, by_turning = numbers[16:]
-    sin, cos, square, moment = math.sin(phi), math.cos(phi), rate * rate, load_mass * offset
-    bend = chord * sin / 2 + 2 * swing * sin * cos
-    torque = slope - depth * math.sin(phi - bottom) - bend * square / 2
-    gain = torque / (base + chord * (1 - cos) / 2 + swing * sin * sin)
-    normal = all_mass * gravity * math.cos(incline) + moment * (sin * gain + cos * square)
+    torque = slope - weight * sin + lean * cos
+    gain = (torque - sin * (chord / 4 + swing * cos) * square) / (base + chord * (1 - cos) / 2 + swing * sin * sin)
+    normal = all_mass * normally + moment * (sin * gain + cos * square)
     pull = abs(by_drive * drive + by_swing * moment * (cos * gain - sin * square) + by_turning * gain)
     return normal, pull, min(normal, friction * normal - pull) if friction < math.inf else normal

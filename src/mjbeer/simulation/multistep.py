@@ -264,6 +264,12 @@ def add(sums, row, term):
 
 
 @inner
+def _margin(numbers, phi, rate):
+    """Return the force [N] that is left until rolling is no longer possible."""
+    return forces(numbers, math.sin(phi), math.cos(phi), rate * rate)[2]
+
+
+@inner
 def read_off(form, sums, node, history, end, back, step, work, state, times, sample, samples, record):
     """Go on to the step that many steps `back`, in parts: fill in the samples and the `record` on the way.
 
@@ -282,7 +288,7 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
         span, faster = _duration(form, line, left, right, count, work), pace(form, after[0])
         earlier, part = sums[0, 2], (left, right, span, slower, faster)
         looking = found.size > 0 and found[FAILS_AT] == np.inf and right - left > _SHARP
-        if looking and forces(numbers, after[0], after[1] / faster)[2] < 0:  # the moment is within a shorter part
+        if looking and _margin(numbers, after[0], after[1] / faster) < 0:  # the moment is within a shorter part
             until = (left + right) / 2
             continue
         while sample < times.size and times[sample] <= (earlier + span) * (1 + 1e-14):

@@ -93,14 +93,10 @@ class Solver:
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics) -> None:
         self._model, self._scene, self._dynamics = model, scene, dynamics
-        self._scale, joints = scales(model, scene), places(model)
-        self._angles = np.zeros((model.nq + model.nv, 2))  # phi and u/a are sums of components of the state
-        for name in joints.keys() & {"phi", "roll", "swing"}:
-            self._angles[joints[name], 0] = 1.0
-        self._angles[:, 1] = self._angles[:, 0]
-        if "slide" in joints:
-            self._angles[:, 1] = 0.0
-            self._angles[joints["slide"], 1] = 1 / scene.can.radius
+        self._scale, joints, radius = scales(model, scene), places(model), scene.can.radius
+        parts = {"slide": (0.0, 1 / radius), "lift": (0.0, 0.0)}  # phi and u/a are sums of components of the state
+        angle = 1.0, 0.0 if "slide" in joints else 1.0
+        self._angles = np.array([parts.get(name, angle) for name in joints] + [(0.0, 0.0)] * model.nv)
         rounding = max(1.0, _CANCELLED * scene.oscillator.swing / scene.oscillator.base)
         self._rounded = rounding > 1
         self._nudge, self._smallest = _NUDGE * rounding * self._scale, _SMALLEST * max(1.0, rounding / _RATIO**2)

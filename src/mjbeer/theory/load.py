@@ -105,12 +105,14 @@ def segment(fill: float) -> Segment:
     beta = 2 * math.atan2(math.sqrt(fill), math.sqrt(1 - fill))
     sine = 2 * math.sqrt(fill * (1 - fill))  # 1 - fill is exact wherever it is small
     angle = beta / 2 * (1 + _NODES)
-    strip = _WEIGHTS * (np.sin(angle) / beta) ** 2  # divided by beta^3, which may underflow
+    across = np.sin(angle)
+    strip = _WEIGHTS * (across / beta) ** 2  # divided by beta^3, which may underflow
     below = 2 * np.sin(angle / 2) ** 2  # 1 - cos(angle): depth under the top of the circle
-    total = float(np.sum(strip))
+    total = float(strip.sum())
     offset = 2 * (sine / beta) ** 3 / (3 * total)
-    height = float(np.sum(strip * below)) / total - below  # strip's y minus the centroid's
-    inertia, width = (float(np.sum(strip * (np.sin(angle) ** 2 / 3 + square))) / total for square in (height**2, 0.0))
+    height = float(strip @ below) / total - below  # strip's y minus the centroid's
+    width = float(strip @ across**2) / (3 * total)
+    inertia = width + float(strip @ height**2) / total
     return Segment(half_angle=beta, area=beta**3 * total, offset=offset, inertia=inertia, width=width)
 
 

@@ -1,7 +1,6 @@
 """The scenes that have a name, as functions that make them; and what a scene is in words."""
 
 import functools
-import inspect
 import math
 from collections.abc import Callable, Collection
 from typing import ParamSpec
@@ -17,12 +16,11 @@ Parameters = ParamSpec("Parameters")
 
 def named(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
     """Return a function that makes a scene, and has it remember by which arguments."""
-    signature = inspect.signature(make)
 
     @functools.wraps(make)
     def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.store(scene, made_by=(made, signature.bind(*arguments, **others).arguments))
+        require.store(scene, made_by=(made, arguments, others))
         return scene
 
     return made

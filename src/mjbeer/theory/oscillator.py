@@ -234,10 +234,31 @@ def sinc_gap(x: np.ndarray | float) -> np.ndarray:
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:
     """Return where a function is 0 between `lower`, where it is not positive, and `upper`, to full relative precision.
 
-    If it is not positive at `upper` it should be 0 there, and is only rounded.
+    If it is not positive at `upper` it should be 0 there, and is only rounded. Inverse quadratic interpolation where
+    that is safe, bisection elsewhere: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997).
     """
-    from scipy.optimize import brentq
-
-    if function(upper) <= 0:
+    # As safe as SciPy's brentq, whose import takes longer than that of all the theory.
+    near, far, here, there = lower, upper, function(lower), function(upper)
+    if there <= 0:
         return upper
-    return float(brentq(function, lower, upper, xtol=1e-300, rtol=4 * np.finfo(float).eps, maxiter=20_000))
+    assert here <= 0
+    part = 0.5
+    while here != 0:
+        place = near + part * (far - near)
+        value = function(place)
+        if (value > 0) == (here > 0):
+            last, before = near, here
+        else:
+            last, before, far, there = far, there, near, here
+        near, here = place, value
+        best = near if abs(here) < abs(there) else far
+        least = math.ulp(best) / abs(far - near)
+        if least > 0.5:
+            return best
+        way, rise = (near - far) / (last - far), (here - there) / (before - there)
+        part = 0.5
+        if rise**2 < way and (1 - rise) ** 2 < 1 - way:
+            part = here / (there - here) * before / (there - before)
+            part += (last - near) / (far - near) * here / (before - here) * there / (before - there)
+        part = min(1 - least, max(least, part))
+    return near

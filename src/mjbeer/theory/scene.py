@@ -59,7 +59,9 @@ class Scene:
     torque does not grow in proportion."""
     drag: float = 0.0
     """Force of the air on the axis over the square of its speed, C_d rho A / 2 [kg/m]; for a sliding load only."""
-    made_by: tuple[Callable[..., "Scene"], dict[str, Any]] | None = field(default=None, init=False, compare=False)
+    made_by: tuple[Callable[..., "Scene"], tuple[Any, ...], dict[str, Any]] | None = field(
+        default=None, init=False, compare=False
+    )
     """The function that made the scene, as `mjbeer.sliding`, and the arguments that it was given; None if none did."""
 
     def __post_init__(self) -> None:
@@ -103,8 +105,10 @@ class Scene:
 
     def _made(self) -> tuple[Callable[..., "Scene"], dict[str, Any]]:
         """Return what makes the scene, and with which arguments."""
-        own = {each.name: getattr(self, each.name) for each in dataclasses.fields(self) if each.init}
-        return self.made_by or (type(self), own)
+        if self.made_by is None:
+            return type(self), {each.name: getattr(self, each.name) for each in dataclasses.fields(self) if each.init}
+        make, arguments, others = self.made_by
+        return make, inspect.signature(make).bind(*arguments, **others).arguments
 
     def __repr__(self) -> str:
         """Return the call that makes the scene, without what it would have anyway."""

@@ -7,7 +7,6 @@ import pathlib
 from functools import partial
 
 import pytest
-from rich.console import Console
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError
@@ -18,8 +17,6 @@ from mjbeer.studies.stability.stiff_runs import SILENT
 from tests.support import figures, stubs
 
 pytestmark = pytest.mark.slow
-
-QUIET = Console(quiet=True)
 
 
 @pytest.mark.parametrize("extent", study.EXTENTS)

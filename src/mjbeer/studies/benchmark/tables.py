@@ -86,7 +86,7 @@ def tolerances(study: Benchmark) -> Table:
     for case in study.cases:
         found = study.of(case)
         steps = [point for point in found if point.way == "reduced" and point.knob == TIMESTEP]
-        rivals = [point for point in found if point.way in ("SciPy DOP853", "SciPy LSODA")]
+        rivals = [point for point in found if point.way in ("SciPy DOP853", "SciPy LSODA", "SciPy odeint")]
         for digits in (3, 6, 9, 12):
             to = {
                 point.way: point
