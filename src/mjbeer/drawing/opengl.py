@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from mjbeer.exceptions import RenderingError
 
 BACKENDS = ("egl", "osmesa")
@@ -50,6 +52,25 @@ def context(width: int, height: int) -> Any:
     else:
         from mujoco.osmesa import GLContext
     return GLContext(width, height)
+
+
+def read(drawn: Any, width: int, height: int) -> np.ndarray:
+    """Return what a MuJoCo context has drawn, from the lowest row up, shape (height, width, 4), uint8.
+
+    MuJoCo reads colours only. The fourth channel says how much of a pixel is covered, by whose share the colours are
+    darker.
+    """
+    from OpenGL import GL
+
+    GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO)
+    if drawn.offSamples:
+        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, drawn.offFBO_r)
+        GL.glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO_r)
+    pixels = np.empty((height, width, 4), np.uint8)
+    GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, pixels)
+    GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, drawn.offFBO)
+    return pixels
 
 
 def rasterize_in_one_thread() -> None:

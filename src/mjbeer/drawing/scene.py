@@ -13,6 +13,7 @@ import numpy as np
 
 from mjbeer.drawing import opengl
 from mjbeer.drawing.camera import View, circle, on_incline, scale
+from mjbeer.drawing.scenery import Scenery
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import RenderingError
 from mjbeer.model import looks
@@ -24,12 +25,12 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Colour: TypeAlias = tuple[float, float, float]
-_PAINT = [0.15, 0.17, 0.2, 1.0]
-"""Colour of lines on the board."""
 _PALER = 0.35
 """How much nearer to white the surface of a painted load is."""
-_HIDDEN = 1e3
-"""How far off a hidden can is [m]: behind whatever looks at the board."""
+_EDGES = 64
+"""Edges around a load: a circle, to the eye. A finer one takes longer to draw."""
+_VISUAL, _UNSEEN = 2, 5
+"""MuJoCo's groups of geoms: of what templates show, and of what OpenGL does not draw; each can is in one of its own."""
 _RIM = 1.12
 """Radius of what is drawn of a can, in radii, with room for what sticks out of it."""
 _NEAR_PLANE, _FAR_PLANE = 0.2, 20.0
@@ -67,13 +68,8 @@ class Display:
     """Where each can is across the board [m], away from the reader."""
 
     @classmethod
-    def of(
-        cls, scenes: Sequence[Scene], low: float, high: float, apart: float = 0.0, lines: Sequence[float] = ()
-    ) -> "Display":
-        """Return the display of cans on one incline, whose board is long enough for u from `low` to `high` [m].
-
-        The cans are `apart` [m] from each other, the first of them nearest to the reader. `lines` are distances down
-        the incline at which a line is drawn across the board [m]. All these lengths are as drawn.
+    def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
+        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first.
 
         Raises:
           TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
@@ -81,11 +77,15 @@ class Display:
         """
         lanes = [lane * apart for lane in range(len(scenes))]
         specs = [compose(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
-        for spec in specs:
+        for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):
+            if scene.load.fill is not None:
+                looks.pour(spec, _resize(scene), _EDGES)
             for pair in spec.pairs:
                 spec.delete(pair)
+            for geom in spec.geoms:
+                of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
+                geom.group = number % _UNSEEN if of_can else _UNSEEN
         board, *others = specs
-        looks.lengthen(board, _resize(scenes[0]), low, high)
         for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
             spec.option.tolerance = board.option.tolerance  # nothing is stepped here
             board.body("incline").add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
@@ -93,10 +93,6 @@ class Display:
         planks.pos += [0, lanes[-1] / 2, 0]
         planks.size += [0, lanes[-1] / 2, 0]
         wall.pos += [0, lanes[-1], 0]
-        for number, along in enumerate(lines):  # as thin as a coat of paint
-            line = board.body("incline").add_geom(board.default, name=f"line{number}", rgba=_PAINT, group=2)
-            line.type, line.size = mujoco.mjtGeom.mjGEOM_BOX, [0.003, planks.size[1], 0.0002]
-            line.pos = [along, planks.pos[1], planks.pos[2] + planks.size[2]]
         model = compile_spec(board)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 
@@ -117,15 +113,6 @@ class Display:
             for name, value in values.items():
                 if (joint := _prefix(number) + name) in joints:
                     self.data.joint(joint).qpos[:] = value
-        self._place()
-
-    def hide(self) -> None:
-        """Put all cans where nobody sees them."""
-        for number in range(len(self.scenes)):
-            self.data.joint(_prefix(number) + "lift").qpos[:] = _HIDDEN
-        self._place()
-
-    def _place(self) -> None:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
@@ -157,24 +144,21 @@ def _resize(scene: Scene) -> Scene:
 
 
 class Painter:
-    """Draws the cans of a display on their board. It holds graphics memory until it is closed.
-
-    Before a camera that stands still, only the parts with cans are drawn anew. Drawing takes as long as there are
-    pixels: a can that takes a tenth of the picture is drawn in a tenth of the time.
+    """Draws the cans of a display by OpenGL, and lays them on their scenery. It holds graphics memory until closed.
 
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
-    def __init__(self, display: Display, width: int, height: int, still: bool) -> None:
+    def __init__(self, display: Display, scenery: Scenery, width: int, height: int, still: bool) -> None:
         """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
 
         Raises:
           RenderingError: if OpenGL cannot draw without a window; the message names what to install.
         """
-        self._display, self._still, model = display, still, display.model
+        self._display, self._scenery, self._still, model = display, scenery, still, display.model
         self._empty: np.ndarray | None = None
         self._scene = mujoco.MjvScene(model, model.ngeom)
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the drawing time, and hidden by the wall
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
         self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
         model.vis.global_.offwidth, model.vis.global_.offheight = width, height
         self._gl = opengl.context(width, height)
@@ -188,22 +172,21 @@ class Painter:
 
     def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
         """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
-        if self._still and self._empty is None:
-            self._display.hide()
-            board = self._draw(view)
-            self._empty = np.dstack([board, np.full(board.shape[:2], 255, np.uint8)])
-        self._display.pose(positions)
         if self._empty is None:
-            sheet.put(self._draw(view), 0, top)
-            return
-        sheet.put(self._empty, 0, top)
-        for number, position in enumerate(positions):
+            self._scenery.draw(sheet, view, top)
+            self._empty = sheet.picture()[top : top + view.pixels[1]] if self._still else None
+        else:
+            sheet.put(self._empty, 0, top)
+        self._display.pose(positions)
+        for number, position in reversed(list(enumerate(positions))):  # the nearest at last
             left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
             if right > left and lower > upper:
-                sheet.put(self._draw(view.crop(left, upper, right, lower)), left, top + upper)
+                sheet.lay(self._draw(view.crop(left, upper, right, lower), number), left, top + upper)
 
-    def _draw(self, view: View) -> np.ndarray:
-        """Return what a view shows as an array of shape (height, width, 3), uint8."""
+    def _draw(self, view: View, number: int) -> np.ndarray:
+        """Return a can in a view, shape (height, width, 4), uint8: its colour where it is, and how much it covers."""
+        self._option.geomgroup[:] = 0
+        self._option.geomgroup[number % _UNSEEN] = 1
         scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
         model, data = self._display.model, self._display.data
         mujoco.mjv_updateScene(model, data, self._option, None, self._anywhere, everything, scene)
@@ -218,11 +201,9 @@ class Painter:
             if light.headlight:
                 light.pos, light.dir = view.eye, -view.axes[2]
         window = mujoco.MjrRect(0, 0, *view.pixels)
-        pixels = np.empty((view.pixels[1], view.pixels[0], 3), np.uint8)
         self._gl.make_current()
         mujoco.mjr_render(window, scene, self._context)
-        mujoco.mjr_readPixels(pixels, None, window, self._context)
-        return pixels[::-1]  # OpenGL's first row is the lowest
+        return opengl.read(self._context, *view.pixels)[::-1]  # OpenGL's first row is the lowest
 
     def close(self) -> None:
         """Free the graphics memory."""

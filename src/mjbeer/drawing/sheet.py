@@ -70,6 +70,17 @@ class Sheet:
         else:
             _copy(picture, part)
 
+    def lay(self, picture: np.ndarray, left: int, top: int) -> None:
+        """Lay a picture of shape (height, width, 4) on the sheet, whose last channel is how much it covers.
+
+        Its colours are darker by that share.
+        """
+        rows, columns, _ = picture.shape
+        part = self._pixels[top : top + rows, left : left + columns]
+        uncovered = 255 - picture[..., 3].astype(np.uint16)
+        for channel in range(3):
+            part[..., channel] = picture[..., channel] + (part[..., channel] * uncovered + 127) // 255
+
     def blank(self, left: int, top: int, right: int, bottom: int) -> None:
         """Make a part of the sheet white."""
         self._pixels[top:bottom, left:right] = 255
