@@ -161,6 +161,7 @@ class Painter:
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
         self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
         model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+        model.vis.quality.shadowsize = 0  # no light casts one
         self._gl = opengl.context(width, height)
         try:
             self._gl.make_current()

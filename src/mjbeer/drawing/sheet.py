@@ -144,16 +144,14 @@ class Sheet:
 
         With a `halo` the text has a white edge, so that it can be read on anything.
         """
-        left, top, right, bottom = box = self.box(place, words, size, anchor, bold)
-        high, low = max(0, top - _EDGE), max(0, left - _EDGE)
-        part = self._pixels[high : max(0, bottom + _EDGE), low : max(0, right + _EDGE), :3]
-        rows, columns, _ = part.shape
-        inside = np.s_[high - top + _EDGE :, low - left + _EDGE :]
-        for share, ink in [(_covered(words, size, bold, _EDGE), "white")] * halo + [
-            (_covered(words, size, bold), colour)
-        ]:
-            drawn = share[inside][:rows, :columns, np.newaxis]
-            part[:] = part + drawn * (255 * np.array(to_rgb(ink)) - part) + 0.5
+        left, top, _, _ = box = self.box(place, words, size, anchor, bold)
+        for edge, ink in [(_EDGE, "white")] * halo + [(0, colour)]:
+            rows, columns, shares = _covered(words, size, bold, edge)
+            rows, columns = rows + top, columns + left
+            inside = (rows >= 0) & (rows < self.height) & (columns >= 0) & (columns < self.width)
+            spots = rows[inside], columns[inside], np.s_[:3]
+            before, after = self._pixels[spots], 255 * np.array(to_rgb(ink), np.float32)
+            self._pixels[spots] = before + shares[inside] * (after - before) + np.float32(0.5)
         self.boxes.append(box)
         return box
 
@@ -166,7 +164,7 @@ class Sheet:
         bold: bool = False,
     ) -> tuple[int, int, int, int]:
         """Return the box that a text would have."""
-        height, width = (length - 2 * _EDGE for length in _covered(words, size, bold).shape)
+        width, height = _size(words, size, bold)
         left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
         return left, top, left + width, top + height
 
@@ -190,13 +188,24 @@ def overlap(one: Box, other: Box) -> bool:
 
 
 @lru_cache(maxsize=512)
-def _covered(words: str, size: float, bold: bool, edge: int = 0) -> np.ndarray:
-    """Return how much of each pixel a text with an edge covers, 0 to 1, with room for the widest edge around it."""
+def _size(words: str, size: float, bold: bool) -> tuple[int, int]:
+    """Return width and height of a text [pixels]."""
     font = _font(size, bold)
-    width, height = math.ceil(font.getlength(words)), sum(font.getmetrics())
+    return math.ceil(font.getlength(words)), sum(font.getmetrics())
+
+
+@lru_cache(maxsize=512)
+def _covered(words: str, size: float, bold: bool, edge: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return rows and columns of the pixels that a text with an edge covers, from its box's corner, and their shares.
+
+    The shares are from 0 to 1, of shape (pixels, 1).
+    """
+    width, height = _size(words, size, bold)
     image = Image.new("L", (width + 2 * _EDGE, height + 2 * _EDGE))
-    ImageDraw.Draw(image).text((_EDGE, _EDGE), words, 255, font, stroke_width=edge)
-    return np.asarray(image, np.float32) / 255
+    ImageDraw.Draw(image).text((_EDGE, _EDGE), words, 255, _font(size, bold), stroke_width=edge)
+    covered = np.asarray(image)
+    rows, columns = np.nonzero(covered)
+    return rows - _EDGE, columns - _EDGE, covered[rows, columns, np.newaxis].astype(np.float32) / 255
 
 
 def _copy(source: np.ndarray, target: np.ndarray) -> None:
