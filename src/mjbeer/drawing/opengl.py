@@ -55,21 +55,15 @@ def context(width: int, height: int) -> Any:
 
 
 def read(drawn: Any, width: int, height: int) -> np.ndarray:
-    """Return what a MuJoCo context has drawn, from the lowest row up, shape (height, width, 4), uint8.
+    """Return what a MuJoCo context has drawn, with a channel more than MuJoCo returns, shape (height, width, 4), uint8.
 
-    MuJoCo reads colours only. The fourth channel says how much of a pixel is covered, by whose share the colours are
-    darker.
+    The first row is the lowest. The last channel is 255, and 0 where nothing is drawn. There must be no multisampling.
     """
     from OpenGL import GL
 
-    GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO)
-    if drawn.offSamples:
-        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, drawn.offFBO_r)
-        GL.glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
-        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO_r)
     pixels = np.empty((height, width, 4), np.uint8)
+    GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO)
     GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, pixels)
-    GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, drawn.offFBO)
     return pixels
 
 
