@@ -85,7 +85,7 @@ def test_a_report_has_the_table_and_the_films(
     assert set(os.listdir(folder / "paper")) == {"letters.svg", "stories.md", "told.svg", *story}
     films = [call for call in calls if call["path"].parent == folder]
     assert [call["path"].stem for call in films] == list(FILMS)
-    assert {call["width"] for call in films} == {640 if quick else 960}
+    assert {call["width"] for call in films} == ({640} if quick else {1152, 960})
     runs = {call["path"].stem: call["film"].trajectory() for call in films if isinstance(call["film"], Take)}
     kinds = {name: (run.scene.attachment, run.scene.load.fill is None) for name, run in runs.items()}
     assert kinds == {

@@ -85,16 +85,16 @@ COMMANDS = {
     "--speed 0.1",
 }
 """The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
-_SMALL = 640, 360, 30
-"""Width and height [pixels] and pictures per second of a film in a quick report."""
+_SMALL, _WIDE = (640, 360, 30), (1152, 648, 30)
+"""Width and height [pixels] and pictures per second in a quick report, and of a race, which has the page's width."""
 GALLERY = 720, 405, 20
 """The same of an animated picture for the documents: each of the files then takes less than 1.5 MB."""
 
 
 def orders(folder: pathlib.Path, quick: bool) -> list[Filmed]:
     """Return the films to be drawn into a folder: those of the scenes and, unless it must be quick, of the stories."""
-    size = _SMALL if quick else stories.SIZE
-    scenes = [Filmed(film, folder / f"{name}.mp4", *size) for name, film in FILMS.items()]
+    sizes = {name: _SMALL if quick else _WIDE if name in RACES else stories.SIZE for name in FILMS}
+    scenes = [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
     return scenes if quick else scenes + stories.films(folder / "paper")
 
 
