@@ -12,8 +12,7 @@ from mjbeer.drawing import film, video
 from mjbeer.drawing.camera import CAMERAS, Camera, View, on_incline, scale
 from mjbeer.drawing.film import Stage
 from mjbeer.drawing.overlay import Look
-from mjbeer.drawing.scene import Display, Painter, coordinates
-from mjbeer.drawing.scenery import Scenery
+from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.load import segment

@@ -12,8 +12,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.drawing.camera import Shot
 from mjbeer.drawing.overlay import STRIP, Board, Look, Marks, guides, header, header_height
-from mjbeer.drawing.scene import Display, Painter, coordinates
-from mjbeer.drawing.scenery import Scenery
+from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import UNITS, Sheet, whole
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError

@@ -12,8 +12,7 @@ from scipy.optimize import brentq
 from mjbeer.drawing.camera import View, on_incline
 from mjbeer.drawing.film import Reel
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
-from mjbeer.drawing.scene import Display, Painter, coordinates
-from mjbeer.drawing.scenery import Scenery
+from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, whole
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.exceptions import ParameterError
