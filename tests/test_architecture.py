@@ -25,7 +25,7 @@ THEORY = [
 ]
 IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.row"))
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
-HEAVY = {"mujoco", "numba", "llvmlite", "matplotlib", "mediapy", "OpenGL"}
+HEAVY = {"mujoco", "numba", "llvmlite", "matplotlib", "OpenGL"}
 """What takes most of the time to import: the simulator, the compiler, and what draws."""
 
 
@@ -63,7 +63,7 @@ def test_a_file_of_numbers_needs_no_plots(tmp_path: pathlib.Path) -> None:
 @pytest.mark.costly
 def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
     """Without this, a misspelt name or a blind test would pass those above."""
-    assert loaded("import mjbeer.simulation.simulate, matplotlib, mediapy, OpenGL") >= HEAVY
+    assert loaded("import mjbeer.simulation.simulate, matplotlib, OpenGL") >= HEAVY
 
 
 def imported(folder: str) -> set[str]:
