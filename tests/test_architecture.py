@@ -26,7 +26,7 @@ THEORY = [
 IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.row"))
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 COMPILER = {"numba", "llvmlite"}
-HEAVY = {"mujoco", *COMPILER, "matplotlib", "mediapy", "OpenGL"}
+HEAVY = {"mujoco", *COMPILER, "matplotlib", "OpenGL"}
 """What takes most of the time to import: the simulator, the compiler, and what draws."""
 
 
@@ -68,7 +68,7 @@ def test_the_integrators_of_mujoco_need_no_compiler() -> None:
 @pytest.mark.costly
 def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
     """Without this, a misspelt name or a blind test would pass those above."""
-    assert loaded("import mjbeer.simulation.tolerance, matplotlib, mediapy, OpenGL") >= HEAVY
+    assert loaded("import mjbeer.simulation.tolerance, matplotlib, OpenGL") >= HEAVY
 
 
 def imported(folder: str) -> set[str]:

@@ -16,7 +16,7 @@ from tests.support.labels import faults
 
 ALL: dict[str, tuple[Film, float]] = {
     **{name: (film, 30.0) for name, film in FILMS.items() if isinstance(film, Race | Take)},
-    **{f"paper/{order.path.stem}": (order.film, order.fps) for order in stories.orders(pathlib.Path())},
+    **{f"paper/{order.path.stem}": (order.film, order.fps) for order in stories.films(pathlib.Path())},
 }
 TIMES = np.linspace(0.0, 2.3, 1151)
 TURN = 0.6

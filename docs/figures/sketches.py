@@ -106,5 +106,3 @@ def draw_layer() -> None:
 if __name__ == "__main__":
     draw_rolling()
     draw_layer()
-    for name in ("rolling", "layer"):
-        (HERE / f"{name}.png").unlink()  # the documents show the SVGs

@@ -24,7 +24,7 @@ from mjbeer.studies.stability.study import COMMAND
 
 
 def draw(results: Sequence[Result], path: pathlib.Path) -> None:
-    """Draw the limits over the integrators, to `path` with .svg and with .png appended."""
+    """Draw the limits over the integrators, to `path` with .svg appended."""
     limits = [result.values for result in results]
     names = [name for name in (*INTEGRATORS, DOP853) if any(of["integrator"] == name for of in limits)]
     cases = [case for case in CASES if any(of["case"] == case for of in limits)]
@@ -58,9 +58,7 @@ def draw(results: Sequence[Result], path: pathlib.Path) -> None:
 
 
 folder = pathlib.Path(__file__).parent
-drawn = list(stiff_maps.draw_all(stiff_maps.load(), folder))
+for name, draw_maps in stiff_maps.figures(stiff_maps.load()).items():
+    draw_maps(folder / name)
 if sys.argv[1:]:
     draw(Study.load(pathlib.Path(sys.argv[1]), COMMAND).of(GROUP), folder / "stability-limits")
-    drawn.append("stability-limits")
-for name in drawn:
-    (folder / f"{name}.png").unlink()

@@ -152,5 +152,3 @@ if __name__ == "__main__":
     draw_outcomes()
     draw_periods()
     draw_damping()
-    for picture in HERE.glob("sweep-*.png"):  # the document shows the SVGs
-        picture.unlink()

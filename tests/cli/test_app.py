@@ -156,7 +156,7 @@ def test_the_console_script_passes_on_the_exit_status() -> None:
 
 def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:
     """Nor the simulator: a mistake and the help are told at once."""
-    heavy = "{'mujoco', 'numba', 'scipy', 'matplotlib', 'mediapy', 'mjbeer.studies.sweep'}"
+    heavy = "{'mujoco', 'numba', 'scipy', 'matplotlib', 'mjbeer.studies.sweep'}"
     code = f"import sys; from mjbeer.cli.app import main; main(); print({heavy} & set(sys.modules))"
     assert run(["simulate", "frozen", "--phi0", "x"], code)[1] == "set()\n"
 

@@ -9,10 +9,10 @@ import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, hoop, simulate, sliding
 from mjbeer.drawing import film, video
-from mjbeer.drawing.camera import CAMERAS, Camera, on_incline, scale
+from mjbeer.drawing.camera import CAMERAS, Camera, View, on_incline, scale
 from mjbeer.drawing.film import Stage
 from mjbeer.drawing.overlay import Look
-from mjbeer.drawing.scene import Painter, coordinates
+from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.load import segment
@@ -119,20 +119,44 @@ def test_the_wall_fills_the_picture(camera: Camera, incline: float) -> None:
 
 
 @pytest.mark.draws
-def test_what_a_still_camera_does_not_draw_anew_is_the_same() -> None:
-    """A picture of the whole, and one of the empty board with the can in its place, differ by rounding only."""
+def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
     moved = motion()
     stage = Stage.of(moved, PLAIN, 1.0, *SIZE)
     assert stage.shot.still
-    pictures = []
+    scenery, pictures = Scenery(moved.scene, stage.display.model), []
     for still in (False, True):
         sheet = Sheet(*stage.shot.pixels)
-        with closing(Painter(stage.display, *stage.shot.pixels, still)) as painter:
-            painter.paint(sheet, stage.shot.view(0.0), np.array([[0.01, 0.5, 0.5, 0.002]]), 0)
-        pictures.append(sheet.picture().astype(int))
-    difference = np.abs(pictures[0] - pictures[1]).max(axis=2)
-    assert (difference > 2).sum() < 20  # pixels on edges, of 200 000
+        with closing(Painter(stage.display, scenery, *stage.shot.pixels, still)) as painter:
+            for u in (0.0, 0.01):
+                painter.paint(sheet, stage.shot.view(0.0), np.array([[u, 0.5, 0.5, 0.002]]), 0)
+        pictures.append(sheet.picture())
+    assert np.array_equal(*pictures)
     assert np.ptp(pictures[0]) > 200
+
+
+@pytest.mark.draws
+@pytest.mark.parametrize("incline", [-60.0, -5.0, 0.0, 10.0, 80.0])
+def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
+    """Across the can's axis and from above; on edges and far away, textures are blurred."""
+    scene = sliding(math.radians(incline))
+    display = Display.of([scene])
+    display.pose(np.zeros((1, 4)))
+    model = display.model
+    flat = [model.geom(name).id for name in ("wall", "board")]
+    model.geom_group[:] = 5
+    model.geom_group[flat] = 0
+    points = np.concatenate([display.outline(0, np.array([u, 0.0, 0.0, 0.0])).reshape(-1, 3) for u in (-0.2, 0.4)])
+    above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0.01)
+    scenery = Scenery(scene, model)
+    for view in (Stage.of(motion(scene.incline), PLAIN, 1.0, 400, 200).shot.view(0.2), above):
+        sheet = Sheet(*view.pixels)
+        scenery.draw(sheet, view, 0)
+        with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
+            drawn = painter._draw(view, 0)
+        assert (drawn[..., 3] == 255).all()
+        difference = np.abs(sheet.picture().astype(int) - drawn[..., :3]).max(axis=2)
+        assert difference.mean() < 2
+        assert (difference > 25).mean() < 0.01
 
 
 def test_motion_between_samples_is_of_fourth_order() -> None:

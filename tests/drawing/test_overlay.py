@@ -111,7 +111,7 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
 
 def guided(scene: Scene) -> tuple[Recorder, Board, View]:
     motion = exact(scene, FEW, 1.0)
-    display = Display.of([scene], float(motion.u.min()), float(motion.u.max()))
+    display = Display.of([scene])
     board = Board.of(scene, display.model)
     view = Shot.fit(scene, "auto", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.2)
     sheet = Recorder(*PIXELS)
@@ -150,7 +150,7 @@ def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -
     """Each tick is where a point of the board at that distance is seen, in a can of any size."""
     scene = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius))
     motion = exact(scene, FEW * math.sqrt(radius / 0.033), 1.0)
-    display = Display.of([scene], -0.1, 0.1)
+    display = Display.of([scene])
     board = Board.of(scene, display.model)
     view = Shot.fit(scene, "fixed", motion.time, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
     sheet = Recorder(*PIXELS)

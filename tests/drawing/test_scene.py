@@ -56,7 +56,7 @@ def test_every_kind_of_trajectory(name: str, rolling: str) -> None:
         moved = exact(scene, np.linspace(0, 0.5, 6), 2.0)
     else:
         moved = simulate(scene, 0.5, 2.0, rolling=rolling, times=0.1 * np.arange(6))
-    display = Display.of([scene], 0, 1)
+    display = Display.of([scene])
     for position in np.stack([moved.u, moved.phi, moved.roll, moved.lift], axis=1):
         display.pose(position[None])
         check(display, 0, *position)
@@ -68,7 +68,7 @@ def test_every_kind_of_trajectory(name: str, rolling: str) -> None:
 def test_any_scene_anywhere(scene: Scene, turns: float, phi: float, roll: float, height: float) -> None:
     a = scene.can.radius
     phi = roll if scene.attachment == "frozen" else phi
-    display = Display.of([scene], 0, 1)
+    display = Display.of([scene])
     display.pose(np.array([[turns * a, phi, roll, height * a]]))
     check(display, 0, turns * a, phi, roll, height * a)
 
@@ -76,22 +76,20 @@ def test_any_scene_anywhere(scene: Scene, turns: float, phi: float, roll: float,
 def test_cans_side_by_side_are_posed_by_themselves() -> None:
     """Of another kind each, on one board that is as wide as all lanes."""
     scenes = [sliding(0.1, can=METAL), frozen(0.1, can=METAL, fill=0.9), frozen(0.1, can=METAL)]
-    display = Display.of(scenes, 0, 1, apart=0.2, lines=(0.0, 0.5))
+    display = Display.of(scenes, apart=0.2)
     positions = np.array([[0.1, 0.5, 3.0, 0.0], [0.2, 1.0, 1.0, 0.01], [0.3, 7.0, 7.0, 0.0]])
     display.pose(positions)
     for number, position in enumerate(positions):
         check(display, number, *position)
     assert display.lanes == [0.0, 0.2, 0.4]
-    board, line = display.model.geom("board"), display.model.geom("line1")
+    board = display.model.geom("board")
     assert (board.pos[1] - board.size[1], board.pos[1] + board.size[1]) == pytest.approx((-0.075, 0.475))
-    assert in_incline(scenes[0], display.data.geom("line1").xpos)[0] == pytest.approx(0.5)
-    assert line.size[1] == display.model.geom("board").size[1]
 
 
 def test_each_can_has_a_label_and_a_load_of_its_colours() -> None:
     """Two with one template do not share them, and a load without a colour keeps its own."""
     scenes = [sliding(can=METAL), frozen(can=METAL), sliding(can=METAL), hoop()]
-    display = Display.of(scenes, 0, 1, apart=0.2)
+    display = Display.of(scenes, apart=0.2)
     beer = display.model.mat("2-beer").rgba.tolist()
     green = (0.0, 1.0, 0.0)
     display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0), green, green], [green, green, None, None])
@@ -108,8 +106,8 @@ def test_each_can_has_a_label_and_a_load_of_its_colours() -> None:
 @pytest.mark.parametrize("radius", [1e-4, 1e-3, 1.0, 50.0])
 def test_size_does_not_show(radius: float) -> None:
     """The same geoms and vertices for a can of 0.1 mm as for one of 50 m."""
-    one = Display.of([sliding(can=Can.massless(0.05, 0.1))], 0, 1).model
-    other = Display.of([sliding(can=Can.massless(radius, 2 * radius))], 0, 1).model
+    one = Display.of([sliding(can=Can.massless(0.05, 0.1))]).model
+    other = Display.of([sliding(can=Can.massless(radius, 2 * radius))]).model
     for field in ("geom_pos", "geom_size", "mesh_vert", "mat_texrepeat", "body_pos"):
         assert np.allclose(getattr(one, field), getattr(other, field), rtol=1e-6, atol=1e-9), field
     assert one.stat.extent == pytest.approx(other.stat.extent)

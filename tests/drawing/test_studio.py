@@ -14,7 +14,7 @@ from rich.console import Console
 
 from mjbeer import exact, frozen
 from mjbeer.drawing.film import Reel, Take
-from mjbeer.drawing.studio import Order, produce
+from mjbeer.drawing.studio import Filmed, Order, produce
 from mjbeer.exceptions import RenderingError
 
 pytestmark = [pytest.mark.slow, pytest.mark.draws, pytest.mark.costly]
@@ -44,7 +44,7 @@ def orders(folder: pathlib.Path, lives: int) -> list[Order]:
     for life in range(lives):
         (folder / "lives" / str(life)).touch()
     films = {"a": TAKE, "b": Fragile(folder / "lives"), "c": TAKE}
-    return [Order(film, folder / "films" / f"{name}.mp4", 160, 90, 10) for name, film in films.items()]
+    return [Filmed(film, folder / "films" / f"{name}.mp4", 160, 90, 10) for name, film in films.items()]
 
 
 @pytest.mark.parametrize("lives", [0, 1])
@@ -60,13 +60,13 @@ def test_films_are_written_with_a_still_picture_of_each_even_if_a_process_dies_o
 
 
 def test_a_film_whose_process_dies_twice_is_an_error(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(RenderingError, match=r"^b\.mp4 could not be drawn: its process died twice"):
+    with pytest.raises(RenderingError, match=r"^b\.mp4 could not be made: its process died twice"):
         produce(orders(tmp_path, 2), Console(quiet=True))
     assert [name for name in os.listdir(tmp_path / "films") if name.startswith(".")] == []
 
 
 def test_a_film_that_fails_is_an_error(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(tmp_path / "nowhere"))
-    with pytest.raises(RenderingError, match="nowhere' is not found"):
+    with pytest.raises(RenderingError, match=r"No such file or directory: '.*nowhere'"):
         produce(orders(tmp_path, 0), Console(quiet=True))
     assert os.listdir(tmp_path / "films") == []

@@ -104,7 +104,8 @@ def test_the_plots_of_a_page_are_those_that_are_drawn_for_it(
 ) -> None:
     monkeypatch.setattr(diagrams, "draw", lambda study, path: files.write(path.with_name(f"{path.name}.svg"), ""))
     monkeypatch.setattr(stiff_maps, "draw", lambda path, *_, **__: files.write(path.with_name(f"{path.name}.svg"), ""))
-    page.draw_plots(tmp_path)
+    for plot in page.plots(tmp_path):
+        plot.write()
     assert {each.name for each in tmp_path.iterdir()} == {each.name for each in (folder / "plots").iterdir()}
 
 

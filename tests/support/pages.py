@@ -11,6 +11,7 @@ from PIL import Image
 from mjbeer import exact, frozen, paper
 from mjbeer.drawing import video
 from mjbeer.drawing.film import Take
+from mjbeer.drawing.studio import Plotted
 from mjbeer.output import files
 from mjbeer.paper import stories as paper_stories
 from mjbeer.paper.row import CORRECTED, Finding
@@ -53,18 +54,23 @@ def stories() -> list[Story]:
     ]
 
 
-def plots(folder: pathlib.Path) -> None:
-    """Write plots of the benchmark and of stability that are nearly empty into a folder."""
+def plots(folder: pathlib.Path) -> list[Plotted]:
+    """Plots of the benchmark and of stability that are nearly empty, to be drawn into a folder."""
     names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-    for name in (*names, *stiff_maps.FIGURES):
-        files.write(folder / f"{name}.svg", PLOT.format(name))
+    return [Plotted(draw, folder / name) for name in (*names, *stiff_maps.FIGURES)]
+
+
+def draw(path: pathlib.Path) -> None:
+    """Write a plot that is nearly empty."""
+    files.write(path.with_name(f"{path.name}.svg"), PLOT.format(path.name))
 
 
 def fill(folder: pathlib.Path, encoded: bool = False) -> None:
     """Write the files that a page shows into a folder: films are `encoded`, or else a few letters."""
-    plots(folder / "plots")
+    for plot in plots(folder / "plots"):
+        plot.write()
     for name in ("letters", *(story.name for story in paper_stories.stories())):
-        files.write(folder / "paper" / f"{name}.svg", PLOT.format(name))
+        draw(folder / "paper" / name)
     for name in (*films.FILMS, *(f"paper/{story.name}" for story in paper_stories.stories() if story.film)):
         if encoded:
             width, height, fps = SIZE

@@ -17,6 +17,8 @@ import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, TextIO
 
+from mjbeer.output import files
+
 PATIENCE = 600.0
 """Time after which a process is taken to hang [s]: a guard, which no machine is slow enough to meet."""
 _MAIN = "import sys; from mjbeer.cli.app import main; sys.exit(main())"
@@ -119,6 +121,13 @@ def call_and_sleep(port: int) -> dict[str, Any]:
     with socket.create_connection(("127.0.0.1", port)):
         time.sleep(3600)
     return {}
+
+
+def draw_and_sleep(path: pathlib.Path) -> None:
+    """Begin a plot that takes longer than any test, and say so."""
+    with files.whole(path.with_name(f"{path.name}.svg")):
+        print("drawing", flush=True)
+        time.sleep(3600)
 
 
 def fall() -> dict[str, Any]:

@@ -110,20 +110,25 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
     def tell(path: pathlib.Path) -> None:
         files.write(path.with_name(f"{path.name}.svg"), pages.PLOT)
 
-    def produce(orders: Sequence[studio.Order], _: Console) -> None:
-        for order in orders:
-            if order.path.name == fail_at:
-                raise RenderingError(f"cannot draw {fail_at}")
-            files.write(order.path, "film")
-            Image.new("RGB", pages.SIZE[:2]).save(order.path.with_name(f"{order.path.stem}-still.png"))
-            calls.append({"function": "produce", "film": order.film, "path": order.path, "width": order.width})
+    def produce(orders: Sequence[studio.Order], _: Console) -> list[Any]:
+        return [make(order) for order in orders]
+
+    def make(order: studio.Order) -> Any:
+        if not isinstance(order, studio.Filmed):
+            return order.write()
+        if order.path.name == fail_at:
+            raise RenderingError(f"cannot draw {fail_at}")
+        files.write(order.path, "film")
+        Image.new("RGB", pages.SIZE[:2]).save(order.path.with_name(f"{order.path.stem}-still.png"))
+        calls.append({"function": "produce", "film": order.film, "path": order.path, "width": order.width})
+        return None
 
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
     monkeypatch.setattr(studio, "produce", produce)
     monkeypatch.setattr(opengl, "problem", lambda: None)
     monkeypatch.setattr(video, "problem", lambda: None)
     monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
-    monkeypatch.setattr(page, "draw_plots", pages.plots)
+    monkeypatch.setattr(page, "plots", pages.plots)
     monkeypatch.setattr(viewer, "require_window", lambda: None)
     monkeypatch.setattr(viewer, "_play", lambda player: None)
     for name in ("render", "save_frame"):

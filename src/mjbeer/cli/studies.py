@@ -113,13 +113,12 @@ def stability(given: Namespace) -> int:
 @command(_folder("paper"), _flag("films", "also draw films of the motions"))
 def paper(given: Namespace) -> int:
     """Plot each of the paper's scenarios, and write a folder with a summary."""
-    from mjbeer.drawing import opengl
     from mjbeer.paper import stories
 
-    missing = stories.write(given.output, given.films, STDERR)
+    not_drawn = stories.write(given.output, given.films, STDERR)
     say(f"the stories are in {given.output / 'stories.md'}")
-    if missing:
-        say(opengl.missing(missing), "yellow")
+    if not_drawn:
+        say(not_drawn, "yellow")
     return 0
 
 

@@ -104,6 +104,13 @@ class View:
         across = (np.stack([right, up], axis=-1) / -back[..., None] - self.low) / (self.high - self.low)
         return np.stack([across[..., 0], 1 - across[..., 1]], axis=-1) * self.pixels
 
+    def corners(self, y: float) -> np.ndarray:
+        """Return x and z [m] of the picture's corners, in turn, in a plane across the can's axis, shape (4, 2)."""
+        (left, low), (right, high) = self.low, self.high
+        rays = np.array([(left, low, -1.0), (right, low, -1.0), (right, high, -1.0), (left, high, -1.0)]) @ self.axes
+        points = self.eye + rays * ((y - self.eye[1]) / rays[:, 1:2])
+        return points[:, [0, 2]]
+
     def scale(self, point: np.ndarray) -> float:
         """Return how many pixels wide a metre across the view is at the distance of a point [m]."""
         distance = float((self.eye - point) @ self.axes[2])

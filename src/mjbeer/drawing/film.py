@@ -10,9 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.camera import Shot, scale
+from mjbeer.drawing.camera import Shot
 from mjbeer.drawing.overlay import STRIP, Board, Look, Marks, guides, header, header_height
-from mjbeer.drawing.scene import Display, Painter, coordinates
+from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import UNITS, Sheet, whole
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
@@ -128,7 +128,8 @@ def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
     stage = Stage.of(trajectory, look, speed, width, height)
-    with closing(Painter(stage.display, *stage.shot.pixels, stage.shot.still)) as painter:
+    scenery = Scenery(trajectory.scene, stage.display.model)
+    with closing(Painter(stage.display, scenery, *stage.shot.pixels, stage.shot.still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
             stage.sheet.boxes.clear()
             painter.paint(stage.sheet, stage.shot.view(time), now[None], stage.top)
@@ -166,7 +167,7 @@ class Stage:
         u, lift, pixels = positions[:, 0], positions[:, 3], (width, height - top - below)
         below_board = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
         shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, room=below_board)
-        display = Display.of([scene], float(u.min()) * scale(scene), float(u.max()) * scale(scene))
+        display = Display.of([scene])
         marks = Marks(trajectory, look.marks, plane, fine, positions)
         strip = Strip(charts(trajectory, look.strips), width, below) if below else None
         return cls(trajectory, look, speed, Sheet(width, height), shot, display, marks, strip, top, unit)

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from mjbeer.exceptions import RenderingError
 
 BACKENDS = ("egl", "osmesa")
@@ -50,6 +52,19 @@ def context(width: int, height: int) -> Any:
     else:
         from mujoco.osmesa import GLContext
     return GLContext(width, height)
+
+
+def read(drawn: Any, width: int, height: int) -> np.ndarray:
+    """Return what a MuJoCo context has drawn, with a channel more than MuJoCo returns, shape (height, width, 4), uint8.
+
+    The first row is the lowest. The last channel is 255, and 0 where nothing is drawn. There must be no multisampling.
+    """
+    from OpenGL import GL
+
+    pixels = np.empty((height, width, 4), np.uint8)
+    GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO)
+    GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, pixels)
+    return pixels
 
 
 def rasterize_in_one_thread() -> None:

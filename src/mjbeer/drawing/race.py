@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from mjbeer.drawing.camera import View, on_incline
 from mjbeer.drawing.film import Reel
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
-from mjbeer.drawing.scene import Display, Painter, coordinates
+from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, whole
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.exceptions import ParameterError
@@ -161,8 +161,8 @@ class Course:
         self.race, self.runners, self.sheet = race, runners, Sheet(width, height)
         self.top, below = round(HEIGHT * self.unit), round(STRIP * self.unit) if race.strips else 0
         scenes, before = [runner.trajectory.scene for runner in runners], -_BEFORE * length
-        lines = (0.0,) if race.strips else (0.0, length)
-        self.display = Display.of(scenes, before, length, _APART, lines)
+        self.display = Display.of(scenes, _APART)
+        self.scenery = Scenery(scenes[0], self.display.model, (0.0,) if race.strips else (0.0, length))
         self.display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (before, length)]
         outlines = [self.display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
@@ -196,7 +196,7 @@ class Course:
         Raises:
           RenderingError: while the first picture is drawn, if OpenGL does not work.
         """
-        with closing(Painter(self.display, *self.view.pixels, still=True)) as painter:
+        with closing(Painter(self.display, self.scenery, *self.view.pixels, still=True)) as painter:
             for time in times:
                 self.sheet.boxes.clear()
                 painter.paint(self.sheet, self.view, self.positions(time), self.top)

@@ -5,6 +5,7 @@ too small or too large for the graphics, which compute in single precision.
 """
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -24,16 +25,24 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Colour: TypeAlias = tuple[float, float, float]
-_PAINT = [0.15, 0.17, 0.2, 1.0]
-"""Colour of lines on the board."""
 _PALER = 0.35
 """How much nearer to white the surface of a painted load is."""
-_HIDDEN = 1e3
-"""How far off a hidden can is [m]: behind whatever looks at the board."""
+_EDGES = 64
+"""Edges around a load: a circle, to the eye. A finer one takes longer to draw."""
+_VISUAL, _UNSEEN = 2, 5
+"""MuJoCo's groups of geoms: of what templates show, and of what OpenGL does not draw; each can is in one of its own."""
 _RIM = 1.12
 """Radius of what is drawn of a can, in radii, with room for what sticks out of it."""
 _NEAR_PLANE, _FAR_PLANE = 0.2, 20.0
 """Nearest and farthest that is drawn, in distances of what is looked at."""
+_STRIPE = math.pi / 2 * RADIUS
+"""Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
+_SQUARE = 0.1
+"""Distance of the lines on the wall [m]: it repeats its texture, whose edge is a line, with x = 0 in its middle."""
+_PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003
+"""Colour of lines across the board, and half their width [m]."""
+_NEAR = np.array([0.0, -1.0, 0.0])
+"""Unit vector towards the reader."""
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
@@ -67,13 +76,8 @@ class Display:
     """Where each can is across the board [m], away from the reader."""
 
     @classmethod
-    def of(
-        cls, scenes: Sequence[Scene], low: float, high: float, apart: float = 0.0, lines: Sequence[float] = ()
-    ) -> "Display":
-        """Return the display of cans on one incline, whose board is long enough for u from `low` to `high` [m].
-
-        The cans are `apart` [m] from each other, the first of them nearest to the reader. `lines` are distances down
-        the incline at which a line is drawn across the board [m]. All these lengths are as drawn.
+    def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
+        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first.
 
         Raises:
           TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
@@ -81,11 +85,15 @@ class Display:
         """
         lanes = [lane * apart for lane in range(len(scenes))]
         specs = [compose(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
-        for spec in specs:
+        for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):
+            if scene.load.fill is not None:
+                looks.pour(spec, _resize(scene), _EDGES)
             for pair in spec.pairs:
                 spec.delete(pair)
+            for geom in spec.geoms:
+                of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
+                geom.group = number % _UNSEEN if of_can else _UNSEEN
         board, *others = specs
-        looks.lengthen(board, _resize(scenes[0]), low, high)
         for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
             spec.option.tolerance = board.option.tolerance  # nothing is stepped here
             board.body("incline").add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
@@ -93,10 +101,6 @@ class Display:
         planks.pos += [0, lanes[-1] / 2, 0]
         planks.size += [0, lanes[-1] / 2, 0]
         wall.pos += [0, lanes[-1], 0]
-        for number, along in enumerate(lines):  # as thin as a coat of paint
-            line = board.body("incline").add_geom(board.default, name=f"line{number}", rgba=_PAINT, group=2)
-            line.type, line.size = mujoco.mjtGeom.mjGEOM_BOX, [0.003, planks.size[1], 0.0002]
-            line.pos = [along, planks.pos[1], planks.pos[2] + planks.size[2]]
         model = compile_spec(board)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 
@@ -117,15 +121,6 @@ class Display:
             for name, value in values.items():
                 if (joint := _prefix(number) + name) in joints:
                     self.data.joint(joint).qpos[:] = value
-        self._place()
-
-    def hide(self) -> None:
-        """Put all cans where nobody sees them."""
-        for number in range(len(self.scenes)):
-            self.data.joint(_prefix(number) + "lift").qpos[:] = _HIDDEN
-        self._place()
-
-    def _place(self) -> None:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
@@ -156,28 +151,102 @@ def _resize(scene: Scene) -> Scene:
     return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)
 
 
-class Painter:
-    """Draws the cans of a display on their board. It holds graphics memory until it is closed.
+@dataclasses.dataclass(frozen=True, eq=False)
+class Scenery:
+    """The wall and the board of a model, in its colours and light.
 
-    Before a camera that stands still, only the parts with cans are drawn anew. Drawing takes as long as there are
-    pixels: a can that takes a tenth of the picture is drawn in a tenth of the time.
+    They are flat: a sheet draws them in a tenth of the time that OpenGL takes.
+    """
+
+    scene: Scene
+    model: mujoco.MjModel
+    lines: Sequence[float] = ()
+    """Distances down the incline at which a line crosses the board [m]. All lengths are as drawn."""
+
+    def draw(self, sheet: Sheet, view: View, top: int) -> None:
+        """Draw what a view shows onto a sheet, below a row of it."""
+        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
+        self._wall(sheet, view, top)
+        self._board(sheet, view, top)
+        sheet.clip(None)
+
+    def _wall(self, sheet: Sheet, view: View, top: int) -> None:
+        shift = np.array([0, top])
+        y, texture = float(self.model.geom("wall").pos[1]), self._texture("grid")
+        corners = view.corners(y)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        ranges = np.floor(np.stack([low, high], axis=1) / _SQUARE + 0.5)
+        x, z = (_SQUARE * (np.arange(*each) + 0.5) for each in ranges)
+        plumb = np.stack([np.stack([x, np.full_like(x, end)], axis=-1) for end in (low[1], high[1])], axis=1)
+        level = np.stack([np.stack([np.full_like(z, end), z], axis=-1) for end in (low[0], high[0])], axis=1)
+        lines = np.insert(np.concatenate([plumb, level]), 1, y, axis=-1)
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)) + shift, self._lit(texture[64, 64], _NEAR, view))
+        width = 2 * _SQUARE / len(texture) * view.scale(np.insert(low, 1, y))
+        sheet.line(_apart(view.pixel(lines) + shift), width, self._lit(texture[0, 0], _NEAR, view))
+
+    def _board(self, sheet: Sheet, view: View, top: int) -> None:
+        board, texture, shift = self.model.geom("board"), self._texture("planks"), np.array([0, top])
+        (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
+        seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(self.scene, 1.0, 0.0)
+        stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
+        dark = stripes[np.round(stripes / _STRIPE) % 2 == 1]
+        up = np.insert(on_incline(self.scene, 0.0, 1.0), 1, 0.0)
+        faces = ((up, (front, over), (back, over)), (-up, (front, under), (back, under)))
+        for normal, one, other in (*faces, (_NEAR, (front, under), (front, over))):
+
+            def bands(begin: np.ndarray, length: float, edges=(one, one, other, other)) -> np.ndarray:
+                """Return the places of the parts of this face that begin somewhere down the incline."""
+                ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
+                points = [np.insert(on_incline(self.scene, along, z), 1, y, axis=-1) for along, (y, z) in ends]
+                return _apart(view.pixel(np.stack(points, axis=1)) + shift)
+
+            if (view.eye - np.insert(on_incline(self.scene, 0.0, one[1]), 1, one[0])) @ normal <= 0:
+                continue
+            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(texture[16, 16], normal, view))
+            sheet.area(bands(dark, _STRIPE), self._lit(texture[16, 48], normal, view))
+            if len(self.lines) and normal is up:
+                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(255 * _PAINT, normal, view))
+
+    def _texture(self, name: str) -> np.ndarray:
+        """Return the texture of a name, shape (height, width, 3)."""
+        texture = self.model.tex(name)
+        shape = int(texture.height[0]), int(texture.width[0]), int(texture.nchannel[0])
+        return self.model.tex_data[int(texture.adr[0]) :][: math.prod(shape)].reshape(shape)
+
+    def _lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> tuple[float, float, float]:
+        """Return the colour of a face that is turned to a `normal`, lit by the sun and from the eye."""
+        head, sun = self.model.vis.headlight, self.model.light_diffuse[0] * max(0.0, -normal @ self.model.light_dir[0])
+        light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
+        red, green, blue = np.minimum(colour / 255 * light, 1.0).tolist()
+        return red, green, blue
+
+
+def _apart(shapes: np.ndarray) -> np.ndarray:
+    """Return places of several lines or polygons of shape (n, k, 2) as one path, with gaps (NaN)."""
+    return np.insert(shapes, shapes.shape[1], np.nan, axis=1).reshape(-1, 2)
+
+
+class Painter:
+    """Draws the cans of a display by OpenGL, and lays them on their scenery. It holds graphics memory until closed.
 
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
-    def __init__(self, display: Display, width: int, height: int, still: bool) -> None:
+    def __init__(self, display: Display, scenery: Scenery, width: int, height: int, still: bool) -> None:
         """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
 
         Raises:
           RenderingError: if OpenGL cannot draw without a window; the message names what to install.
         """
-        self._display, self._still, model = display, still, display.model
+        self._display, self._scenery, self._still, model = display, scenery, still, display.model
         self._empty: np.ndarray | None = None
         self._scene = mujoco.MjvScene(model, model.ngeom)
-        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False  # a third of the drawing time, and hidden by the wall
+        self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
         self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
-        model.vis.global_.offwidth, model.vis.global_.offheight = width, height
-        self._gl = opengl.context(width, height)
+        model.vis.global_.offwidth, model.vis.global_.offheight = 2 * width, 2 * height
+        model.vis.quality.offsamples = 0  # twice as many pixels, each way, take less time and show more
+        model.vis.quality.shadowsize = 0  # no light casts one
+        self._gl = opengl.context(2 * width, 2 * height)
         try:
             self._gl.make_current()
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
@@ -188,22 +257,21 @@ class Painter:
 
     def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
         """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
-        if self._still and self._empty is None:
-            self._display.hide()
-            board = self._draw(view)
-            self._empty = np.dstack([board, np.full(board.shape[:2], 255, np.uint8)])
-        self._display.pose(positions)
         if self._empty is None:
-            sheet.put(self._draw(view), 0, top)
-            return
-        sheet.put(self._empty, 0, top)
-        for number, position in enumerate(positions):
+            self._scenery.draw(sheet, view, top)
+            self._empty = sheet.picture()[top : top + view.pixels[1]] if self._still else None
+        else:
+            sheet.put(self._empty, 0, top)
+        self._display.pose(positions)
+        for number, position in reversed(list(enumerate(positions))):  # the nearest at last
             left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
             if right > left and lower > upper:
-                sheet.put(self._draw(view.crop(left, upper, right, lower)), left, top + upper)
+                sheet.lay(self._draw(view.crop(left, upper, right, lower), number), left, top + upper)
 
-    def _draw(self, view: View) -> np.ndarray:
-        """Return what a view shows as an array of shape (height, width, 3), uint8."""
+    def _draw(self, view: View, number: int) -> np.ndarray:
+        """Return a can in a view, shape (height, width, 4), uint8: its colour where it is, and how much it covers."""
+        self._option.geomgroup[:] = 0
+        self._option.geomgroup[number % _UNSEEN] = 1
         scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
         model, data = self._display.model, self._display.data
         mujoco.mjv_updateScene(model, data, self._option, None, self._anywhere, everything, scene)
@@ -217,12 +285,12 @@ class Painter:
         for light in scene.lights[: scene.nlight]:
             if light.headlight:
                 light.pos, light.dir = view.eye, -view.axes[2]
-        window = mujoco.MjrRect(0, 0, *view.pixels)
-        pixels = np.empty((view.pixels[1], view.pixels[0], 3), np.uint8)
+        width, height = view.pixels
         self._gl.make_current()
-        mujoco.mjr_render(window, scene, self._context)
-        mujoco.mjr_readPixels(pixels, None, window, self._context)
-        return pixels[::-1]  # OpenGL's first row is the lowest
+        mujoco.mjr_render(mujoco.MjrRect(0, 0, 2 * width, 2 * height), scene, self._context)
+        fine = opengl.read(self._context, 2 * width, 2 * height)[::-1]
+        four = sum(fine[row::2, column::2].astype(np.uint16) for row in (0, 1) for column in (0, 1))
+        return np.asarray(four >> 2).astype(np.uint8)
 
     def close(self) -> None:
         """Free the graphics memory."""

@@ -3,7 +3,7 @@
 import math
 import pathlib
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from matplotlib import get_data_path
@@ -61,11 +61,25 @@ class Sheet:
     def put(self, picture: np.ndarray, left: int = 0, top: int = 0) -> None:
         """Put a picture on the sheet, with its upper left corner at a place.
 
-        It has the shape (height, width, 3), or (height, width, 4) with a last channel of 255, and is uint8. With four
-        channels that takes a tenth of the time.
+        It has the shape (height, width, 3), or (height, width, 4) with a last channel of 255, and is uint8.
         """
         rows, columns, channels = picture.shape
-        self._pixels[top : top + rows, left : left + columns, :channels] = picture
+        part = self._pixels[top : top + rows, left : left + columns]
+        if channels == 4:
+            part[:] = picture
+        else:
+            _copy(picture, part)
+
+    def lay(self, picture: np.ndarray, left: int, top: int) -> None:
+        """Lay a picture of shape (height, width, 4) on the sheet, whose last channel is how much it covers.
+
+        Its colours are darker by that share.
+        """
+        rows, columns, _ = picture.shape
+        part = self._pixels[top : top + rows, left : left + columns]
+        uncovered = 255 - picture[..., 3].astype(np.uint16)
+        for channel in range(3):
+            part[..., channel] = picture[..., channel] + (part[..., channel] * uncovered + 127) // 255
 
     def blank(self, left: int, top: int, right: int, bottom: int) -> None:
         """Make a part of the sheet white."""
@@ -73,7 +87,9 @@ class Sheet:
 
     def picture(self) -> np.ndarray:
         """Return a copy of what is on the sheet, shape (height, width, 3), uint8."""
-        return np.ascontiguousarray(self._pixels[:, :, :3])
+        picture = np.empty((self.height, self.width, 3), np.uint8)
+        _copy(self._pixels, picture)
+        return picture
 
     def clip(self, box: Box | None) -> None:
         """Draw only within a box from now on, or everywhere."""
@@ -128,16 +144,14 @@ class Sheet:
 
         With a `halo` the text has a white edge, so that it can be read on anything.
         """
-        left, top, right, bottom = box = self.box(place, words, size, anchor, bold)
-        high, low = max(0, top - _EDGE), max(0, left - _EDGE)
-        part = self._pixels[high : max(0, bottom + _EDGE), low : max(0, right + _EDGE)]
-        if part.size:
-            image = Image.fromarray(part)
-            ink = tuple(round(255 * share) for share in to_rgb(colour))
-            ImageDraw.Draw(image).text(
-                (left - low, top - high), words, ink, _font(size, bold), stroke_width=_EDGE * halo, stroke_fill="white"
-            )
-            part[:] = image
+        left, top, _, _ = box = self.box(place, words, size, anchor, bold)
+        for edge, ink in [(_EDGE, "white")] * halo + [(0, colour)]:
+            rows, columns, shares = _covered(words, size, bold, edge)
+            rows, columns = rows + top, columns + left
+            inside = (rows >= 0) & (rows < self.height) & (columns >= 0) & (columns < self.width)
+            spots = rows[inside], columns[inside], np.s_[:3]
+            before, after = self._pixels[spots], 255 * np.array(to_rgb(ink), np.float32)
+            self._pixels[spots] = before + shares[inside] * (after - before) + np.float32(0.5)
         self.boxes.append(box)
         return box
 
@@ -150,8 +164,7 @@ class Sheet:
         bold: bool = False,
     ) -> tuple[int, int, int, int]:
         """Return the box that a text would have."""
-        font = _font(size, bold)
-        width, height = math.ceil(font.getlength(words)), sum(font.getmetrics())
+        width, height = _size(words, size, bold)
         left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
         return left, top, left + width, top + height
 
@@ -172,6 +185,33 @@ class Sheet:
 def overlap(one: Box, other: Box) -> bool:
     """Return whether two boxes have a point in common."""
     return min(one[2], other[2]) > max(one[0], other[0]) and min(one[3], other[3]) > max(one[1], other[1])
+
+
+@lru_cache(maxsize=512)
+def _size(words: str, size: float, bold: bool) -> tuple[int, int]:
+    """Return width and height of a text [pixels]."""
+    font = _font(size, bold)
+    return math.ceil(font.getlength(words)), sum(font.getmetrics())
+
+
+@lru_cache(maxsize=512)
+def _covered(words: str, size: float, bold: bool, edge: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return rows and columns of the pixels that a text with an edge covers, from its box's corner, and their shares.
+
+    The shares are from 0 to 1, of shape (pixels, 1).
+    """
+    width, height = _size(words, size, bold)
+    image = Image.new("L", (width + 2 * _EDGE, height + 2 * _EDGE))
+    ImageDraw.Draw(image).text((_EDGE, _EDGE), words, 255, _font(size, bold), stroke_width=edge)
+    covered = np.asarray(image)
+    rows, columns = np.nonzero(covered)
+    return rows - _EDGE, columns - _EDGE, covered[rows, columns, np.newaxis].astype(np.float32) / 255
+
+
+def _copy(source: np.ndarray, target: np.ndarray) -> None:
+    """Copy red, green and blue from one picture to another, one by one: together they would take four times as long."""
+    for channel in range(3):
+        target[..., channel] = source[..., channel]
 
 
 def _font(size: float, bold: bool) -> ImageFont.FreeTypeFont:

@@ -4,6 +4,7 @@ Trajectories and scenes belong to the theory, which knows no pictures. Their met
 called, as `mjbeer` registers it with them.
 """
 
+import base64
 import html
 import math
 import os
@@ -99,9 +100,8 @@ class Video:
 
     def _repr_html_(self) -> str:
         """Return the video as HTML, with nothing that has to be fetched."""
-        import mediapy
-
-        return mediapy.html_from_compressed_video(self.data, self.width, self.height, loop=True, autoplay=False)
+        film = f"data:video/mp4;base64,{base64.b64encode(self.data).decode()}"
+        return f'<video controls loop width="{self.width}" height="{self.height}" src="{film}"></video>'
 
 
 def video(trajectory: Trajectory, path: str | os.PathLike[str] | None, width: int, height: int, **others: Any) -> Video:

@@ -175,7 +175,7 @@ def _fit(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Fit what is drawn to the scene's sizes."""
     _fit_sizes(spec, scene.can)
     if scene.load.fill is not None:
-        _fill(spec, scene, max(scene.load.fill, _LEAST_FILL))
+        pour(spec, scene)
     else:
         _hang(spec, scene)
 
@@ -281,12 +281,12 @@ def _hang(spec: mujoco.MjSpec, scene: Scene) -> None:
         ball.fromto = [*ball.fromto[:2], -offset, *ball.fromto[3:5], -offset]
 
 
-def _fill(spec: mujoco.MjSpec, scene: Scene, fill: float) -> None:
-    """Give the beer its `fill`, and put the foam on it, which gets thin or goes where there is no room or no beer."""
-    radius, length = scene.can.radius, scene.can.length
+def pour(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
+    """Give the beer its fill, and put the foam on it, which gets thin or goes where there is no room or no beer."""
+    radius, length, fill = scene.can.radius, scene.can.length, max(scene.load.fill or 0.0, _LEAST_FILL)
     thickness = min(FOAM, _FOAM_SHARE * 2 * fill, _FOAM_SHARE * 2 * (1 - fill))
     liquid, foam = spec.mesh("load"), spec.mesh("foam")
-    shape = beer(fill, radius, length)
+    shape = beer(fill, radius, length, edges)
     if len(liquid.usertexcoord):  # the texture covers the can's cross-section; multiples of 1/512 have few digits
         liquid.usertexcoord = (np.round(512 * (shape[0][:, [0, 2]] / (2 * radius) + 0.5)) / 512).ravel()
     _reshape(liquid, shape)

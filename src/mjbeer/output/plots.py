@@ -1,4 +1,4 @@
-"""The style that all plots share, and writing each plot as SVG and PNG."""
+"""The style that all plots share, and writing each plot as SVG."""
 
 import math
 import pathlib
@@ -71,7 +71,7 @@ def chart(
     title: str = "",
     subtitle: str = "",
 ) -> Generator[list[Axes]]:
-    """Yield the axes to draw into, row by row; at the end write `path` with .svg and .png, whole or not at all.
+    """Yield the axes to draw into, row by row; at the end write `path` with .svg, whole or not at all.
 
     `width` and `height` are the size of the whole plot [inches]. The title says what is shown, and the subtitle, a
     smaller line below it, of which scene.
@@ -94,12 +94,9 @@ def chart(
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(_power))
         named = {"Title": title, "Description": subtitle} if title else {}
-        for kind, metadata in ((".svg", {"Date": None, **named}), (".png", {})):
-            with files.whole(path.with_name(path.name + kind)) as temporary:
-                figure.savefig(temporary, facecolor="white", dpi=150, metadata=metadata)
-                if kind == ".svg":
-                    temporary.write_text(_lighter(temporary.read_text(encoding="utf-8")), encoding="utf-8")
-                    figure.set_layout_engine("none")  # to lay it out anew would take longer than to draw it
+        with files.whole(path.with_name(path.name + ".svg")) as temporary:
+            figure.savefig(temporary, facecolor="white", dpi=150, metadata={"Date": None, **named})
+            temporary.write_text(_lighter(temporary.read_text(encoding="utf-8")), encoding="utf-8")
 
 
 def label(axes: Axes, x: str, y: str, title: str = "", **settings: Any) -> None:

@@ -4,9 +4,9 @@ The paper has no equations for it. The ones here hold while the hoop rolls witho
 M/m, and phi [rad] is 0 where the point mass is at the bottom.
 """
 
-import itertools
 import math
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar
@@ -24,31 +24,31 @@ MU = 0.8
 """Friction coefficient of the hoop that skids: the kinetic one in the paper's last figure."""
 
 
-def rate(ratio: float, phi: float) -> float:
+def rate(ratio: float, phi: float | np.ndarray) -> Any:
     """Return phi_dot^2 a/g of a hoop that fell from rest at the top, phi = pi.
 
     Energy is conserved: (2 M + 4 m sin^2(phi/2)) a^2 phi_dot^2/2 = m g a (1 + cos(phi)).
     """
-    return 2 * math.cos(phi / 2) ** 2 / (ratio + 2 * math.sin(phi / 2) ** 2)
+    return 2 * np.cos(phi / 2) ** 2 / (ratio + 2 * np.sin(phi / 2) ** 2)
 
 
-def acceleration(ratio: float, phi: float) -> float:
+def acceleration(ratio: float, phi: float | np.ndarray) -> Any:
     """Return phi_ddot a/g, which is half the derivative of `rate` by phi."""
-    return -math.sin(phi) * (1 + ratio / 2) / (ratio + 2 * math.sin(phi / 2) ** 2) ** 2
+    return -np.sin(phi) * (1 + ratio / 2) / (ratio + 2 * np.sin(phi / 2) ** 2) ** 2
 
 
-def normal(ratio: float, phi: float) -> float:
+def normal(ratio: float, phi: float | np.ndarray) -> Any:
     """Return N/(m g) = 1 + M/m + (sin(phi) phi_ddot + cos(phi) phi_dot^2) a/g."""
-    return 1 + ratio + math.sin(phi) * acceleration(ratio, phi) + math.cos(phi) * rate(ratio, phi)
+    return 1 + ratio + np.sin(phi) * acceleration(ratio, phi) + np.cos(phi) * rate(ratio, phi)
 
 
-def friction(ratio: float, phi: float) -> float:
+def friction(ratio: float, phi: float | np.ndarray) -> Any:
     """Return F/(m g), positive uphill or, on level ground, against the rolling.
 
     F/(m g) = -((1 + M/m) phi_ddot - cos(phi) phi_ddot + sin(phi) phi_dot^2) a/g.
     """
     turning = acceleration(ratio, phi)
-    return -((1 + ratio) * turning - math.cos(phi) * turning + math.sin(phi) * rate(ratio, phi))
+    return -((1 + ratio) * turning - np.cos(phi) * turning + np.sin(phi) * rate(ratio, phi))
 
 
 def _least_normal(ratio: float) -> tuple[float, float]:
@@ -68,13 +68,14 @@ def lift_off(ratio: float) -> float:
 def slip(ratio: float, mu: float) -> float:
     """Return the angle from the top [rad] at which |F| first reaches mu N; NaN if it never does."""
 
-    def margin(phi: float) -> float:
-        return mu * normal(ratio, phi) - abs(friction(ratio, phi))
+    def margin(phi: float | np.ndarray) -> Any:
+        return mu * normal(ratio, phi) - np.abs(friction(ratio, phi))
 
-    for before, after in itertools.pairwise(math.pi * (1 - i / 2000) for i in range(1, 2000)):
-        if margin(after) < 0:
-            return math.pi - float(brentq(margin, after, before, xtol=1e-14))
-    return math.nan
+    angles = math.pi * (1 - np.arange(1, 2000) / 2000)
+    slips = np.flatnonzero(margin(angles[1:]) < 0)
+    if not slips.size:
+        return math.nan
+    return math.pi - float(brentq(margin, angles[slips[0] + 1], angles[slips[0]], xtol=1e-14))
 
 
 @cache

@@ -167,7 +167,7 @@ def draw_period(path: pathlib.Path) -> None:
             theory = [scene.period(amplitude) / small for amplitude in amplitudes]
             (line,) = period.plot(np.degrees(amplitudes), theory, label=name)
             few = (high - rest) * np.array([0.2, 0.4, 0.6, 0.8, 0.9])
-            measured = [simulate(scene, 8, rest + amplitude, integrator=DOP853).frequency() for amplitude in few]
+            measured = [simulate(scene, 4, rest + amplitude, integrator=DOP853).frequency() for amplitude in few]
             period.plot(np.degrees(few), 2 * math.pi / np.array(measured) / small, "o", color=line.get_color())
             period.axvline(math.degrees(high - rest), color=line.get_color(), linewidth=1, linestyle=":")
         period.plot([], [], "o", color=GREY, label="MuJoCo (lines: exact theory)")
@@ -202,7 +202,7 @@ def draw_normal(path: pathlib.Path) -> None:
     title = "Why a light hoop hops: the ground would have to pull it"
     with chart(path, width=7.5, height=5.4, title=title, subtitle=_HOOP) as (axes,):
         for (ratio, name), colour in zip(ratios, COLOURS, strict=False):
-            values = np.array([hopping.normal(ratio, math.pi - math.radians(angle)) for angle in angles])
+            values = hopping.normal(ratio, math.pi - np.radians(angles))
             negative = np.flatnonzero(values < 0)
             end = negative[0] if len(negative) else len(angles)
             axes.plot(angles[:end], values[:end], color=colour, label=f"theory, M/m = {name}")

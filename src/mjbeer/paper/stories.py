@@ -3,7 +3,8 @@
 import math
 import pathlib
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 
@@ -13,15 +14,14 @@ from mjbeer.drawing import opengl, studio
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
-from mjbeer.drawing.studio import Order
+from mjbeer.drawing.studio import Filmed, Plotted
 from mjbeer.output import files
-from mjbeer.output.terminal import progress_bar
 from mjbeer.paper import plots_frozen, plots_sliding, real_beer
 from mjbeer.paper.hopping import MU
 from mjbeer.theory.scene import INCLINE
 
-_WIDTH, _HEIGHT, _FPS = 960, 540, 30
-"""Width and height [pixels] and pictures per second of a film: small, for there are eight of them."""
+SIZE = 960, 540, 30
+"""Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""
 _BLUE, _RED = (0.1, 0.35, 0.6), (0.75, 0.2, 0.1)
 
 
@@ -34,7 +34,7 @@ class Story:
     caption: str
     """What the plot and the film show."""
     draw: Callable[[pathlib.Path], None]
-    """Writes the plot to a path, once with .svg and once with .png appended."""
+    """Writes the plot to a path, with .svg appended."""
     film: Film | None = None
 
 
@@ -151,38 +151,49 @@ def _read(name: str) -> str:
     return pathlib.Path(__file__).with_name(name).read_text(encoding="utf-8")
 
 
-def orders(folder: pathlib.Path) -> list[Order]:
+def plots(folder: pathlib.Path) -> list[Plotted]:
+    """Return the plots of the stories, to be drawn into a folder."""
+    return [Plotted(story.draw, folder / story.name) for story in stories()]
+
+
+def films(folder: pathlib.Path) -> list[Filmed]:
     """Return the films of the stories, to be drawn into a folder."""
     filmed = [(story.film, folder / f"{story.name}.mp4") for story in stories() if story.film is not None]
-    return [Order(film, path, _WIDTH, _HEIGHT, _FPS) for film, path in filmed]
+    return [Filmed(film, path, *SIZE) for film, path in filmed]
 
 
-def write(folder: pathlib.Path, films: bool, console: Console) -> list[str]:
-    """Write letters.svg, a plot of each story (SVG and PNG), its film if asked for (MP4), and stories.md.
+@contextmanager
+def told(folder: pathlib.Path, films: bool, note: str = "") -> Generator[None]:
+    """Write letters.svg and, when the block has written plots and perhaps films, stories.md, with a note.
 
-    Return the names of the films that were asked for and are missing because there is no OpenGL.
+    stories.md of an earlier run goes first.
 
-    Every file appears whole or not at all; stories.md comes last, and that of an earlier run goes first.
+    Raises:
+      OutputError: if the folder cannot be written to.
+    """
+    with files.whole(folder / "stories.md") as summary:
+        (folder / "stories.md").unlink(missing_ok=True)
+        files.write(folder / "letters.svg", _read("letters.svg"))
+        yield
+        lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
+        lines += [f"Films: {note}", ""] if note else []
+        for story in stories():
+            lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
+            lines += [f"[Film]({story.name}.mp4)", ""] if films and story.film is not None else []
+        summary.write_text("\n".join(lines), encoding="utf-8")
+
+
+def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
+    """Write a plot of each story (SVG), its film if asked for (MP4), and stories.md, each whole or not at all.
+
+    Return the line that says which films were asked for and are missing because there is no OpenGL, or "".
 
     Raises:
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
-    drawn, filmed = stories(), orders(folder) if films else []
-    missing = [order.path.name for order in filmed] if filmed and opengl.problem() else []
-    with files.whole(folder / "stories.md") as summary:
-        (folder / "stories.md").unlink(missing_ok=True)
-        with progress_bar(console, len(drawn)) as begin:
-            files.write(folder / "letters.svg", _read("letters.svg"))
-            for story in drawn:
-                begin(story.name)
-                story.draw(folder / story.name)
-        if filmed and not missing:
-            studio.produce(filmed, console)
-        lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
-        lines += [f"Films: {opengl.missing(missing)}", ""] if missing else []
-        for story in drawn:
-            lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
-            lines += [f"[Film]({story.name}.mp4)", ""] if films and story.film is not None and not missing else []
-        summary.write_text("\n".join(lines), encoding="utf-8")
-    return missing
+    orders = films(folder) if filmed else []
+    note = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
+    with told(folder, filmed and not note, note):
+        studio.produce([*([] if note else orders), *plots(folder)], console)
+    return note

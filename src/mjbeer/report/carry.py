@@ -1,6 +1,5 @@
 """A can with beer and a rigid one, carried by the same move: a film and a plot of what the gripper feels."""
 
-import io
 import math
 import pathlib
 import sys
@@ -9,13 +8,13 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.colors import to_rgb
 
 from mjbeer.drawing.film import Reel
+from mjbeer.drawing.overlay import HEIGHT, STRIP, head
+from mjbeer.drawing.sheet import UNITS, Sheet
+from mjbeer.drawing.strip import Chart, Line, Strip
 from mjbeer.exceptions import LiquidWarning
 from mjbeer.output import plots
 from mjbeer.simulation.carry import Carried, carry
@@ -23,11 +22,11 @@ from mjbeer.theory.standing import INDICATIVE, Standing, standing
 
 _DISTANCE, _MOVE, _AFTER = 0.4, 1.0, 1.0
 _NAMES = {"beer": ("beer that sloshes", 1, plots.COLOURS[0]), "rigid": ("rigid", 0, plots.COLOURS[1])}
-_BEER, _METAL = "#FAA114", "#8A929C"
+_BEER, _METAL = to_rgb("#FAA114"), to_rgb("#8A929C")
 _MOVES = tuple(float(each) for each in np.geomspace(0.6, 2.5, 24))
 """Times of the moves of the plot [s]."""
-_LOWER = 0.16
-"""Distance of the rigid can below the other one in the film [m]."""
+_LOWER, _TALL = 0.16, 0.32
+"""Distance of the rigid can below the other one, and height of what is seen above the chart [m]."""
 
 
 @dataclass(frozen=True)
@@ -52,45 +51,26 @@ class Carry:
     def _draw(
         self, cans: dict[str, Standing], runs: dict[str, Carried], times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
-        with mpl.rc_context(plots.STYLE):
-            figure = Figure(figsize=(8, 8 * (height + 0.5) / width), dpi=width / 8)  # a part of a pixel is cut off
-            stage, chart = figure.subplots(2, 1, height_ratios=[2.2, 1])
-            moving = _scenery(stage, cans)
-            for name, run in runs.items():
-                chart.plot(run.time, run.force, color=_NAMES[name][2], label=_NAMES[name][0])
-            now = chart.axvline(0, **plots.REFERENCE)
-            plots.label(chart, "time [s]", "force [N]", xlim=(0, _MOVE + _AFTER))
-            chart.legend(loc="upper right", ncols=2)
+        sheet, unit = Sheet(width, height), height / UNITS
+        below = round(STRIP * unit)
+        scale, foot = (height - HEIGHT * unit - below) / _TALL, height - below - 2.2 * unit
+        corner = np.array([(width - _DISTANCE * scale) / 2, foot])
+        lines = [Line(told, runs[name].time, runs[name].force, to_rgb(hue)) for name, (told, _, hue) in _NAMES.items()]
+        strip = Strip([Chart("force of the gripper [N]", lines)], width, below)
+        words = self.title, f"half a 12-oz can of beer, carried by {_DISTANCE:g} m in {_MOVE:g} s"
         for time in times:
-            for name, (wall, beer) in moving.items():
-                shell, liquid = _outline(cans[name], runs[name], float(time), _LOWER * (name == "beer"))
-                wall.set_xy(shell)
-                beer.set_xy(liquid)
-            now.set_xdata([time, time])
-            stage.set_title(f"Two cans, one gripper: t = {time:.2f} s, {self.speed:g} times as fast as in reality")
-            picture = io.BytesIO()
-            with mpl.rc_context(plots.STYLE):
-                figure.savefig(picture, format="rgba", facecolor="white")
-            yield np.frombuffer(picture.getvalue(), np.uint8).reshape(height, width, 4)[..., :3].copy()
-
-
-def _scenery(stage: Axes, cans: dict[str, Standing]) -> dict[str, tuple[Polygon, Polygon]]:
-    """Set up the view, and return wall and liquid of each can."""
-    room = 3 * next(iter(cans.values())).can.radius
-    stage.set(xlim=(-room, _DISTANCE + room), ylim=(-0.03, _LOWER + 0.13))
-    stage.set_aspect("equal")
-    stage.set_axis_off()
-    moving = {}
-    for name in cans:
-        floor = _LOWER * (name == "beer")
-        stage.axhline(floor, color=plots.GREY, linewidth=1)
-        stage.text(-room, floor - 0.004, _NAMES[name][0], va="top", color=_NAMES[name][2])
-        beer = Polygon(np.zeros((4, 2)), facecolor=_BEER)
-        wall = Polygon(np.zeros((4, 2)), closed=False, fill=False, edgecolor=_METAL, linewidth=3)
-        for each in (beer, wall):
-            stage.add_patch(each)
-        moving[name] = wall, beer
-    return moving
+            sheet.blank(0, 0, width, height)
+            head(sheet, words, time, self.speed, unit)
+            for name, (told, _, hue) in _NAMES.items():
+                floor = _LOWER * (name == "beer")
+                shell, liquid = _outline(cans[name], runs[name], float(time), floor)
+                sheet.area(corner + liquid * [scale, -scale], _BEER)
+                sheet.line(corner + shell * [scale, -scale], 0.25 * unit, _METAL)
+                row = foot - floor * scale
+                sheet.line(np.array([[1.2 * unit, row], [width - 1.2 * unit, row]]), 0.08 * unit, plots.GREY)
+                sheet.text((1.2 * unit, row + 0.9 * unit), told, 1.1 * unit, hue)
+            strip.draw(sheet, time, height - below)
+            yield sheet.picture()
 
 
 def _outline(can: Standing, run: Carried, time: float, floor: float) -> tuple[np.ndarray, np.ndarray]:
@@ -140,5 +120,4 @@ def _peak(run: Carried, start: float, end: float) -> float:
 
 
 if __name__ == "__main__":
-    draw_plot(target := pathlib.Path(sys.argv[1]))
-    target.with_suffix(".png").unlink()
+    draw_plot(pathlib.Path(sys.argv[1]))

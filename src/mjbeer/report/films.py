@@ -9,7 +9,7 @@ from functools import partial
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
-from mjbeer.drawing.studio import Order
+from mjbeer.drawing.studio import Filmed
 from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry
@@ -85,17 +85,17 @@ COMMANDS = {
     "--speed 0.1",
 }
 """The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
-_SMALL, _LARGE = (640, 360, 30), (1280, 720, 30)
-"""Width and height [pixels] and pictures per second of a film in a quick report, and in another one."""
+_SMALL, _WIDE = (640, 360, 30), (1152, 648, 30)
+"""Width and height [pixels] and pictures per second in a quick report, and of a race, which has the page's width."""
 GALLERY = 720, 405, 20
 """The same of an animated picture for the documents: each of the files then takes less than 1.5 MB."""
 
 
-def orders(folder: pathlib.Path, quick: bool) -> list[Order]:
+def orders(folder: pathlib.Path, quick: bool) -> list[Filmed]:
     """Return the films to be drawn into a folder: those of the scenes and, unless it must be quick, of the stories."""
-    size = _SMALL if quick else _LARGE
-    scenes = [Order(film, folder / f"{name}.mp4", *size) for name, film in FILMS.items()]
-    return scenes if quick else scenes + stories.orders(folder / "paper")
+    sizes = {name: _SMALL if quick else _WIDE if name in RACES else stories.SIZE for name in FILMS}
+    scenes = [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
+    return scenes if quick else scenes + stories.films(folder / "paper")
 
 
 def not_drawn(names: Sequence[str]) -> str:

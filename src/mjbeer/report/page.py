@@ -8,6 +8,7 @@ import re
 import statistics
 from collections import Counter
 from dataclasses import dataclass, replace
+from functools import partial
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
@@ -15,6 +16,7 @@ from PIL import Image
 
 from mjbeer import paper
 from mjbeer.drawing.film import Take
+from mjbeer.drawing.studio import Plotted
 from mjbeer.paper import stories
 from mjbeer.paper.row import Finding, Row
 from mjbeer.report.films import COMMANDS, FILMS, RACES
@@ -99,16 +101,12 @@ class Shown:
         return self.plot is not None and self.plot.width > _WIDE
 
 
-def draw_plots(folder: pathlib.Path) -> None:
-    """Draw error against run time, scene by scene, and the stability maps that come with mjbeer, into a folder.
-
-    Raises:
-      OutputError: if a file cannot be written.
-    """
+def plots(folder: pathlib.Path) -> list[Plotted]:
+    """Return the plots of error against run time, scene by scene, and the stability maps, to be drawn into a folder."""
     benchmark = Benchmark.load(SHIPPED)
-    for case in benchmark.cases:
-        diagrams.draw(replace(benchmark, points=benchmark.of(case)), folder / f"error-{case}")
-    stiff_maps.draw_all(stiff_maps.load(), folder)
+    scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
+    drawn = {f"error-{case}": partial(diagrams.draw, scene) for case, scene in scenes.items()}
+    return [Plotted(draw, folder / name) for name, draw in (drawn | stiff_maps.figures(stiff_maps.load())).items()]
 
 
 def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: str) -> str:

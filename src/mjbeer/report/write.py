@@ -1,6 +1,7 @@
 """The report: the tables, a video of each scene and the paper's stories, in a folder with a page that shows it all."""
 
 import pathlib
+from dataclasses import dataclass
 
 from rich.console import Console
 
@@ -9,6 +10,18 @@ from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.report import films, page
 from mjbeer.studies.validation.run import Validation, validate
+
+
+@dataclass(frozen=True)
+class _Checks:
+    """The checks, to be made; their results go into a file."""
+
+    path: pathlib.Path
+
+    def write(self) -> Validation:
+        validation = validate(None)
+        files.write(self.path, validation.json())
+        return validation
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
@@ -24,19 +37,15 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
       OutputError: if the folder cannot be written to.
       RenderingError: if a video cannot be drawn for another reason.
     """
-    orders = films.orders(folder, quick)
-    with files.whole(folder / "index.html") as index:  # a folder that cannot be written to fails here
+    drawn, papers = films.orders(folder, quick), folder / "paper"
+    with files.whole(folder / "index.html") as index, stories.told(papers, films=False):
         (folder / "index.html").unlink(missing_ok=True)
-        validation = validate(console)
-        files.write(folder / "validation.json", validation.json())
-        not_drawn = films.not_drawn([str(order.path.relative_to(folder)) for order in orders])
-        stories.write(folder / "paper", False, console)
-        console.print(f"wrote {folder / 'paper'}", highlight=False, markup=False, soft_wrap=True)
-        page.draw_plots(folder / "plots")
-        if not_drawn:
-            for order in orders:  # those of an earlier report are not of this one
+        if not_drawn := films.not_drawn([str(order.path.relative_to(folder)) for order in drawn]):
+            for order in drawn:  # those of an earlier report are not of this one
                 order.path.unlink(missing_ok=True)
-        else:
-            studio.produce(orders, console)
+            drawn = []
+        # The checks take longest, and compile what the films run; plots of what is known need none of it.
+        orders = [_Checks(folder / "validation.json"), *page.plots(folder / "plots"), *drawn, *stories.plots(papers)]
+        validation, *_ = studio.produce(orders, console)
         index.write_text(page.html(folder, validation, quick, not_drawn), encoding="utf-8")
     return validation, not_drawn

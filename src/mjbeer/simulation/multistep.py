@@ -235,6 +235,8 @@ def _find(form, line, part, count, since, work):
     """
     left, right, span, slower, faster = part
     length, share = right - left, since / span
+    if form.digits == 0:
+        return left + length * share
     unit = span / (line.step * length)
     first, last = unit / slower, unit / faster
     passed = left + length * share * (first + share * (3 - 2 * first - last + share * (first + last - 2)))
@@ -244,9 +246,8 @@ def _find(form, line, part, count, since, work):
         else:
             late = since - span + _duration(form, line, passed, right, count, work)
         phi, rate = _angle(line, passed)
-        fast, grows = pace(form, phi), 0.0
-        if form.digits > 0:
-            grows = form.uneven * form.turns * math.sin(2 * form.turns * phi) * rate / (2 * fast * fast * form.scale)
+        fast = pace(form, phi)
+        grows = form.uneven * form.turns * math.sin(2 * form.turns * phi) * rate / (2 * fast * fast * form.scale)
         ahead = late / fast
         passed += ahead * (1 - grows * ahead / 2) / line.step
         if abs(late) <= _PUNCTUAL * span:
@@ -264,6 +265,14 @@ def add(sums, row, term):
 
 
 @inner
+def _go_on(sums, span, drawn):
+    """Add a `span` [s] to the time, and what it adds to the axis less its swing."""
+    add(sums, 2, span)
+    add(sums, 3, span * (sums[0, 4] + span * drawn / 2))
+    add(sums, 4, span * drawn)
+
+
+@inner
 def _margin(numbers, phi, rate):
     """Return the force [N] that is left until rolling is no longer possible."""
     return forces(numbers, math.sin(phi), math.cos(phi), rate * rate)[2]
@@ -276,7 +285,11 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
     Return the next sample. `sums` and `history` are those of `gauss_jackson`; `node` is phi, its rate and the pace at
     the step before. `work` is space for points and coefficients, and `state` for a state.
     """
-    line, (numbers, found) = _line(history, end, sums, step, back, work[2]), record
+    numbers, found = record
+    if form.digits == 0 and found.size == 0 and times[sample] > (sums[0, 2] + step) * (1 + 1e-14):
+        _go_on(sums, step, (history[1, end - 2 - back] + history[1, end - 1 - back]) / 2)
+        return sample
+    line = _line(history, end, sums, step, back, work[2])
     left, until, before, slower, at_end = 0.0, 1.0, (node[0], node[1]), node[2], _angle(line, 1.0)
     last, seen = pace(form, at_end[0]), _SEEN if found.size > 0 else np.inf
     # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
@@ -285,7 +298,8 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
         right, after, count = _part(
             form, line, left, until, before, at_end if until == 1 else _angle(line, until), seen
         )
-        span, faster = _duration(form, line, left, right, count, work), pace(form, after[0])
+        span = _duration(form, line, left, right, count, work)
+        faster = last if right == 1 else pace(form, after[0])
         earlier, part = sums[0, 2], (left, right, span, slower, faster)
         looking = found.size > 0 and found[FAILS_AT] == np.inf and right - left > _SHARP
         if looking and _margin(numbers, after[0], after[1] / faster) < 0:  # the moment is within a shorter part
@@ -301,9 +315,7 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
             see(numbers, found, earlier + span, state)
         elif found.size > 0:  # the run ends within this part
             see(numbers, found, times[-1], samples[-1])
-        add(sums, 2, span)
-        add(sums, 3, span * (sums[0, 4] + span * drawn / 2))
-        add(sums, 4, span * drawn)
+        _go_on(sums, span, drawn)
         left, until, before, slower = right, 1.0, after, faster
     node[0], node[1], node[2] = at_end[0], at_end[1], last
     return sample

@@ -159,7 +159,7 @@ def test_the_command_writes_everything(
     stubs.benchmark(monkeypatch)
     assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
     names = {each.name for each in (tmp_path / "new").iterdir()}
-    assert names == {"study.jsonl", "points.csv", "summary.md", ".lock", "work_precision.svg", "work_precision.png"}
+    assert names == {"study.jsonl", "points.csv", "summary.md", ".lock", "work_precision.svg"}
     summary = (tmp_path / "new" / "summary.md").read_text()
     for text in ("cheapest setting for an error", "SciPy odeint", "share of the force", "a sweep of stubs"):
         assert text in summary

@@ -43,7 +43,6 @@ def test_the_study_is_written(
     assert drawn == ["stability-damping", "stability-solref"]
     for name in drawn:
         assert f"]({name}.svg)" in summary
-        assert (tmp_path / f"{name}.png").stat().st_size > 5000
     assert [figures.faults(figure) for figure in seen] == [[], []]
     kept = stiff_maps.load(tmp_path / "maps.json")
     assert [each["name"] for each in kept["maps"]] == ["equality, Euler"]

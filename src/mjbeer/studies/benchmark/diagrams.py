@@ -31,7 +31,7 @@ _FLOOR, _CEILING = 1e-15, 10.0
 
 
 def draw(study: Benchmark, path: pathlib.Path) -> None:
-    """Draw the scenes of a study, each in a panel, and write them to `path` with .svg and with .png.
+    """Draw the scenes of a study, each in a panel, and write them to `path` with .svg appended.
 
     In the SVG a point tells its setting, its error and its run time.
 

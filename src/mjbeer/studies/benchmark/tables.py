@@ -23,7 +23,7 @@ Errors are against exact theory.
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
-    """Write points.csv, the diagram work_precision (.svg and .png) and, as the last, summary.md.
+    """Write points.csv, the diagram work_precision.svg and, as the last, summary.md.
 
     Raises:
       OutputError: if a file cannot be written.

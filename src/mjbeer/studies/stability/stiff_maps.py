@@ -255,18 +255,12 @@ def load(path: pathlib.Path = SHIPPED) -> dict[str, Any]:
     return document
 
 
-def draw_all(document: dict[str, Any], folder: pathlib.Path) -> dict[str, str]:
-    """Write the figures of the maps in a document into a folder, and return their captions by name.
-
-    Raises:
-      OutputError: if a file cannot be written.
-    """
-    captions = {}
-    for name, figure in FIGURES.items():
-        if shown := [of for of in (*document[STIFF], *document[DAMPED]) if _figure(of) == name]:
-            draw(folder / name, figure, shown)
-            captions[name] = figure.caption
-    return captions
+def figures(document: dict[str, Any]) -> dict[str, Callable[[pathlib.Path], None]]:
+    """Return what draws each figure of the maps in a document to a path, with .svg appended, by the figure's name."""
+    maps: dict[str, list[dict[str, Any]]] = {name: [] for name in FIGURES}
+    for of in (*document[STIFF], *document[DAMPED]):
+        maps[_figure(of)].append(of)
+    return {name: partial(draw, figure=FIGURES[name], maps=shown) for name, shown in maps.items() if shown}
 
 
 def _figure(of: dict[str, Any]) -> str:
@@ -278,7 +272,7 @@ def _figure(of: dict[str, Any]) -> str:
 
 
 def draw(path: pathlib.Path, figure: Figure, maps: Sequence[dict[str, Any]]) -> None:
-    """Write maps of one family side by side, to `path` with .svg and with .png appended."""
+    """Write maps of one family side by side, to `path` with .svg appended."""
     family = maps[0].get("family", "damping")
     shades = SHADES if "family" in maps[0] else DAMPED_SHADES
     columns = min(figure.columns, len(maps))

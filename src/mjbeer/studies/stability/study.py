@@ -89,8 +89,9 @@ def write(study: Study, folder: pathlib.Path) -> None:
     verdict = f"**{count} did not come out as theory expects.**" if count else "All came out as theory expects."
     first, *others = tables(study)
     lines = ["# mjbeer: stability", "", verdict, _READ, first.markdown()]
-    for name, caption in stiff_maps.draw_all(json.loads(maps), folder).items():
-        lines += [f"![{name}]({name}.svg)", "", caption, ""]
+    for name, draw in stiff_maps.figures(json.loads(maps)).items():
+        draw(folder / name)
+        lines += [f"![{name}]({name}.svg)", "", stiff_maps.FIGURES[name].caption, ""]
     known = search.table_of_cases(study.of(search.KNOWN))
     lines += [table.markdown() for table in (*others, known) if table.rows]
     files.write(folder / "summary.md", "\n".join(lines))

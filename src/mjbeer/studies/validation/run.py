@@ -68,7 +68,7 @@ def rows() -> list[Row]:
     return [*motions.rows(), *damped.rows(), *motions.models(), *motions.extremes(), *standing.rows()]
 
 
-def validate(console: Console) -> Validation:
+def validate(console: Console | None) -> Validation:
     """Measure every row and every claim, and return the results; `console` shows a progress bar."""
     listed, claims = rows(), paper.rows()
     results, findings = [], []
