@@ -143,14 +143,13 @@ def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float,
     method = Integrator(model, dynamics) if setting.integrator == DOP853 else GaussJackson(model, scene, dynamics)
 
     def solve(start: np.ndarray, times: np.ndarray, friction: float | None) -> Solution:
-        recorder: Recorder | SmoothRecorder | None = None
+        if friction is None:
+            return Solution(method.run(start, times, timestep))
         if isinstance(method, Integrator):
-            recorder = None if friction is None else Recorder(model, scene, friction, within=True)
-            states = method.run(start, times, timestep, watch=recorder)
-        else:
-            recorder = None if friction is None else SmoothRecorder(scene, friction)
-            states = method.run(start, times, timestep, recorder)
-        return Solution(states, record=recorder.record if recorder else None)
+            recorder = Recorder(model, scene, friction, within=True)
+            return Solution(method.run(start, times, timestep, watch=recorder), record=recorder.record)
+        smooth = SmoothRecorder(scene, friction)
+        return Solution(method.run(start, times, timestep, smooth), record=smooth.record)
 
     return solve
 
