@@ -51,9 +51,9 @@ def test_what_is_compiled_is_theory_s_acceleration_and_its_change(scene: Scene, 
 
     assert pace(numbers, 0.3) == pytest.approx(1.0, rel=1e-15)
     for phi, rate in ((0.7, 12.0), (-2.0, 3.0)):
-        gain, change = _by_theory(numbers, phi, rate, small, 10 * small)
+        gain, change = _by_theory(numbers, math.sin(phi), math.cos(phi), rate, small, 10 * small)
         assert gain == pytest.approx(truth(phi, rate), rel=1e-9)
-        beside = _by_theory(numbers, phi + small, rate + 10 * small, 0.0, 0.0)[0]
+        beside = _by_theory(numbers, math.sin(phi + small), math.cos(phi + small), rate + 10 * small, 0.0, 0.0)[0]
         assert change == pytest.approx(beside - gain, rel=100 * small)
 
 

@@ -39,7 +39,7 @@ from mjbeer.simulation.kernels import (
     see,
     slope,
 )
-from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, add, form, pace, read_off, weights
+from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, add, form, read_off, weights
 from mjbeer.simulation.stepping import LARGEST
 from mjbeer.theory.scene import Scene
 
@@ -107,39 +107,40 @@ class GaussJackson:
 
 
 @njit(cache=True, error_model="numpy")
-def _by_theory(form, phi, rate, turned, sped):
+def _by_theory(form, sin, cos, rate, turned, sped):
     """Return the second derivative of phi in the method's own time by theory, and its change with phi and its rate.
 
     Eq. (16) in its general form, J phi_ddot = -V' - J' phi_dot^2 / 2.
     """
-    sin, cos = math.sin(phi), math.cos(phi)
     pull, pulled = form.slope + form.along * cos - form.across * sin, -form.along * sin - form.across * cos
     if form.digits > 0:
         return pull / form.scale, pulled / form.scale * turned
-    half, twice = math.sin(form.turns * phi), form.uneven * form.turns
-    inertia = form.base + form.uneven * half * half
-    bend, bent = twice * math.sin(2 * form.turns * phi), 2 * twice * form.turns * math.cos(2 * form.turns * phi)
+    inertia = form.base + form.chord * (1 - cos) / 2 + form.swing * sin * sin
+    bend = sin * (form.chord / 2 + 2 * form.swing * cos)
+    bent = form.chord / 2 * cos + 2 * form.swing * (cos * cos - sin * sin)
     gain = (pull - bend * rate * rate / 2) / inertia
     return gain, ((pulled - bent * rate * rate / 2 - bend * gain) * turned - bend * rate * sped) / inertia
 
 
 @inner
-def _by_mujoco(pointers, views, form, phi, rate, work):
+def _by_mujoco(pointers, views, form, phi, sin, cos, rate, work):
     """Return the second derivative of phi in the method's own time, and the acceleration of the axis less its swing.
 
     The state that is evaluated has a slide at rest at its origin, on which nothing depends.
     """
     state, change, last = work[0], work[1], work.shape[1] // 2 - 1
-    fast = pace(form, phi)
+    fast = 1.0
+    if form.digits > 0:
+        fast = math.sqrt((form.base + form.chord * (1 - cos) / 2 + form.swing * sin * sin) / form.scale)
     speed = rate / fast
     state[0] = state[1 + last] = 0.0
     state[last], state[2 * last + 1] = phi, speed
     slope(pointers, views, state, change)
     gain, drawn = change[2 * last + 1], 0.0
     if last > 0:
-        drawn = change[last + 1] - form.share * (math.cos(phi) * gain - math.sin(phi) * speed * speed)
+        drawn = change[last + 1] - form.share * (cos * gain - sin * speed * speed)
     if form.digits > 0:  # t'^2 phi_ddot + t'' phi_dot, and t'^2 is J over `scale`
-        bend = form.uneven * form.turns * math.sin(2 * form.turns * phi) / form.scale
+        bend = sin * (form.chord / 2 + 2 * form.swing * cos) / form.scale
         gain = fast * fast * gain + bend * speed * speed / 2
     return gain, drawn
 
@@ -161,10 +162,11 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
             k = _MIDDLE + ((order + 1) // 2 if order % 2 else -order // 2)
             angle = phi + step * ((k - _MIDDLE) * rate + step * _sum(_FIRST_PLACE[k], history[0], end))
             turning = rate + step * _sum(_FIRST_RATE[k], history[0], end)
+            sin, cos = math.sin(angle), math.cos(angle)
             if theory:
-                gain, _ = _by_theory(form, angle, turning, 0.0, 0.0)
+                gain, _ = _by_theory(form, sin, cos, turning, 0.0, 0.0)
             else:
-                gain, history[1, k] = _by_mujoco(pointers, views, form, angle, turning, work)
+                gain, history[1, k] = _by_mujoco(pointers, views, form, angle, sin, cos, turning, work)
                 evaluations += 1
             change, largest = max(change, abs(gain - history[0, k])), max(largest, abs(gain))
             history[0, k] = gain
@@ -230,11 +232,12 @@ def _advance(pointers, views, form, start, sums, history, work, times, samples, 
         else:
             phi = step**2 * (sums[0, 1] + _sum(_PREDICT, history[0], end))
             rate = step * (sums[0, 0] + _sum(_PREDICT_RATE, history[0], end))
-            gain, history[1, end] = _by_mujoco(pointers, views, form, phi, rate, states)
+            sin, cos = math.sin(phi), math.cos(phi)
+            gain, history[1, end] = _by_mujoco(pointers, views, form, phi, sin, cos, rate, states)
             history[0, end] = gain
             turned = step**2 * (sums[0, 1] + _sum(_CORRECT, history[0], end + 1)) - phi
             sped = step * (sums[0, 0] + gain + _sum(_CORRECT_RATE, history[0], end + 1)) - rate
-            history[0, end] += _by_theory(form, phi, rate, turned, sped)[1] + form.push
+            history[0, end] += _by_theory(form, sin, cos, rate, turned, sped)[1] + form.push
             add(sums, 0, history[0, end])
             add(sums, 1, sums[0, 0])
             steps, taken, end = steps + 1, taken + 1, end + 1

@@ -50,7 +50,7 @@ _PUNCTUAL, _ATTEMPTS = 3e-5, 5
 """Distance of a sample from its time, over a part's, after which one more attempt has all digits, as it cubes that; and
 the most attempts."""
 
-Form = namedtuple("Form", "base uneven turns slope along across share height period push digits scale")
+Form = namedtuple("Form", "base chord swing uneven turns slope along across share height period push digits scale")
 Form.__doc__ = """J = base + uneven sin^2(turns phi), -V' = slope + along cos(phi) - across sin(phi), and more.
 
 The `share` of the swing in u is u's change with sin(phi) [m]. J vanishes at a complex angle of some `height` [rad], in
@@ -68,6 +68,8 @@ def form(scene: Scene, phi0: float, precision: float, push: float) -> Form:
     height = math.asinh(math.sqrt(shape.base / uneven)) / turns if uneven > 0 else _HIGHEST
     return Form(
         base=shape.base,
+        chord=shape.chord,
+        swing=shape.swing,
         uneven=uneven,
         turns=turns,
         slope=shape.slope,

@@ -76,12 +76,9 @@ _GAIN = _FINER**_ORDER
 """Error of one run of Gauss-Jackson over that of the next."""
 _PRECISION = 1e-3
 """Precision of the time that passes in a step of Gauss-Jackson, over the tolerance."""
-_SHARE = 0.165
-"""Angle [rad] by which swings and turns go on in a timestep of Gauss-Jackson for an error of 1e-9 rad (measured: nine
-of ten random motions allow more)."""
-_REFERENCE = 1e-9
-_EASE = 1 / 8
-"""Power with which that angle grows with the square of the load's rate over that of small swings (measured, too)."""
+_SHARE, _REFERENCE, _CYCLES = 0.175, 1e-9, 10.0
+"""Angle [rad] by which swings and turns go on in a timestep of Gauss-Jackson for an error of 1e-9 rad over ten periods
+(measured, as are the powers in `_longest`: nine of ten random motions allow more)."""
 _FEWEST = 8
 """Least number of timesteps in a run, for motions that hardly move."""
 _TRIES = 3
@@ -269,23 +266,28 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
     In the time of its uneven steps the load moves as a pendulum, whose inertia is that at the start. The rate of its
     small swings and the largest rate of its turns decide; and the faster it turns, the less its weight matters.
     """
-    form, inertia = scene.oscillator, float(scene.oscillator.inertia(phi0))
-    kinetic = inertia * phi_dot0**2 / 2
-    lean = math.asin(max(-1.0, min(1.0, form.slope / form.depth))) if form.depth > 0 else 0.0
+    form = scene.oscillator
+    slope, depth, bottom = form.slope, form.depth, form.bottom
+    inertia = form.base + form.chord * math.sin(phi0 / 2) ** 2 + form.swing * math.sin(phi0) ** 2
+    mean = math.sqrt(form.base + (form.chord + form.swing) / 2)
     # Rest and crests are where V' = -slope + depth sin(phi - bottom) vanishes: the well around the start.
-    well = form.bottom - lean + 2 * math.pi * round((phi0 - form.bottom + lean) / (2 * math.pi))
-    crest, rest = well + math.copysign(math.pi, form.slope), well + 2 * lean
-    most = kinetic + max(0.0, form.drop(rest, phi0))
-    if kinetic + form.drop(crest, phi0) > 0 or abs(form.slope) >= form.depth:
+    lean = math.asin(max(-1.0, min(1.0, slope / depth))) if depth > 0 else 0.0
+    well = bottom - lean + 2 * math.pi * round((phi0 - bottom + lean) / (2 * math.pi))
+    energy = inertia * phi_dot0**2 / 2 - slope * phi0 - depth * math.cos(phi0 - bottom)
+    crest, rest = well + math.copysign(math.pi, slope), well + 2 * lean
+    most = max(0.0, energy + slope * rest + depth * math.cos(rest - bottom))
+    if energy + slope * crest + depth * math.cos(crest - bottom) > 0 or abs(slope) >= depth:
         # It turns over and over, and a turn takes 2 pi mean(sqrt(J)) / sqrt(2 E), while E grows by 2 pi slope.
-        most += 2 * form.depth
-        mean = math.sqrt(form.base + (form.chord + form.swing) / 2)
-        most = (math.sqrt(2 * most) + abs(form.slope) * duration / mean) ** 2 / 2
-    turning, swinging = 2 * most / inertia, form.depth / inertia
-    if not (rate := math.sqrt(turning + swinging)) > 0:
+        most = (math.sqrt(2 * (most + 2 * depth)) + abs(slope) * duration / mean) ** 2 / 2
+    turning, swinging = 2 * most / inertia, depth / inertia
+    if not swinging > 0:
         return duration / _FEWEST
-    share = _SHARE * (tolerance / _REFERENCE) ** (1 / _ORDER) * (rate**2 / swinging) ** _EASE if swinging else math.inf
-    return min(share / rate, duration / _FEWEST)
+    evenness = turning / swinging  # of small swings, and of fast turns, that are a sine or a line
+    share = _SHARE * (tolerance / _REFERENCE) ** (1 / 14) * min(max(evenness, 4e-4) / 0.09, 1.0) ** -0.1
+    share *= max(evenness / 1.4, 1.0) ** 0.18
+    cycles = math.sqrt(depth) / mean * duration / (2 * math.pi)
+    share *= max(cycles / _CYCLES, 0.1) ** -0.09
+    return min(share / math.sqrt(turning + swinging), duration / _FEWEST)
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
