@@ -1,6 +1,10 @@
 """The multistep integrator: its weights, its order, samples, start, and what it refuses."""
 
 import math
+import os
+import pathlib
+import subprocess
+import sys
 from fractions import Fraction
 
 import numpy as np
@@ -164,3 +168,22 @@ def test_a_tolerance_falls_back_on_dop853(monkeypatch: pytest.MonkeyPatch) -> No
     run = simulate(frozen(), 2.0, 1.0, tolerance=1e-8)
     assert run.integrator == "DOP853"
     assert np.abs(run.phi - exact(run.scene, run.time, 1.0).phi).max() < 1e-8
+
+
+@pytest.mark.costly
+def test_what_is_compiled_and_what_is_read_from_the_cache_give_the_same_bits(tmp_path: pathlib.Path) -> None:
+    """A sum whose order a compiler may choose has one where it compiles, and another where it reads its cache."""
+    script = (
+        "from mjbeer import *; run = simulate(sliding(), 1, 1, tolerance=1e-9); print(run.phi[-1], run.error_estimate)"
+    )
+    told = [
+        subprocess.run(
+            [sys.executable, "-c", script],
+            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for _ in range(2)
+    ]
+    assert told[0] == told[1] != ""

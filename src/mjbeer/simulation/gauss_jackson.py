@@ -185,13 +185,20 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
     return evaluations
 
 
-@inner(fastmath={"reassoc", "contract"})
+@inner
 def _sum(weights, accelerations, end):
-    """Return the weighted sum of the `COUNT` accelerations before index `end`, in any order, so that terms overlap."""
-    last, total = accelerations[end - COUNT : end], 0.0
-    for k in range(COUNT):
+    """Return the weighted sum of the `COUNT` accelerations before index `end`, four by four, so that terms overlap.
+
+    The order is written out. A compiler that may choose it gives other digits where it reads a function from its cache.
+    """
+    last = accelerations[end - COUNT : end]
+    total, second, third, fourth = weights[COUNT - 1] * last[COUNT - 1], 0.0, 0.0, 0.0
+    for k in range(0, COUNT - 1, 4):
         total += weights[k] * last[k]
-    return total
+        second += weights[k + 1] * last[k + 1]
+        third += weights[k + 2] * last[k + 2]
+        fourth += weights[k + 3] * last[k + 3]
+    return (total + second) + (third + fourth)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -114,7 +114,7 @@ def weights(power: int, back: int) -> np.ndarray:
 
 
 def _between() -> np.ndarray:
-    """Return `weights` of places as polynomials of `back` - `LAG` - 1/2, the highest power first, shape (terms, COUNT).
+    """Return `weights` of places as polynomials of `back` - `LAG` - 1/2, the highest power first, shape (COUNT, terms).
 
     The velocity is their derivative, with the opposite sign, and the first sum.
     """
@@ -129,7 +129,7 @@ def _between() -> np.ndarray:
             difference[: k + 1] += inverse[j + 2 - k] * shifts[k]
         for k in range(j + 1):
             ordinates[:, COUNT - 1 - k] += (-1) ** k * math.comb(j, k) * difference
-    return ordinates[::-1].copy()
+    return ordinates[::-1].T.copy()
 
 
 _BETWEEN = _between()
@@ -150,18 +150,19 @@ def pace(form, phi):
     return math.sqrt((form.base + form.uneven * sin * sin) / form.scale)
 
 
-@inner(fastmath={"reassoc", "contract"})
+@inner
 def _line(history, end, sums, step, back, curve):
     """Return phi around the step that many steps `back`, by the accelerations before index `end` of the `history`."""
     for row in range(COUNT + 2):
-        total = 0.0
-        for k in range(COUNT):
-            total += _BETWEEN[row, k] * history[0, end - COUNT + k]
-        curve[row] = total
+        curve[row] = 0.0
+    for k in range(COUNT):
+        gain = history[0, end - COUNT + k]
+        for row in range(COUNT + 2):
+            curve[row] += _BETWEEN[k, row] * gain
     return _Line(curve, sums[0, 0], sums[0, 1], step, back + 1.0)
 
 
-@inner(fastmath={"contract"})
+@inner
 def _angle(line, passed):
     """Return phi [rad] and its rate in the method's own time."""
     x, place, rate = line.back - passed - LAG - 0.5, 0.0, 0.0
@@ -197,7 +198,7 @@ def _part(form, line, left, right, before, after, seen):
         after = _angle(line, right)
 
 
-@inner(fastmath={"contract"})
+@inner
 def _duration(form, line, begin, end, count, work):
     """Return the time [s] that passes between two places in a step, by so many points; no number without points."""
     if count == 0:
