@@ -175,8 +175,8 @@ def test_errors_are_relative_to_the_way_from_the_start() -> None:
 
 
 def test_what_passes_the_next_crest_by_rounding_is_no_quarrel_of_theories() -> None:
-    """Its energy is below the crest by 1e-21 of the well: exact theory, which makes no steps, has it turn there."""
+    """Its energy is below the crest by 1e-21 of the well, less than the rounding of its numbers."""
     motion = truth(frozen(0.0), np.array([6.0, 10.0]), math.pi + 2.7e-11, 0.0)
-    turned, passed = (seen.phi[-1] for seen in motion.motions[:2])
-    assert turned < 3 * math.pi < passed
+    ends = [seen.phi[-1] for seen in motion.motions]  # of both theories, and of those a rounding aside
+    assert min(ends) < 3 * math.pi < max(ends)
     assert motion.explained
