@@ -69,6 +69,8 @@ $(PACKAGE): pyproject.toml
 	@echo "Installing mjbeer and what it needs into $(VENV), about 0.75 GB: this takes a minute or two."
 	@$(PYTHON) -m venv --clear $(VENV)
 	@$(PIP) --editable .
+	@echo "Compiling the integrators for this machine."
+	@$(BIN)/python -c 'from mjbeer import *; run = [simulate(frozen(), 1, 1, tolerance=each) for each in (1e-4, 1e-9)]'
 	@touch $@
 
 $(TOOLS): $(PACKAGE)

@@ -106,7 +106,7 @@ class GaussJackson:
         return samples
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def _by_theory(form, sin, cos, rate, turned, sped):
     """Return the second derivative of phi in the method's own time by theory, and its change with phi and its rate.
 

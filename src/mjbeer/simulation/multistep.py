@@ -10,7 +10,7 @@ Steps of uneven length are even in a time of the method's own, in which t' = sqr
 of t in a step is integrated by Gauss's formula. That takes no evaluation of the dynamics, and as many points as J needs
 there: it nearly vanishes where a heavy load passes the place of its least inertia.
 
-A function of compiled code has the `form` of a scene, of which `FORM` names the parts; a `line`, which has phi in a
+A function of compiled code has the `form` of a scene, of which `Form` names the parts; a `line`, which has phi in a
 step, as `_line` describes it; and a share of the step that has `passed`.
 """
 
@@ -141,7 +141,7 @@ for _count in range(1, _MOST_POINTS + 1):
 _POINTS, _WEIGHTS = _POINTS / 2, _WEIGHTS / 2
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", forceinline=True)
 def pace(form, phi):
     """Return how fast time passes in the method's own time."""
     if form.digits == 0:
@@ -289,6 +289,8 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
     the step before. `work` is space for points and coefficients, and `state` for a state.
     """
     numbers, found = record
+    if sample == times.size:
+        return sample
     if form.digits == 0 and found.size == 0 and times[sample] > (sums[0, 2] + step) * (1 + 1e-14):
         _go_on(sums, step, (history[1, end - 2 - back] + history[1, end - 1 - back]) / 2)
         return sample
