@@ -44,9 +44,9 @@ _SAVE_EVERY, _SAVING = 5.0, 20.0
 """Time between two savings of what is there so far [s], and its smallest ratio to the time that saving takes."""
 _LARGEST_PIECE = 1000
 """Largest number of scenes that are handed out in one piece."""
-_UNKNOWN_WORKERS, _SMALLEST_PIECE = 128, 16
+_UNKNOWN_WORKERS, _SMALLEST_PIECE = 128, 100
 """Number of workers that an executor is taken to have that does not tell, a cluster's, and the smallest piece that it
-is given: to hand one out takes as long as a few scenes there."""
+is given: to hand one out takes as long as some ten scenes there."""
 
 Asked = str | Callable[[Run], float]
 """A quantity that is measured if it is asked for: its name, or a function of a trajectory."""
