@@ -20,7 +20,10 @@ EXTRAS = {
     extra: {Requirement(text).name for text in texts} for extra, texts in PROJECT["optional-dependencies"].items()
 }
 OPTIONAL = set().union(*EXTRAS.values())
-INSTALLED_AS = {"PIL": "pillow", "imageio_ffmpeg": "imageio-ffmpeg", "llvmlite": "numba", "cycler": "matplotlib"}
+INSTALLED_AS = {
+    **{"PIL": "pillow", "imageio_ffmpeg": "imageio-ffmpeg", "OpenGL": "pyopengl"},
+    **{"llvmlite": "numba", "cycler": "matplotlib"},
+}
 """Packages that are imported under another name, and two that are not declared since they only go with what is."""
 
 
