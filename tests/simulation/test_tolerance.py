@@ -236,3 +236,11 @@ def test_the_forces_of_all_steps_are_those_of_the_motion() -> None:
     # An eighth of a step of 1/30 s does not meet the extremes, flat as they are, by (25/s / 240/s)^2 / 2.
     assert run.record.lowest_normal == pytest.approx(truth.forces.normal.min(), rel=5e-3)
     assert run.record.needed == pytest.approx(truth.forces.needed.max(), rel=5e-3)
+
+
+def test_two_runs_that_err_alike_by_chance_are_not_taken_for_right() -> None:
+    """Where J nearly vanishes: 2.8 times as far off as it should have been."""
+    scene = pendulum(0.09356407173243433, 1.0327759696048296e-06, 0.2, 0.020590168436111955, radius=0.1)
+    tolerance, end = 4.739352222043245e-06, 6.057825328153827
+    run = simulate(scene, end, 0.4136957499445644, tolerance=tolerance, times=np.linspace(0, end, 1001))
+    assert error(run) <= tolerance
