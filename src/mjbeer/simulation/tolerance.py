@@ -146,19 +146,15 @@ class Solver:
         def run(begin: np.ndarray, timestep: float, recorder: SmoothRecorder | None, push: float) -> np.ndarray:
             return method.run(begin, times, timestep, recorder, _PRECISION * tolerance, push, _EVALUATIONS)
 
-        aim = tolerance / _BRIEF if self._rounded else tolerance
-        timestep = _longest(self._scene, start[method.size - 1], start[-1], times[-1], aim)
+        brief = _BRIEF if self._rounded else 1.0
+        timestep = _longest(self._scene, start[method.size - 1], start[-1], times[-1], tolerance / brief)
         share = 1.0 if self._rounded else min(1.0, tolerance / _ASYMPTOTIC[0])
         push = share * _PUSH * (self._scale[-1] / self._scale[method.size - 1]) ** 2
         coarse, safety, nudged, begun = None, 0.0, False, 0.0
         try:
             for _ in range(_TRIES):
                 if coarse is None:
-                    begun, safety, nudged = (
-                        0.0,
-                        _BRIEF * self._safety(tolerance) if self._rounded else self._safety(tolerance),
-                        False,
-                    )
+                    begun, safety, nudged = 0.0, brief * self._safety(tolerance), False
                     coarse = run(start + share * self._nudge, timestep, None, push)
                 timestep /= _FINER
                 recorder = SmoothRecorder(self._scene, friction)
