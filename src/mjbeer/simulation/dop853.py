@@ -9,10 +9,20 @@ import pathlib
 
 import mujoco
 import numpy as np
-from numba import njit
 
 from mjbeer.model.setting import DOP853
-from mjbeer.simulation.kernels import BLOCK_END, DONE, NOT_FINITE, TOO_SMALL, Dynamics, copy, drive, inner, slope
+from mjbeer.simulation.kernels import (
+    BLOCK_END,
+    DONE,
+    NOT_FINITE,
+    TOO_SMALL,
+    Dynamics,
+    compiled,
+    copy,
+    drive,
+    inner,
+    slope,
+)
 from mjbeer.simulation.stepping import LARGEST, Watcher
 
 _ROWS = 16
@@ -60,11 +70,22 @@ class Integrator:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
         """
         state, samples = start.copy(), np.empty((len(times), self._size))
-        slopes = np.zeros((_ROWS, self._size))
+        slopes, space = np.zeros((_ROWS, self._size)), np.empty((10, self._size))
         scale = np.ones(self._size) if scale is None else scale
         rows, place = _KEPT if watch else 0, (0.0, timestep or 0.0, 0, 0, 1.0)
         kept = np.empty(rows), np.empty((rows, self._size))
-        fixed = *self._dynamics.kernel, state, slopes, times, samples, timestep is not None, tolerance, scale, kept
+        fixed = (
+            *self._dynamics.kernel,
+            state,
+            slopes,
+            space,
+            times,
+            samples,
+            timestep is not None,
+            tolerance,
+            scale,
+            kept,
+        )
         self.evaluations = drive(DOP853, _advance, fixed, place, limit, watch)
         return samples
 
@@ -81,8 +102,8 @@ def _combine(weights, count, slopes, out):
                 out[i] += weight * slopes[j, i]
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, scale, kept, place):
+@compiled()
+def _advance(pointers, views, state, slopes, space, times, samples, fixed, tolerance, scale, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
     `pointers` are addresses of the functions that compute an acceleration, of the model and of its data; `views` are
@@ -99,8 +120,7 @@ def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, s
     kept_times, kept_states = kept
     stages = _A.shape[0]  # for a constant, numba would compile `_combine` once more
     size = state.size
-    new, work, total = np.empty(size), np.empty(size), np.empty(size)
-    weights = np.empty((7, size))
+    new, work, total, weights = space[0], space[1], space[2], space[3:]
     status, evaluations, row = BLOCK_END, 0, 0
     if steps == 0:
         slope(pointers, views, state, slopes[0])

@@ -23,7 +23,6 @@ import math
 
 import mujoco
 import numpy as np
-from numba import njit
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.setting import GAUSS_JACKSON
@@ -33,13 +32,14 @@ from mjbeer.simulation.kernels import (
     NOT_FINITE,
     Dynamics,
     SmoothRecorder,
+    compiled,
     copy,
     drive,
     inner,
     see,
     slope,
 )
-from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, add, form, read_off, weights
+from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, add, form, read_off, weighted, weights
 from mjbeer.simulation.stepping import LARGEST
 from mjbeer.theory.scene import Scene
 
@@ -100,20 +100,20 @@ class GaussJackson:
         size, phi0 = self.size, float(start[self.size - 1])
         samples, history, sums = np.empty((len(times), 2 * size)), np.empty((2, COUNT + BLOCK)), np.empty((2, 5))
         kernel, record = self._dynamics.kernel, recorder.kernel if recorder else _NO_RECORD
-        work = np.empty((3, COUNT + 2)), np.empty((3, 2 * size)), np.empty(3)
+        work = np.empty((2, COUNT + 2)), np.empty((3, 2 * size)), np.empty(3)
         fixed = *kernel, form(self._scene, phi0, precision, push), start, sums, history, work, times, samples, record
         self.evaluations = drive(GAUSS_JACKSON, _advance, fixed, (0.0, 0, timestep, 0), limit, None)
         return samples
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@compiled(forceinline=True)
 def _by_theory(form, sin, cos, rate, turned, sped):
     """Return the second derivative of phi in the method's own time by theory, and its change with phi and its rate.
 
     Eq. (16) in its general form, J phi_ddot = -V' - J' phi_dot^2 / 2.
     """
     pull, pulled = form.slope + form.along * cos - form.across * sin, -form.along * sin - form.across * cos
-    if form.digits > 0:
+    if form.bounds.size > 0:
         return pull / form.scale, pulled / form.scale * turned
     inertia = form.base + form.chord * (1 - cos) / 2 + form.swing * sin * sin
     bend = sin * (form.chord / 2 + 2 * form.swing * cos)
@@ -130,7 +130,7 @@ def _by_mujoco(pointers, views, form, phi, sin, cos, rate, work):
     """
     state, change, last = work[0], work[1], work.shape[1] // 2 - 1
     fast = 1.0
-    if form.digits > 0:
+    if form.bounds.size > 0:
         fast = math.sqrt((form.base + form.chord * (1 - cos) / 2 + form.swing * sin * sin) / form.scale)
     speed = rate / fast
     state[0] = state[1 + last] = 0.0
@@ -139,7 +139,7 @@ def _by_mujoco(pointers, views, form, phi, sin, cos, rate, work):
     gain, drawn = change[2 * last + 1], 0.0
     if last > 0:
         drawn = change[last + 1] - form.share * (cos * gain - sin * speed * speed)
-    if form.digits > 0:  # t'^2 phi_ddot + t'' phi_dot, and t'^2 is J over `scale`
+    if form.bounds.size > 0:  # t'^2 phi_ddot + t'' phi_dot, and t'^2 is J over `scale`
         bend = sin * (form.chord / 2 + 2 * form.swing * cos) / form.scale
         gain = fast * fast * gain + bend * speed * speed / 2
     return gain, drawn
@@ -152,7 +152,7 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
     These are 0 if the iteration does not end. Theory's accelerations are iterated first; MuJoCo's are then nearly those
     that agree with one another.
     """
-    end = history.shape[1] - BLOCK  # `COUNT`, a constant, would compile `_sum` once more
+    end = history.shape[1] - BLOCK  # `COUNT`, a constant, would compile `weighted` once more
     theory, evaluations, before = True, 0, np.inf
     for k in range(COUNT):
         history[0, k] = 0.0
@@ -160,8 +160,8 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
         change = largest = 0.0
         for order in range(COUNT):  # outwards: the start, then a step after it and one before it, by turns
             k = _MIDDLE + ((order + 1) // 2 if order % 2 else -order // 2)
-            angle = phi + step * ((k - _MIDDLE) * rate + step * _sum(_FIRST_PLACE[k], history[0], end))
-            turning = rate + step * _sum(_FIRST_RATE[k], history[0], end)
+            angle = phi + step * ((k - _MIDDLE) * rate + step * weighted(_FIRST_PLACE[k], history[0], end))
+            turning = rate + step * weighted(_FIRST_RATE[k], history[0], end)
             sin, cos = math.sin(angle), math.cos(angle)
             if theory:
                 gain, _ = _by_theory(form, sin, cos, turning, 0.0, 0.0)
@@ -179,29 +179,13 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
         before = change
     if theory or not change <= _STARTED * largest:
         return 0
-    sums[0, 0] = rate / step - _sum(_MIDDLE_RATE, history[0], end)
+    sums[0, 0] = rate / step - weighted(_MIDDLE_RATE, history[0], end)
     # The formulas have the sums up to the last acceleration: first = rate, second = place + (1 + back) first.
-    sums[0, 1] = phi / step**2 - _sum(_MIDDLE_PLACE, history[0], end) + (1 + _MIDDLE) * sums[0, 0]
+    sums[0, 1] = phi / step**2 - weighted(_MIDDLE_PLACE, history[0], end) + (1 + _MIDDLE) * sums[0, 0]
     return evaluations
 
 
-@inner
-def _sum(weights, accelerations, end):
-    """Return the weighted sum of the `COUNT` accelerations before index `end`, four by four, so that terms overlap.
-
-    The order is written out. A compiler that may choose it gives other digits where it reads a function from its cache.
-    """
-    last = accelerations[end - COUNT : end]
-    total, second, third, fourth = weights[COUNT - 1] * last[COUNT - 1], 0.0, 0.0, 0.0
-    for k in range(0, COUNT - 1, 4):
-        total += weights[k] * last[k]
-        second += weights[k + 1] * last[k + 1]
-        third += weights[k + 2] * last[k + 2]
-        fourth += weights[k + 3] * last[k + 3]
-    return (total + second) + (third + fourth)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled()
 def _advance(pointers, views, form, start, sums, history, work, times, samples, record, place):
     """Take up to a block of steps, and return the status, the new place, the number of evaluations, and 0.
 
@@ -237,13 +221,13 @@ def _advance(pointers, views, form, start, sums, history, work, times, samples, 
         if back > LAG:  # the first steps are there already
             back -= 1
         else:
-            phi = step**2 * (sums[0, 1] + _sum(_PREDICT, history[0], end))
-            rate = step * (sums[0, 0] + _sum(_PREDICT_RATE, history[0], end))
+            phi = step**2 * (sums[0, 1] + weighted(_PREDICT, history[0], end))
+            rate = step * (sums[0, 0] + weighted(_PREDICT_RATE, history[0], end))
             sin, cos = math.sin(phi), math.cos(phi)
             gain, history[1, end] = _by_mujoco(pointers, views, form, phi, sin, cos, rate, states)
             history[0, end] = gain
-            turned = step**2 * (sums[0, 1] + _sum(_CORRECT, history[0], end + 1)) - phi
-            sped = step * (sums[0, 0] + gain + _sum(_CORRECT_RATE, history[0], end + 1)) - rate
+            turned = step**2 * (sums[0, 1] + weighted(_CORRECT, history[0], end + 1)) - phi
+            sped = step * (sums[0, 0] + gain + weighted(_CORRECT_RATE, history[0], end + 1)) - rate
             history[0, end] += _by_theory(form, sin, cos, rate, turned, sped)[1] + form.push
             add(sums, 0, history[0, end])
             add(sums, 1, sums[0, 0])

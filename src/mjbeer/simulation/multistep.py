@@ -8,22 +8,25 @@ gives the value that many steps before the last acceleration: -1 predicts the ne
 
 Steps of uneven length are even in a time of the method's own, in which t' = sqrt(J): see `gauss_jackson`. What passes
 of t in a step is integrated by Gauss's formula. That takes no evaluation of the dynamics, and as many points as J needs
-there: it nearly vanishes where a heavy load passes the place of its least inertia.
+there: it nearly vanishes where a heavy load passes the place of its least inertia. Most steps are gone over as a whole:
+its points are at the same shares of each, where phi is a sum of accelerations with fixed weights. In a step with
+samples, or of several parts, phi is a polynomial.
 
-A function of compiled code has the `form` of a scene, of which `Form` names the parts; a `line`, which has phi in a
-step, as `_line` describes it; and a share of the step that has `passed`.
+A function of compiled code has the `form` of a scene, of which `Form` names the parts; the `line` of phi in a step, of
+which `_Line` does; and a share of the step that has `passed`. A `place` is phi, its rate in the method's own time, and
+how fast time passes in that.
 """
 
+import functools
 import math
 from collections import namedtuple
 from fractions import Fraction
 
 import numpy as np
-from numba import njit
 from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 
-from mjbeer.simulation.kernels import FAILS_AT, forces, inner, see
+from mjbeer.simulation.kernels import FAILS_AT, compiled, forces, inner, see
 from mjbeer.theory.scene import Scene
 
 COUNT = 13
@@ -35,12 +38,12 @@ LAG = 2
 _MOST_POINTS = 12
 """Largest number of points over which the time is integrated at once."""
 _ROUNDEST = 20.0
-"""Largest size of the ellipse of `_part`: with a larger one, points are too few where phi is no line in the step."""
+"""Largest size of the ellipse of `_bounds`: with a larger one, points are too few where phi is no line in the step."""
 _HIGHEST = 3.0
 """Largest height [rad] of the complex angle at which J vanishes that makes a difference."""
-_SEEN = 0.06
-"""Half of the largest angle [rad] between two looks at the forces, over its distance from that angle, or over 1 rad:
-forces that are extreme between them are missed by 1e-3 of their change."""
+_SEEN = 0.06**2
+"""Square of half of the largest angle [rad] between two looks at the forces, over its distance from that angle, or over
+1 rad: forces that are extreme between them are missed by 1e-3 of their change."""
 _SHARP = 1e-3
 """Part of a step in which the moment is found, by a line, from when on rolling needs a pull or more friction."""
 _FARTHEST, _SHORTEST = 2.0, 1e-9
@@ -50,12 +53,12 @@ _PUNCTUAL, _ATTEMPTS = 3e-5, 5
 """Distance of a sample from its time, over a part's, after which one more attempt has all digits, as it cubes that; and
 the most attempts."""
 
-Form = namedtuple("Form", "base chord swing uneven turns slope along across share height period push digits scale")
-Form.__doc__ = """J = base + uneven sin^2(turns phi), -V' = slope + along cos(phi) - across sin(phi), and more.
+Form = namedtuple("Form", "base chord swing scale even uneven turns slope along across share height period push bounds")
+Form.__doc__ = """J = base + chord sin^2(phi/2) + swing sin^2(phi), -V' = slope + along cos(phi) - across sin(phi).
 
-The `share` of the swing in u is u's change with sin(phi) [m]. J vanishes at a complex angle of some `height` [rad], in
-each `period` [rad]. The `push` [rad/s^2] is added to phi_ddot. `digits`, half of ln(1/precision), are those to which
-the time in a step is known, or 0 if all steps are even. The method's own time goes as fast as time where J is `scale`.
+The method's own time goes as fast as time where J is `scale`. J over that is `even` + `uneven` sin^2(`turns` phi), and
+vanishes at a complex angle of some `height` [rad] in each `period` [rad]. The `share` of the swing in u is u's change
+with sin(phi) [m]. The `push` [rad/s^2] is added to phi_ddot. There are no `bounds`, see there, if all steps are even.
 """
 _Line = namedtuple("_Line", "curve first second step back")
 _Line.__doc__ = """Coefficients of phi between the steps, both sums, the step [s], and how many steps back it begins."""
@@ -66,11 +69,14 @@ def form(scene: Scene, phi0: float, precision: float, push: float) -> Form:
     shape = scene.oscillator
     uneven, turns = (shape.swing, 1.0) if shape.swing > 0 else (shape.chord, 0.5)
     height = math.asinh(math.sqrt(shape.base / uneven)) / turns if uneven > 0 else _HIGHEST
+    scale = shape.base + uneven * math.sin(turns * phi0) ** 2
     return Form(
         base=shape.base,
         chord=shape.chord,
         swing=shape.swing,
-        uneven=uneven,
+        scale=scale,
+        even=shape.base / scale,
+        uneven=uneven / scale,
         turns=turns,
         slope=shape.slope,
         along=shape.depth * math.sin(shape.bottom),
@@ -79,9 +85,22 @@ def form(scene: Scene, phi0: float, precision: float, push: float) -> Form:
         height=min(height, _HIGHEST),
         period=math.pi / turns,
         push=push,
-        digits=math.log(1 / precision) / 2 if precision else 0.0,
-        scale=shape.base + uneven * math.sin(turns * phi0) ** 2,
+        bounds=bounds(precision),
     )
+
+
+@functools.lru_cache(maxsize=32)
+def bounds(precision: float) -> np.ndarray:
+    """Return how far away J must vanish for each number of points, from 0, to have a `precision`; none for one of 0.
+
+    That is the square of a complex angle's distance from the middle, over half of the angle between the ends. The error
+    of Gauss's formula is the size of an ellipse to the power of minus twice the number of points. It has both ends as
+    foci, and J vanishes at an angle on it.
+    """
+    if precision == 0:
+        return np.empty(0)
+    size = precision ** (-1 / (2 * np.arange(1, _MOST_POINTS + 1)))
+    return np.append(np.inf, np.where(size > _ROUNDEST, np.inf, (size + 1 / size) ** 2 / 4))
 
 
 def series(power: int, back: int, terms: int) -> list[Fraction]:
@@ -135,94 +154,118 @@ def _between() -> np.ndarray:
 _BETWEEN = _between()
 _POINTS, _WEIGHTS = np.zeros((2, _MOST_POINTS + 1, _MOST_POINTS))
 """Points between 0 and 1, and their weights, in Gauss's formula with so many points, in a row for each number."""
-for _count in range(1, _MOST_POINTS + 1):
-    _POINTS[_count, :_count], _WEIGHTS[_count, :_count] = leggauss(_count)
-    _POINTS[_count, :_count] += 1
+for _number in range(1, _MOST_POINTS + 1):
+    _POINTS[_number, :_number], _WEIGHTS[_number, :_number] = leggauss(_number)
+    _POINTS[_number, :_number] += 1
 _POINTS, _WEIGHTS = _POINTS / 2, _WEIGHTS / 2
-
-
-@njit(cache=True, error_model="numpy", forceinline=True)
-def pace(form, phi):
-    """Return how fast time passes in the method's own time."""
-    if form.digits == 0:
-        return 1.0
-    sin = math.sin(form.turns * phi)
-    return math.sqrt((form.base + form.uneven * sin * sin) / form.scale)
+_PLACES = (np.vander(0.5 - _POINTS.ravel(), COUNT + 2) @ _BETWEEN.T).reshape(*_POINTS.shape, COUNT)
+"""`weights` of places at these points of the step that ends `LAG` steps before the last one."""
+_END_RATE, _END_PLACE = weights(1, LAG), weights(2, LAG)
 
 
 @inner
-def _line(history, end, sums, step, back, curve):
-    """Return phi around the step that many steps `back`, by the accelerations before index `end` of the `history`."""
+def weighted(weights, accelerations, end):
+    """Return the weighted sum of the `COUNT` accelerations before index `end`, four by four, so that terms overlap.
+
+    The order is written out. A compiler that may choose it gives other digits where it reads a function from its cache.
+    """
+    last = accelerations[end - COUNT : end]
+    first, second, third, fourth = weights[COUNT - 1] * last[COUNT - 1], 0.0, 0.0, 0.0
+    for k in range(0, COUNT - 1, 4):
+        first += weights[k] * last[k]
+        second += weights[k + 1] * last[k + 1]
+        third += weights[k + 2] * last[k + 2]
+        fourth += weights[k + 3] * last[k + 3]
+    return (first + second) + (third + fourth)
+
+
+@compiled(forceinline=True)
+def pace(form, phi):
+    """Return how fast time passes in the method's own time, at an angle."""
+    if form.bounds.size == 0:
+        return 1.0
+    sin = math.sin(form.turns * phi)
+    return math.sqrt(form.even + form.uneven * sin * sin)
+
+
+@inner
+def _bend(line, history, end):
+    """Write the coefficients of phi in the step of a `line`, by the accelerations before index `end`."""
     for row in range(COUNT + 2):
-        curve[row] = 0.0
+        line.curve[row] = 0.0
     for k in range(COUNT):
         gain = history[0, end - COUNT + k]
         for row in range(COUNT + 2):
-            curve[row] += _BETWEEN[k, row] * gain
-    return _Line(curve, sums[0, 0], sums[0, 1], step, back + 1.0)
+            line.curve[row] += _BETWEEN[k, row] * gain
 
 
 @inner
-def _angle(line, passed):
-    """Return phi [rad] and its rate in the method's own time."""
+def _place(form, line, passed):
+    """Return the place in a step."""
     x, place, rate = line.back - passed - LAG - 0.5, 0.0, 0.0
     for row in range(COUNT + 2):
         rate = rate * x + place
         place = place * x + line.curve[row]
-    place += line.second - (1 + line.back - passed) * line.first
-    return line.step * line.step * place, line.step * (line.first - rate)
+    phi = line.step * line.step * (place + line.second - (1 + line.back - passed) * line.first)
+    return phi, line.step * (line.first - rate), pace(form, phi)
 
 
 @inner
-def _part(form, line, left, right, before, after, seen):
-    """Return the end of the part of a step from `left` to `right`, phi and its rate there, and the points it needs.
+def _count(form, before, after, duration, seen):
+    """Return how many points a part needs, between two places some `duration` apart in the method's own time.
 
-    The error of Gauss's formula is the size of an ellipse to the power of minus twice the number of points. It has both
-    ends as foci, and J vanishes at a complex angle on it. There are no points where there would be far too many.
-    `before` and `after` are phi and its rate at both ends. A record takes parts that are `seen`.
+    There are 0 if too many would be needed, or if a record is to see shorter parts, and -1 if the steps are not short
+    enough for the motion.
     """
-    if form.digits == 0:
-        return right, after, 1
-    while True:
-        middle, fastest = (before[0] + after[0]) / 2, max(abs(before[1]), abs(after[1]))
-        half = fastest * line.step * (right - left) / 2  # back and forth, at a turning point
-        if not half < _FARTHEST or right - left < _SHORTEST:
-            return right, after, 0
-        aside = middle - form.period * np.rint(middle / form.period)
-        reached = math.sqrt((aside - half) ** 2 + form.height**2) + math.sqrt((aside + half) ** 2 + form.height**2)
-        axis = reached / max(2 * half, 1e-300)
-        count = int(form.digits / math.log(min(axis + math.sqrt(axis * axis - 1), _ROUNDEST))) + 1
-        if count <= _MOST_POINTS and half <= seen * min(reached / 2, 1.0):
-            return right, after, count
-        right = (left + right) / 2
-        after = _angle(line, right)
+    if form.bounds.size == 0:
+        return 1
+    middle, half = (before[0] + after[0]) / 2, max(abs(before[1]), abs(after[1])) * duration / 2
+    if not half < _FARTHEST:
+        return -1
+    aside = middle - form.period * np.rint(middle / form.period)
+    away, half = aside * aside + form.height * form.height, half * half
+    if half > seen * min(away, 1.0):
+        return 0
+    for count in range(1, _MOST_POINTS + 1):
+        if away >= form.bounds[count] * half:
+            return count
+    return 0
+
+
+@inner
+def _whole(form, history, end, line, count):
+    """Return the time [s] that passes in the step that ends `LAG` steps before the last one, by so many points."""
+    passed = 0.0
+    for k in range(count):
+        place = line.second - (LAG + 2 - _POINTS[count, k]) * line.first + weighted(_PLACES[count, k], history[0], end)
+        passed += _WEIGHTS[count, k] * pace(form, line.step * line.step * place)
+    return line.step * passed
 
 
 @inner
 def _duration(form, line, begin, end, count, work):
     """Return the time [s] that passes between two places in a step, by so many points; no number without points."""
-    if count == 0:
+    if count <= 0:
         return np.nan
-    total, length = 0.0, end - begin
-    for k in range(count):  # all points at once, which a processor does in the time of one
-        work[0, k], work[1, k] = line.back - begin - length * _POINTS[count, k] - LAG - 0.5, 0.0
-    for row in range(COUNT + 2):
-        for k in range(count):
-            work[1, k] = work[1, k] * work[0, k] + line.curve[row]
+    passed, length = 0.0, end - begin
     for k in range(count):
-        place = line.second + work[1, k] - (LAG + 1.5 + work[0, k]) * line.first
-        total += _WEIGHTS[count, k] * pace(form, line.step * line.step * place)
-    return line.step * length * total
+        x = line.back - begin - length * _POINTS[count, k] - LAG - 0.5
+        place = 0.0
+        for row in range(COUNT + 2):
+            place = place * x + line.curve[row]
+        work[k] = line.second + place - (LAG + 1.5 + x) * line.first
+    for k in range(count):
+        passed += _WEIGHTS[count, k] * pace(form, line.step * line.step * work[k])
+    return line.step * length * passed
 
 
 @inner
-def _write(form, sums, angle, since, drawn, out):
-    """Write the state at an angle and its rate, `since` [s] after the place of the `sums`, to `out`.
+def _write(form, sums, place, since, drawn, out):
+    """Write the state at a place, `since` [s] after that of the `sums`, to `out`.
 
     The axis less its swing has the acceleration `drawn` [m/s^2].
     """
-    phi, last = angle[0], out.size // 2 - 1
-    rate = angle[1] / pace(form, phi)
+    phi, rate, last = place[0], place[1] / place[2], out.size // 2 - 1
     out[last], out[2 * last + 1] = phi, rate
     if last > 0:
         out[0] = sums[0, 3] + since * (sums[0, 4] + since * drawn / 2) + form.share * math.sin(phi)
@@ -231,15 +274,15 @@ def _write(form, sums, angle, since, drawn, out):
 
 @inner
 def _find(form, line, part, count, since, work):
-    """Return the share of a step that has passed `since` [s] after the beginning of a `part`.
+    """Return the place `since` [s] after the beginning of a `part`.
 
-    That is its begin and end, its duration [s], and the pace at both. The first guess is a cubic; an attempt takes the
-    change of the pace into account, 1/2 J'/J phi' of it.
+    That is the begin and the end of it, its duration [s], and the pace at both. The first guess is a cubic; an attempt
+    takes the change of the pace into account, 1/2 J'/J phi' of it.
     """
     left, right, span, slower, faster = part
     length, share = right - left, since / span
-    if form.digits == 0:
-        return left + length * share
+    if form.bounds.size == 0:
+        return _place(form, line, left + length * share)
     unit = span / (line.step * length)
     first, last = unit / slower, unit / faster
     passed = left + length * share * (first + share * (3 - 2 * first - last + share * (first + last - 2)))
@@ -248,14 +291,13 @@ def _find(form, line, part, count, since, work):
             late = since - _duration(form, line, left, passed, count, work)
         else:
             late = since - span + _duration(form, line, passed, right, count, work)
-        phi, rate = _angle(line, passed)
-        fast = pace(form, phi)
-        grows = form.uneven * form.turns * math.sin(2 * form.turns * phi) * rate / (2 * fast * fast * form.scale)
+        phi, rate, fast = _place(form, line, passed)
+        grows = form.uneven * form.turns * math.sin(2 * form.turns * phi) * rate / (2 * fast * fast)
         ahead = late / fast
         passed += ahead * (1 - grows * ahead / 2) / line.step
         if abs(late) <= _PUNCTUAL * span:
             break
-    return passed
+    return _place(form, line, passed)
 
 
 @inner
@@ -276,44 +318,76 @@ def _go_on(sums, span, drawn):
 
 
 @inner
-def _margin(numbers, phi, rate):
-    """Return the force [N] that is left until rolling is no longer possible."""
-    return forces(numbers, math.sin(phi), math.cos(phi), rate * rate)[2]
+def _parts(record, place):
+    """Return whether rolling is not possible at a place, for the first time that a `record` has seen."""
+    numbers, found = record
+    if found.size == 0 or found[FAILS_AT] < np.inf:
+        return False
+    rate = place[1] / place[2]
+    return forces(numbers, math.sin(place[0]), math.cos(place[0]), rate * rate)[2] < 0
 
 
 @inner
 def read_off(form, sums, node, history, end, back, step, work, state, times, sample, samples, record):
-    """Go on to the step that many steps `back`, in parts: fill in the samples and the `record` on the way.
+    """Go on to the step that many steps `back`: fill in the samples and the `record` on the way.
 
-    Return the next sample. `sums` and `history` are those of `gauss_jackson`; `node` is phi, its rate and the pace at
-    the step before. `work` is space for points and coefficients, and `state` for a state.
+    Return the next sample. `sums` and `history` are those of `gauss_jackson`; `node` is the place at the step before.
+    `work` is space for points and coefficients, and `state` for a state.
     """
     numbers, found = record
     if sample == times.size:
         return sample
-    if form.digits == 0 and found.size == 0 and times[sample] > (sums[0, 2] + step) * (1 + 1e-14):
+    if form.bounds.size == 0 and found.size == 0 and times[sample] > (sums[0, 2] + step) * (1 + 1e-14):
         _go_on(sums, step, (history[1, end - 2 - back] + history[1, end - 1 - back]) / 2)
         return sample
-    line = _line(history, end, sums, step, back, work[2])
-    left, until, before, slower, at_end = 0.0, 1.0, (node[0], node[1]), node[2], _angle(line, 1.0)
-    last, seen = pace(form, at_end[0]), _SEEN if found.size > 0 else np.inf
+    line, before = _Line(work[1], sums[0, 0], sums[0, 1], step, back + 1.0), (node[0], node[1], node[2])
+    span, seen = np.nan, _SEEN if found.size > 0 else np.inf
+    if back == LAG:
+        phi = step * step * (line.second - line.back * line.first + weighted(_END_PLACE, history[0], end))
+        after = phi, step * (line.first + weighted(_END_RATE, history[0], end)), pace(form, phi)
+        count = _count(form, before, after, step, seen)
+        if count > 0:
+            span = _whole(form, history, end, line, count)
+    else:
+        _bend(line, history, end)
+        after = _place(form, line, 1.0)
     # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
-    drawn = (slower * history[1, end - 2 - back] + last * history[1, end - 1 - back]) / (slower + last)
+    drawn = (before[2] * history[1, end - 2 - back] + after[2] * history[1, end - 1 - back]) / (before[2] + after[2])
+    if times[sample] > (sums[0, 2] + span) * (1 + 1e-14) and not _parts(record, after):
+        if found.size > 0:
+            _write(form, sums, after, span, drawn, state)
+            see(numbers, found, sums[0, 2] + span, state)
+        _go_on(sums, span, drawn)
+    else:
+        if back == LAG:
+            _bend(line, history, end)
+        motion = span, drawn, seen
+        sample = _by_parts(form, sums, line, before, after, motion, work[0], state, times, sample, samples, record)
+    node[0], node[1], node[2] = after
+    return sample
+
+
+@inner
+def _by_parts(form, sums, line, before, at_end, motion, work, state, times, sample, samples, record):
+    """Go on through a step in parts, from one place to another, and return the next sample; see `read_off`.
+
+    The `motion` is the duration of the step [s], if it is known, what is drawn, and the size of what is seen.
+    """
+    numbers, found = record
+    span, drawn, seen = motion
+    left, right = 0.0, 1.0
     while left < 1.0 and sample < times.size:
-        right, after, count = _part(
-            form, line, left, until, before, at_end if until == 1 else _angle(line, until), seen
-        )
-        span = _duration(form, line, left, right, count, work)
-        faster = last if right == 1 else pace(form, after[0])
-        earlier, part = sums[0, 2], (left, right, span, slower, faster)
-        looking = found.size > 0 and found[FAILS_AT] == np.inf and right - left > _SHARP
-        if looking and _margin(numbers, after[0], after[1] / faster) < 0:  # the moment is within a shorter part
-            until = (left + right) / 2
+        after = at_end if right == 1.0 else _place(form, line, right)
+        count = _count(form, before, after, line.step * (right - left), seen)
+        if (count == 0 and right - left > _SHORTEST) or (right - left > _SHARP and _parts(record, after)):
+            right = (left + right) / 2  # more points than there are, or the moment is within a shorter part
             continue
+        if not (right - left == 1.0 and span > 0):
+            span = _duration(form, line, left, right, count, work)
+        earlier, part = sums[0, 2], (left, right, span, before[2], after[2])
         while sample < times.size and times[sample] <= (earlier + span) * (1 + 1e-14):
             since = times[sample] - earlier
-            angle = _angle(line, _find(form, line, part, count, since, work))
-            _write(form, sums, angle, since, drawn, samples[sample])
+            _write(form, sums, _find(form, line, part, count, since, work), since, drawn, samples[sample])
             sample += 1
         if found.size > 0 and sample < times.size:
             _write(form, sums, after, span, drawn, state)
@@ -321,6 +395,5 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
         elif found.size > 0:  # the run ends within this part
             see(numbers, found, times[-1], samples[-1])
         _go_on(sums, span, drawn)
-        left, until, before, slower = right, 1.0, after, faster
-    node[0], node[1], node[2] = at_end[0], at_end[1], last
+        left, right, before = right, 1.0, after
     return sample
