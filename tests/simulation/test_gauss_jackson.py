@@ -17,7 +17,7 @@ from mjbeer.model.state import read, start
 from mjbeer.simulation import tolerance
 from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.kernels import SmoothRecorder
-from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, weights
+from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, form, weights
 from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
@@ -52,16 +52,10 @@ def test_weights_are_exact_for_polynomials_of_twelfth_degree(power: int, back: i
 
 def errors(scene: Scene, phi0: float, steps: np.ndarray, times: np.ndarray, precision: float = 0.0) -> list[float]:
     """The largest errors of phi and u/a [rad] with some timesteps [s]."""
-    model = build(scene)
-    begin, truth = start(model, scene, phi0, 0.0), exact(scene, times, phi0)
-    return [
-        distance(
-            read(model, scene, GaussJackson(model, scene).run(begin, times, float(step), None, precision), times),
-            truth,
-            scene.can.radius,
-        )
-        for step in steps
-    ]
+    model, truth, uneven = build(scene), exact(scene, times, phi0), form(scene, phi0, precision)
+    begin, method = start(model, scene, phi0, 0.0), GaussJackson(model, scene)
+    states = (method.run(begin, times, float(step), None, uneven) for step in steps)
+    return [distance(read(model, scene, each, times), truth, scene.can.radius) for each in states]
 
 
 @pytest.mark.parametrize(("precision", "longest"), [(0.0, 0.14), (1e-15, 0.34)])
@@ -99,7 +93,8 @@ def test_the_forces_are_seen_within_long_steps() -> None:
     between two looks is 0.06 of that within which J doubles, so that 3 0.06^2 of a force may be missed."""
     scene, end = pendulum(0.1, wheel_mass=1e-3), 1.0
     model, recorder = build(scene), SmoothRecorder(scene)
-    GaussJackson(model, scene).run(start(model, scene, 3.0, 0.0), np.array([end]), 2e-3, recorder, 1e-9)
+    method, uneven = GaussJackson(model, scene), form(scene, 3.0, 1e-9)
+    method.run(start(model, scene, 3.0, 0.0), np.array([end]), 2e-3, recorder, uneven)
     truth = exact(scene, np.linspace(0, end, 200_001), 3.0).record
     found = recorder.record
     assert found.lowest_normal == pytest.approx(truth.lowest_normal, rel=0.011)

@@ -40,7 +40,7 @@ def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
 def test_what_is_compiled_is_theory_s_acceleration_and_its_change(scene: Scene, precision: float) -> None:
     """In the method's own time, t' = sqrt(J / J(phi0)): phi'' = t'^2 phi_ddot + t'' phi_dot."""
-    numbers, small = form(scene, 0.3, precision, 0.0), 1e-5
+    numbers, small = form(scene, 0.3, precision), 1e-5
 
     def truth(phi: float, rate: float) -> float:
         ours = phi + np.array([-small, 0.0, small])

@@ -221,7 +221,7 @@ class Stepped:
         """Write numbers of the same kind into the model, with the same errors, and reset the data."""
         model, data = self.model, self.data
         numbers.write(made, model)
-        mujoco.mj_resetData(model, data)
+        data.warning.number[:] = 0
         with quiet():
             mujoco.mj_setConst(model, data)
         if made.setting.rolling != "reduced":

@@ -186,7 +186,7 @@ def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> flo
     The centre of mass is within m b/m_t of the axis, and has m_t v^2/2 <= E + m_t g s sin(alpha), where E is the
     kinetic energy of the start and what the load gains in half a turn: s <= sqrt(2 E/m_t) t + g sin(alpha) t^2/2.
     """
-    energy = kinetic_energy(scene, state.begin(scene, phi0, phi_dot0))[0] + 2 * scene.load.moment * scene.gravity
+    energy = float(kinetic_energy(scene, state.begin(scene, phi0, phi_dot0))) + 2 * scene.load.moment * scene.gravity
     fallen = scene.gravity * abs(math.sin(scene.incline)) * duration**2 / 2
     return math.sqrt(2 * energy / scene.mass) * duration + fallen + 2 * scene.load.moment / scene.mass
 

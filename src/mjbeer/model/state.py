@@ -2,6 +2,7 @@
 
 import functools
 from collections.abc import Iterable
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -46,12 +47,12 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
 def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return the positions and the rates of joints at a start, shape (2, joints)."""
     values = _values(begin(scene, phi0, phi_dot0))
-    return np.array([values[name] for name in joints])[..., 0].T
+    return np.array([values[name] for name in joints]).T
 
 
 def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
-    return write(model, begin(scene, phi0, phi_dot0))[0]
+    return at(places(model), scene, phi0, phi_dot0).ravel()
 
 
 def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
@@ -63,11 +64,11 @@ def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
 
 
 def begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
-    """Return a start as a motion of one sample."""
+    """Return a start, a motion whose coordinates are numbers and no arrays."""
     (u, u_dot), radius = scene.start(phi0, phi_dot0), scene.can.radius
-    values = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0
+    values: tuple[Any, ...] = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0
     names = "time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot"
-    return Coordinates(**{name: np.array([value]) for name, value in zip(names, values, strict=True)})
+    return Coordinates(**dict(zip(names, values, strict=True)))
 
 
 def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:

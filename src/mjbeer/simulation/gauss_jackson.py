@@ -39,7 +39,7 @@ from mjbeer.simulation.kernels import (
     see,
     slope,
 )
-from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, add, form, read_off, weighted, weights
+from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, Form, add, form, read_off, weighted, weights
 from mjbeer.simulation.stepping import LARGEST
 from mjbeer.theory.scene import Scene
 
@@ -74,7 +74,8 @@ class GaussJackson:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
         if not model.opt.disableflags & _DAMPER:
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
-        self._dynamics, self._scene, self.size = dynamics or Dynamics(model), scene, model.nv
+        self._dynamics, self.size = dynamics or Dynamics(model), model.nv
+        self._even = form(scene)
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
@@ -84,24 +85,24 @@ class GaussJackson:
         times: np.ndarray,
         timestep: float,
         recorder: SmoothRecorder | None = None,
-        precision: float = 0.0,
+        uneven: Form | None = None,
         push: float = 0.0,
         limit: float = math.inf,
     ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        All steps last a `timestep` [s]. With a `precision` they are steps of the method's own time, and the first one
-        lasts about as long; the time that passes in each is known to that share of it. Six steps are taken before the
-        start, and two more than the times need. A `push` [rad/s^2] is added to phi_ddot.
+        All steps last a `timestep` [s]. With the form of `uneven` ones they are even in the method's own time, and the
+        first one lasts about as long. Six steps are taken before the start, and two more than the times need. A `push`
+        [rad/s^2] is added to phi_ddot.
 
         Raises:
           DivergenceError: if the motion stops being finite, or there are `limit` evaluations.
         """
-        size, phi0 = self.size, float(start[self.size - 1])
-        samples, history, sums = np.empty((len(times), 2 * size)), np.empty((2, COUNT + BLOCK)), np.empty((2, 5))
+        size, samples = self.size, np.empty((len(times), 2 * self.size))
+        history, sums = np.empty((2, COUNT + BLOCK)), np.empty((2, 5))
         kernel, record = self._dynamics.kernel, recorder.kernel if recorder else _NO_RECORD
         work = np.empty((2, COUNT + 2)), np.empty((3, 2 * size)), np.empty(3)
-        fixed = *kernel, form(self._scene, phi0, precision, push), start, sums, history, work, times, samples, record
+        fixed = *kernel, uneven or self._even, push, start, sums, history, work, times, samples, record
         self.evaluations = drive(GAUSS_JACKSON, _advance, fixed, (0.0, 0, timestep, 0), limit, None)
         return samples
 
@@ -186,7 +187,7 @@ def _begin(pointers, views, form, phi, rate, step, sums, history, work):
 
 
 @compiled()
-def _advance(pointers, views, form, start, sums, history, work, times, samples, record, place):
+def _advance(pointers, views, form, push, start, sums, history, work, times, samples, record, place):
     """Take up to a block of steps, and return the status, the new place, the number of evaluations, and 0.
 
     `history` has a row for the second derivatives of phi, and one for the accelerations of the axis less its swing.
@@ -228,7 +229,7 @@ def _advance(pointers, views, form, start, sums, history, work, times, samples, 
             history[0, end] = gain
             turned = step**2 * (sums[0, 1] + weighted(_CORRECT, history[0], end + 1)) - phi
             sped = step * (sums[0, 0] + gain + weighted(_CORRECT_RATE, history[0], end + 1)) - rate
-            history[0, end] += _by_theory(form, sin, cos, rate, turned, sped)[1] + form.push
+            history[0, end] += _by_theory(form, sin, cos, rate, turned, sped)[1] + push
             add(sums, 0, history[0, end])
             add(sums, 1, sums[0, 0])
             steps, taken, end = steps + 1, taken + 1, end + 1

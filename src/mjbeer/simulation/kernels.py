@@ -151,9 +151,6 @@ class Dynamics:
         """Compute the actuators' forces of a model that has changed, which a smooth one then takes unchanged."""
         if self._actuated and len(self.kernel[0][0]) > 1:
             mujoco.mj_forward(self._model, self.data)
-            forces = self.data.qfrc_actuator.copy()
-            mujoco.mj_resetData(self._model, self.data)
-            self.data.qfrc_actuator[:] = forces
 
 
 @compiled(forceinline=True)

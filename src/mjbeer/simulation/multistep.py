@@ -53,19 +53,22 @@ _PUNCTUAL, _ATTEMPTS = 3e-5, 5
 """Distance of a sample from its time, over a part's, after which one more attempt has all digits, as it cubes that; and
 the most attempts."""
 
-Form = namedtuple("Form", "base chord swing scale even uneven turns slope along across share height period push bounds")
+Form = namedtuple("Form", "base chord swing scale even uneven turns slope along across share height period bounds")
 Form.__doc__ = """J = base + chord sin^2(phi/2) + swing sin^2(phi), -V' = slope + along cos(phi) - across sin(phi).
 
 The method's own time goes as fast as time where J is `scale`. J over that is `even` + `uneven` sin^2(`turns` phi), and
 vanishes at a complex angle of some `height` [rad] in each `period` [rad]. The `share` of the swing in u is u's change
-with sin(phi) [m]. The `push` [rad/s^2] is added to phi_ddot. There are no `bounds`, see there, if all steps are even.
+with sin(phi) [m]. There are no `bounds`, see there, if all steps are even.
 """
 _Line = namedtuple("_Line", "curve first second step back")
 _Line.__doc__ = """Coefficients of phi between the steps, both sums, the step [s], and how many steps back it begins."""
 
 
-def form(scene: Scene, phi0: float, precision: float, push: float) -> Form:
-    """Return the form of a scene that starts at `phi0` [rad]; with a `precision` of 0 all steps are even."""
+def form(scene: Scene, phi0: float = 0.0, precision: float = 0.0) -> Form:
+    """Return the form of a scene that starts at about `phi0` [rad].
+
+    The time in a step is known to some `precision`, a share of it; for one of 0 all steps are even.
+    """
     shape = scene.oscillator
     uneven, turns = (shape.swing, 1.0) if shape.swing > 0 else (shape.chord, 0.5)
     height = math.asinh(math.sqrt(shape.base / uneven)) / turns if uneven > 0 else _HIGHEST
@@ -84,7 +87,6 @@ def form(scene: Scene, phi0: float, precision: float, push: float) -> Form:
         share=scene.load.moment / scene.effective_mass,
         height=min(height, _HIGHEST),
         period=math.pi / turns,
-        push=push,
         bounds=bounds(precision),
     )
 

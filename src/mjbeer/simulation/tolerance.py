@@ -12,7 +12,8 @@ from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.model.state import places, read
 from mjbeer.simulation.dop853 import Integrator
 from mjbeer.simulation.gauss_jackson import GaussJackson
-from mjbeer.simulation.kernels import Dynamics, SmoothRecorder
+from mjbeer.simulation.kernels import Dynamics, SmoothRecorder, compiled
+from mjbeer.simulation.multistep import form
 from mjbeer.simulation.stepping import LARGEST, Recorder, Solution
 from mjbeer.theory.equations import stiffness
 from mjbeer.theory.record import Record
@@ -144,10 +145,12 @@ class Solver:
         """
 
         def run(begin: np.ndarray, timestep: float, recorder: SmoothRecorder | None, push: float) -> np.ndarray:
-            return method.run(begin, times, timestep, recorder, _PRECISION * tolerance, push, _EVALUATIONS)
+            return method.run(begin, times, timestep, recorder, uneven, push, _EVALUATIONS)
 
         brief = _BRIEF if self._rounded else 1.0
-        timestep = _longest(self._scene, start[method.size - 1], start[-1], times[-1], tolerance / brief)
+        phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
+        timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / brief)
+        uneven = form(self._scene, phi0, _PRECISION * tolerance)
         share = 1.0 if self._rounded else min(1.0, tolerance / _ASYMPTOTIC[0])
         push = share * _PUSH * (self._scale[-1] / self._scale[method.size - 1]) ** 2
         coarse, safety, nudged, begun = None, 0.0, False, 0.0
@@ -159,7 +162,7 @@ class Solver:
                 timestep /= _FINER
                 recorder = SmoothRecorder(self._scene, friction)
                 fine = run(start + nudged * share * self._nudge, timestep, recorder, nudged * push)
-                distance, record = self._distance(coarse, fine, start), recorder.record
+                distance, record = _distance(self._angles, coarse, fine, start), recorder.record
                 begun = begun or distance
                 drift = max(_DRIFT * record.swing_error, record.axis_error)
                 error = max(safety * distance, drift, _ROUNDING_OVER_NUDGE / share * begun)
@@ -193,7 +196,7 @@ class Solver:
             local /= _RATIO
             recorder = Recorder(self._model, self._scene, friction, within=True)
             fine = run(start, local, recorder)
-            distances.append(self._distance(coarse, fine, start))
+            distances.append(_distance(self._angles, coarse, fine, start))
             drift, error = self._drift(recorder.record), safety * max(distances[-1], distances[-2] / ratio)
             if max(error, drift) <= tolerance:
                 break
@@ -210,16 +213,10 @@ class Solver:
         if rounding > tolerance:
             # On either side of the start, because from one side of a barrier's top all motions fall the same way.
             beside = [run(start + side * self._nudge, local) for side in (1, -1)]
-            rounding = _ROUNDING_OVER_NUDGE * max(self._distance(each, fine, start) for each in beside)
+            rounding = _ROUNDING_OVER_NUDGE * max(_distance(self._angles, each, fine, start) for each in beside)
             if rounding > tolerance:
                 raise _not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
         return Solution(fine, recorder.record, max(error, drift, rounding), DOP853)
-
-    def _distance(self, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
-        """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad."""
-        found = fine @ self._angles
-        turned = np.maximum.accumulate(np.abs(found - start @ self._angles))
-        return float((np.abs(found - coarse @ self._angles) / np.maximum(1.0, turned)).max())
 
     def _drift(self, record: Record) -> float:
         """Return the error of phi and u/a [rad] that the drift of energy and momentum in a record implies."""
@@ -292,6 +289,26 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
     cycles = math.sqrt(depth) / mean * duration / (2 * math.pi)
     share *= max(cycles / _CYCLES, 0.1) ** -0.09
     return min(share / math.sqrt(turning + swinging), duration / _FEWEST)
+
+
+@compiled()
+def _distance(angles, coarse, fine, start):
+    """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad.
+
+    These are the products of a state and the two columns of `angles`. What is no number in a run is so in the distance.
+    """
+    distance = 0.0
+    for column in range(angles.shape[1]):
+        turned = 1.0
+        for sample in range(len(fine)):
+            change = apart = 0.0
+            for place in range(len(start)):
+                change += angles[place, column] * (fine[sample, place] - start[place])
+                apart += angles[place, column] * (fine[sample, place] - coarse[sample, place])
+            turned = max(turned, abs(change))
+            if not abs(apart) <= distance * turned:
+                distance = abs(apart) / turned
+    return distance
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
