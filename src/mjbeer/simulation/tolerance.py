@@ -20,7 +20,10 @@ from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _PARTS = np.linspace(0, 1, 33)
-"""Times, over the last one, at which runs are compared besides the samples that are asked for."""
+"""Times, over the last one, at which runs are compared besides the samples, unless these are as near one another."""
+_COMPARED = 64
+"""Samples at which runs of Gauss-Jackson are compared, if there are more, but for light wheels, whose load may be fast
+for a moment only. The error of the others changes within a part of a swing."""
 _SAFETY = 1.5
 """Error estimate over the distance of two runs."""
 _SAFETY_BY_CHANCE = 3.0
@@ -80,9 +83,12 @@ _GAIN = _FINER**_ORDER
 """Error of one run of Gauss-Jackson over that of the next."""
 _PRECISION = 1e-3
 """Precision of the time that passes in a step of Gauss-Jackson, over the tolerance."""
-_SHARE, _REFERENCE, _CYCLES = 0.175, 1e-9, 10.0
-"""Angle [rad] by which swings and turns go on in a timestep of Gauss-Jackson for an error of 1e-9 rad over ten periods
-(measured, as are the powers in `_longest`: nine of ten random motions allow more)."""
+_SHARE, _REFERENCE, _ADDED, _POWER = 0.074, 1e-9, 1.5, 1 / 14
+"""First timestep of Gauss-Jackson over the distance of the nearest pole, for an error of 1e-9 rad in a cycle; the power
+of the number of cycles with which errors add up; that of an error with which a timestep grows (measured: nine of ten
+random motions allow more, and half of them 1.16 times as much)."""
+_LEAST_MODULUS = 1e-3
+"""Least k of a swing for which its pole decides: smaller ones are as even, and only their size is smaller."""
 _FEWEST = 8
 """Least number of timesteps in a run, for motions that hardly move."""
 _TRIES = 3
@@ -128,13 +134,15 @@ class Solver:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
-        along = np.sort(np.concatenate([times, times[-1] * _PARTS]))
+        far = np.diff(times, prepend=0.0).max() > times[-1] * _PARTS[1]
+        along = np.sort(np.concatenate([times, times[-1] * _PARTS])) if far else times
         found = None
         if self._gauss_jackson is not None and tolerance <= _LOOSE:
             found = self._by_gauss_jackson(self._gauss_jackson, start, along, tolerance, friction)
         found = found or self._by_dop853(start, along, tolerance, friction)
         error = max(found.error or 0.0, self._loss(found, along, tolerance))
-        return replace(found, states=found.states[np.searchsorted(along, times)], error=error)
+        states = found.states[np.searchsorted(along, times)] if far else found.states
+        return replace(found, states=states, error=error)
 
     def _by_gauss_jackson(
         self, method: GaussJackson, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
@@ -144,9 +152,11 @@ class Solver:
         The first run is nudged, at its start and all along. Where rounding counts, every second one is.
         """
 
-        def run(begin: np.ndarray, timestep: float, recorder: SmoothRecorder | None, push: float) -> np.ndarray:
+        def run(begin: np.ndarray, times: np.ndarray, recorder: SmoothRecorder | None, push: float) -> np.ndarray:
             return method.run(begin, times, timestep, recorder, uneven, push, _EVALUATIONS)
 
+        stride = 1 if self._rounded else math.ceil(len(times) / _COMPARED)
+        compared = np.arange(len(times) - 1, -1, -stride)[::-1]
         brief = _BRIEF if self._rounded else 1.0
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
         timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / brief)
@@ -158,18 +168,19 @@ class Solver:
             for _ in range(_TRIES):
                 if coarse is None:
                     begun, safety, nudged = 0.0, brief * self._safety(tolerance), False
-                    coarse = run(start + share * self._nudge, timestep, None, push)
+                    coarse = run(start + share * self._nudge, times[compared], None, push)
                 timestep /= _FINER
                 recorder = SmoothRecorder(self._scene, friction)
-                fine = run(start + nudged * share * self._nudge, timestep, recorder, nudged * push)
-                distance, record = _distance(self._angles, coarse, fine, start), recorder.record
+                fine = run(start + nudged * share * self._nudge, times, recorder, nudged * push)
+                some = fine[compared]
+                distance, record = _distance(self._angles, coarse, some, start), recorder.record
                 begun = begun or distance
                 drift = max(_DRIFT * record.swing_error, record.axis_error)
                 error = max(safety * distance, drift, _ROUNDING_OVER_NUDGE / share * begun)
                 if error <= tolerance:
                     return Solution(fine, record, error, GAUSS_JACKSON)
                 if _SAFETY_BY_CHANCE * distance <= _GAIN * tolerance:  # the next run would reach it
-                    coarse, safety, nudged = fine, max(safety, _SAFETY_BY_CHANCE), self._rounded and not nudged
+                    coarse, safety, nudged = some, max(safety, _SAFETY_BY_CHANCE), self._rounded and not nudged
                 else:
                     coarse, timestep = None, timestep * (tolerance / (_SAFETY_BY_CHANCE * distance)) ** (1 / _ORDER)
         except DivergenceError:
@@ -264,31 +275,33 @@ def _stiffest(scene: Scene) -> float:
 def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> float:
     """Return a timestep [s] with which runs of Gauss-Jackson of some `duration` [s] should keep a tolerance [rad].
 
-    In the time of its uneven steps the load moves as a pendulum, whose inertia is that at the start. The rate of its
-    small swings and the largest rate of its turns decide; and the faster it turns, the less its weight matters.
+    In the time of its uneven steps the load moves as a pendulum, whose inertia is that at the start. Without a slope
+    its motion is an elliptic function, the nearest pole of which is at an imaginary time: K'(k) over the rate of small
+    swings, where k^2 is the largest kinetic energy over that which turns the load over.
     """
-    form = scene.oscillator
-    slope, depth, bottom = form.slope, form.depth, form.bottom
-    inertia = form.base + form.chord * math.sin(phi0 / 2) ** 2 + form.swing * math.sin(phi0) ** 2
-    mean = math.sqrt(form.base + (form.chord + form.swing) / 2)
+    shape = scene.oscillator
+    slope, depth, bottom = shape.slope, shape.depth, shape.bottom
+    inertia = shape.base + shape.chord * math.sin(phi0 / 2) ** 2 + shape.swing * math.sin(phi0) ** 2
+    mean = math.sqrt(shape.base + (shape.chord + shape.swing) / 2)
     # Rest and crests are where V' = -slope + depth sin(phi - bottom) vanishes: the well around the start.
     lean = math.asin(max(-1.0, min(1.0, slope / depth))) if depth > 0 else 0.0
     well = bottom - lean + 2 * math.pi * round((phi0 - bottom + lean) / (2 * math.pi))
     energy = inertia * phi_dot0**2 / 2 - slope * phi0 - depth * math.cos(phi0 - bottom)
     crest, rest = well + math.copysign(math.pi, slope), well + 2 * lean
     most = max(0.0, energy + slope * rest + depth * math.cos(rest - bottom))
-    if energy + slope * crest + depth * math.cos(crest - bottom) > 0 or abs(slope) >= depth:
+    if turns := energy + slope * crest + depth * math.cos(crest - bottom) > 0 or abs(slope) >= depth:
         # It turns over and over, and a turn takes 2 pi mean(sqrt(J)) / sqrt(2 E), while E grows by 2 pi slope.
         most = (math.sqrt(2 * (most + 2 * depth)) + abs(slope) * duration / mean) ** 2 / 2
-    turning, swinging = 2 * most / inertia, depth / inertia
-    if not swinging > 0:
+    if not depth > 0:
         return duration / _FEWEST
-    evenness = turning / swinging  # of small swings, and of fast turns, that are a sine or a line
-    share = _SHARE * (tolerance / _REFERENCE) ** (1 / 14) * min(max(evenness, 4e-4) / 0.09, 1.0) ** -0.1
-    share *= max(evenness / 1.4, 1.0) ** 0.18
+    one, modulus = 1.0, max(math.sqrt(most / (2 * depth)), _LEAST_MODULUS)
+    turned = math.sqrt(2 * most) * duration / mean if turns else 4 * modulus
+    while abs(one - modulus) > 1e-3 * one:  # their arithmetic-geometric mean is pi/2 over K'
+        one, modulus = (one + modulus) / 2, math.sqrt(one * modulus)
+    pole = math.pi / (2 * one) * math.sqrt(inertia / depth)
     cycles = math.sqrt(depth) / mean * duration / (2 * math.pi)
-    share *= max(cycles / _CYCLES, 0.1) ** -0.09
-    return min(share / math.sqrt(turning + swinging), duration / _FEWEST)
+    allowed = tolerance / _REFERENCE * max(1.0, turned) / max(0.5, cycles) ** _ADDED
+    return min(_SHARE * pole * allowed**_POWER, duration / _FEWEST)
 
 
 @compiled()
