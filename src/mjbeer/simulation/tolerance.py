@@ -21,7 +21,7 @@ from mjbeer.theory.scene import Scene
 
 _PARTS = np.linspace(0, 1, 33)
 """Times, over the last one, at which runs are compared besides the samples, unless these are as near one another."""
-_COMPARED = 64
+_COMPARED = 256
 """Samples at which runs of Gauss-Jackson are compared, if there are more, but for light wheels, whose load may be fast
 for a moment only. The error of the others changes within a part of a swing."""
 _SAFETY = 1.5
@@ -134,7 +134,7 @@ class Solver:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
-        far = np.diff(times, prepend=0.0).max() > times[-1] * _PARTS[1]
+        far = max(times[0], np.diff(times).max(initial=0.0)) > times[-1] * _PARTS[1]
         along = np.sort(np.concatenate([times, times[-1] * _PARTS])) if far else times
         found = None
         if self._gauss_jackson is not None and tolerance <= _LOOSE:

@@ -1,5 +1,6 @@
 """The load that the can carries: a point mass, or beer, whose cross section at rest is a segment of a circle."""
 
+import functools
 import math
 from dataclasses import dataclass
 
@@ -95,6 +96,7 @@ class Segment:
     """The part of it that lies across, along the flat side: the mean of x^2 over a^2."""
 
 
+@functools.lru_cache(maxsize=1024)  # a sweep has the same ones again and again
 def segment(fill: float) -> Segment:
     """Return the segment whose height is `fill` times the diameter (fill = h/2a, eq. 32), to full relative precision.
 
