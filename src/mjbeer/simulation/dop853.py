@@ -27,6 +27,8 @@ from mjbeer.simulation.stepping import LARGEST, Watcher
 
 _ROWS = 16
 """Number of slopes that are kept: twelve of the stages, one at the end of the step, three of the continuous output."""
+_SPACE = 10
+"""Number of rows beside them to work in: for a state, two sums, and seven of the continuous output."""
 # SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
 _TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
 _A, _B, _E3, _E5 = _TABLEAU[:12, :12].copy(), *_TABLEAU[12:15, :13].copy()
@@ -70,22 +72,11 @@ class Integrator:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
         """
         state, samples = start.copy(), np.empty((len(times), self._size))
-        slopes, space = np.zeros((_ROWS, self._size)), np.empty((10, self._size))
+        slopes = np.zeros((_ROWS + _SPACE, self._size))
         scale = np.ones(self._size) if scale is None else scale
         rows, place = _KEPT if watch else 0, (0.0, timestep or 0.0, 0, 0, 1.0)
         kept = np.empty(rows), np.empty((rows, self._size))
-        fixed = (
-            *self._dynamics.kernel,
-            state,
-            slopes,
-            space,
-            times,
-            samples,
-            timestep is not None,
-            tolerance,
-            scale,
-            kept,
-        )
+        fixed = *self._dynamics.kernel, state, slopes, times, samples, timestep is not None, tolerance, scale, kept
         self.evaluations = drive(DOP853, _advance, fixed, place, limit, watch)
         return samples
 
@@ -103,13 +94,13 @@ def _combine(weights, count, slopes, out):
 
 
 @compiled()
-def _advance(pointers, views, state, slopes, space, times, samples, fixed, tolerance, scale, kept, place):
+def _advance(pointers, views, state, slopes, times, samples, fixed, tolerance, scale, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
     `pointers` are addresses of the functions that compute an acceleration, of the model and of its data; `views` are
     qpos, qvel and acceleration in that data, and the mask of the components of qpos that are needed. `state` is moved
-    on. `slopes`, of shape (_ROWS, states), comes with the slope at `state` in its first row, except in the first block.
-    The rows of `samples` whose `times` [s] the steps pass are filled in.
+    on. `slopes`, of shape (_ROWS + _SPACE, states), comes with the slope at `state` in its first row, except in the
+    first block, and ends with space to work in. The rows of `samples` whose `times` [s] the steps pass are filled in.
 
     `place` is the time, the step, the index of the next sample, the number of steps and the error of the last step.
     Unless the step is `fixed`, its error is kept below `tolerance` (`scale` + |state|) in each component.
@@ -120,7 +111,7 @@ def _advance(pointers, views, state, slopes, space, times, samples, fixed, toler
     kept_times, kept_states = kept
     stages = _A.shape[0]  # for a constant, numba would compile `_combine` once more
     size = state.size
-    new, work, total, weights = space[0], space[1], space[2], space[3:]
+    new, work, total, weights, slopes = slopes[-1], slopes[-2], slopes[-3], slopes[_ROWS:-3], slopes[:_ROWS]
     status, evaluations, row = BLOCK_END, 0, 0
     if steps == 0:
         slope(pointers, views, state, slopes[0])
