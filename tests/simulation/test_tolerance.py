@@ -11,7 +11,10 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import ToleranceError
+from mjbeer.model.build import build
+from mjbeer.model.state import read
 from mjbeer.simulation import tolerance as tolerances
+from mjbeer.simulation.kernels import Dynamics
 from mjbeer.simulation.run import Run
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, stiffness
@@ -244,3 +247,20 @@ def test_two_runs_that_err_alike_by_chance_are_not_taken_for_right() -> None:
     tolerance, end = 4.739352222043245e-06, 6.057825328153827
     run = simulate(scene, end, 0.4136957499445644, tolerance=tolerance, times=np.linspace(0, end, 1001))
     assert error(run) <= tolerance
+
+
+@pytest.mark.parametrize("scene", [sliding(), frozen()])
+def test_the_distance_of_two_runs_is_that_of_their_motions(scene: Scene) -> None:
+    model, times, random = build(scene), np.arange(50.0), np.random.default_rng(8)
+    size, start = 2 * model.nv, random.normal(size=2 * model.nv)
+    fine = start + np.cumsum(random.normal(size=(50, size)), axis=0)
+    coarse = fine + 1e-3 * random.normal(size=(50, size))
+    solver = tolerances.Solver(model, scene, Dynamics(model))
+    begin = read(model, scene, start[None], np.zeros(1))
+    apart = distance(
+        read(model, scene, coarse, times), read(model, scene, fine, times), scene.can.radius, (begin.phi[0], begin.u[0])
+    )
+    rounding = 1e-10  # of angles that are ten thousand times as large as what they differ by
+    assert tolerances._distance(solver._angles, coarse, fine, start) == pytest.approx(apart, rel=rounding)
+    coarse[20] = math.nan
+    assert tolerances._distance(solver._angles, coarse, fine, start) == math.inf

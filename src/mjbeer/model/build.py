@@ -221,7 +221,7 @@ class Stepped:
         """Write numbers of the same kind into the model, with the same errors, and reset the data."""
         model, data = self.model, self.data
         numbers.write(made, model)
-        data.warning.number[:] = 0
+        data.warning.number[:] = 0  # of the scene before
         with quiet():
             mujoco.mj_setConst(model, data)
         if made.setting.rolling != "reduced":

@@ -116,7 +116,7 @@ class Solver:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
         Each run has a local tolerance of an eighth of that of the run before, and the first starts a nudge from
-        `start`. The error estimate is a multiple of the distance of the last two runs at all samples, and no less than
+        `start`. The error estimate is a multiple of the distance of the last two runs at the samples, and no less than
         what the drift of energy and momentum implies: over many turns the errors of two runs may be the same by chance.
         From the third run on a share of the distance before counts if that is larger. None of these shows the effect of
         rounding; it is estimated by further runs where it may matter, and what an equality loses by its accelerations.
@@ -308,7 +308,7 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
 def _distance(angles, coarse, fine, start):
     """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad.
 
-    These are the products of a state and the two columns of `angles`. What is no number in a run is so in the distance.
+    These are the products of a state and the two columns of `angles`. The distance from what is no number is infinite.
     """
     distance = 0.0
     for column in range(angles.shape[1]):
@@ -320,7 +320,7 @@ def _distance(angles, coarse, fine, start):
                 apart += angles[place, column] * (fine[sample, place] - coarse[sample, place])
             turned = max(turned, abs(change))
             if not abs(apart) <= distance * turned:
-                distance = abs(apart) / turned
+                distance = abs(apart) / turned if abs(apart) < np.inf else np.inf
     return distance
 
 
