@@ -134,7 +134,7 @@ class Solver:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
-        far = max(times[0], np.diff(times).max(initial=0.0)) > times[-1] * _PARTS[1]
+        far = (times[1:] - times[:-1]).max(initial=times[0]) > times[-1] * _PARTS[1]
         along = np.sort(np.concatenate([times, times[-1] * _PARTS])) if far else times
         found = None
         if self._gauss_jackson is not None and tolerance <= _LOOSE:
@@ -156,7 +156,7 @@ class Solver:
             return method.run(begin, times, timestep, recorder, uneven, push, _EVALUATIONS)
 
         stride = 1 if self._rounded else math.ceil(len(times) / _COMPARED)
-        compared = np.arange(len(times) - 1, -1, -stride)[::-1]
+        compared = slice((len(times) - 1) % stride, None, stride)  # with the last one
         brief = _BRIEF if self._rounded else 1.0
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
         timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / brief)
@@ -168,11 +168,11 @@ class Solver:
             for _ in range(_TRIES):
                 if coarse is None:
                     begun, safety, nudged = 0.0, brief * self._safety(tolerance), False
-                    coarse = run(start + share * self._nudge, times[compared], None, push)
+                    coarse = run(start + share * self._nudge, np.ascontiguousarray(times[compared]), None, push)
                 timestep /= _FINER
                 recorder = SmoothRecorder(self._scene, friction)
                 fine = run(start + nudged * share * self._nudge, times, recorder, nudged * push)
-                some = fine[compared]
+                some = np.ascontiguousarray(fine[compared])
                 distance, record = _distance(self._angles, coarse, some, start), recorder.record
                 begun = begun or distance
                 drift = max(_DRIFT * record.swing_error, record.axis_error)
