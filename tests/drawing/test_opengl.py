@@ -144,9 +144,7 @@ def test_a_library_that_crashes_when_it_is_loaded(crashing: dict[str, str], tmp_
 
 @pytest.mark.draws
 def test_context_is_drawn_with() -> None:
-    context = opengl.context(16, 16)
-    context.make_current()
-    context.free()
+    opengl.context().make_current()
     if sys.platform == "linux":
         assert os.environ["PYOPENGL_PLATFORM"] == opengl.backend()
 
@@ -154,8 +152,7 @@ def test_context_is_drawn_with() -> None:
 RASTERIZERS = """
 import pathlib
 from mjbeer.drawing import opengl
-context = opengl.context(64, 64)
-context.make_current()
+opengl.context().make_current()
 from OpenGL import GL
 threads = [(task / "comm").read_text() for task in pathlib.Path("/proc/self/task").iterdir()]
 print(sum(name.startswith("llvmpipe") for name in threads), GL.glGetString(GL.GL_RENDERER).decode())

@@ -40,9 +40,13 @@ def scale(scene: Scene) -> float:
 
 def on_incline(scene: Scene, along: np.ndarray | float, height: np.ndarray | float) -> np.ndarray:
     """Return x and z of points `along` the incline and at a `height` over it, in one unit, shape (..., 2)."""
+    return in_space(scene, along, height, 0.0)[..., ::2]
+
+
+def in_space(scene: Scene, along: np.ndarray | float, height: np.ndarray | float, y: float) -> np.ndarray:
+    """Return x, y and z of such points at one `y`, shape (..., 3)."""
     sine, cosine = math.sin(scene.incline), math.cos(scene.incline)
-    x, z = along * cosine + height * sine, height * cosine - along * sine
-    return np.stack(np.broadcast_arrays(x, z), axis=-1)
+    return np.multiply.outer(along, [cosine, 0, -sine]) + np.multiply.outer(height, [sine, 0, cosine]) + [0, y, 0]
 
 
 def circle(radius: float, count: int = 48) -> np.ndarray:
@@ -100,9 +104,9 @@ class View:
 
     def pixel(self, points: np.ndarray) -> np.ndarray:
         """Return column and row of points [m] of shape (..., 3), from the upper left corner of the picture."""
-        right, up, back = np.moveaxis((np.asarray(points) - self.eye) @ self.axes.T, -1, 0)
-        across = (np.stack([right, up], axis=-1) / -back[..., None] - self.low) / (self.high - self.low)
-        return np.stack([across[..., 0], 1 - across[..., 1]], axis=-1) * self.pixels
+        seen = (np.asarray(points) - self.eye) @ self.axes.T
+        across = (seen[..., :2] / -seen[..., 2:] - self.low) / (self.high - self.low)
+        return (across * [1, -1] + [0, 1]) * self.pixels
 
     def corners(self, y: float) -> np.ndarray:
         """Return x and z [m] of the picture's corners, in turn, in a plane across the can's axis, shape (4, 2)."""

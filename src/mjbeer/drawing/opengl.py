@@ -1,10 +1,14 @@
 """Off-screen OpenGL: which backend works here, found out before anything of it is loaded."""
 
+import atexit
 import functools
+import importlib
 import os
 import subprocess
 import sys
+import threading
 from collections.abc import Sequence
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -31,27 +35,29 @@ context.free()
 """
 _NONE = "disable"
 """The value of MUJOCO_GL with which MuJoCo loads no OpenGL when it is imported."""
+_THREAD = threading.local()
 _PATIENCE = 60
 """How long OpenGL may take to start [s]; it is a second or two."""
 
 
-def context(width: int, height: int) -> Any:
-    """A new off-screen OpenGL context, not yet current, for pictures of up to `width` by `height` pixels.
+def context() -> Any:
+    """The off-screen OpenGL context of this thread, not yet current: all that it draws shares its compiled shaders.
 
     Raises:
       RenderingError: if no backend works; the message says why not and what to install.
     """
-    if sys.platform != "linux":
-        import mujoco
+    if not hasattr(_THREAD, "context"):
+        _THREAD.context = _library().GLContext(16, 16)  # pictures are drawn into a buffer of MuJoCo's, of any size
+        atexit.register(_THREAD.context.free)  # later it could not be freed any more
+    return _THREAD.context
 
-        return mujoco.GLContext(width, height)
+
+def _library() -> ModuleType:
+    if sys.platform != "linux":
+        return importlib.import_module("mujoco")
     rasterize_in_one_thread()
     # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window system's by default.
-    if backend() == "egl":
-        from mujoco.egl import GLContext
-    else:
-        from mujoco.osmesa import GLContext
-    return GLContext(width, height)
+    return importlib.import_module(f"mujoco.{backend()}")
 
 
 def read(drawn: Any, width: int, height: int) -> np.ndarray:
@@ -100,7 +106,7 @@ def problem() -> str | None:
         if sys.platform == "linux":
             backend()
         else:
-            context(16, 16).free()
+            context()
     except RenderingError as error:
         return str(error)
     return None

@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.drawing import strip
-from mjbeer.drawing.camera import Camera, View, circle, on_incline, scale
+from mjbeer.drawing.camera import Camera, View, circle, in_space, scale
 from mjbeer.drawing.sheet import INK, UNITS, Box, Colour, Sheet, overlap
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
@@ -237,8 +237,8 @@ class _Pen:
 
     def places(self, points: np.ndarray) -> np.ndarray:
         """Return column and row on the sheet."""
-        points = on_incline(self.scene, RADIUS * points[..., 0], RADIUS * points[..., 1])
-        return self.view.pixel(np.insert(points, 1, self.plane, axis=-1)) + np.array([0, self.top])
+        points = in_space(self.scene, RADIUS * points[..., 0], RADIUS * points[..., 1], self.plane)
+        return self.view.pixel(points) + np.array([0, self.top])
 
     def line(self, points: np.ndarray, width: float, colour, alpha: float = 1.0, dashes: Sequence[float] = ()) -> None:
         self.sheet.line(self.places(points), max(1.0, width * self.radius), colour, alpha=alpha, dashes=dashes)
@@ -280,7 +280,7 @@ class Board:
 
     def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
         """Return column and row of points of the edge, `along` the incline as drawn [m], shape (..., 2)."""
-        return view.pixel(np.insert(on_incline(self.scene, along, self.under), 1, self.front, axis=-1))
+        return view.pixel(in_space(self.scene, along, self.under, self.front))
 
     def along(self, view: View, column: float) -> float:
         """Return how far down the incline the edge is seen in a column of the picture, as drawn [m]."""

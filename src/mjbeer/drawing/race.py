@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import brentq
 
-from mjbeer.drawing.camera import View, on_incline
+from mjbeer.drawing.camera import View, in_space
 from mjbeer.drawing.film import Reel
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
@@ -215,10 +215,9 @@ class Course:
         hurries = time >= self.pace[0]
         speed = self.pace[1] if hurries else self.race.speed
         head(self.sheet, (self.race.title, ", ".join(facts)), time, speed, self.unit)
-        x, z = on_incline(scene, -1.6 * RADIUS, 0.0)
         for number, lane in enumerate(self.display.lanes):
-            column, row = self.view.pixel(np.array([x, lane, z])) + np.array([0, self.top])
-            self._plate(number, time, column, row)
+            column, row = self.view.pixel(in_space(scene, -1.6 * RADIUS, 0.0, lane))
+            self._plate(number, time, column, row + self.top)
         if self.strip is not None:
             self.strip.draw(self.sheet, time, self.top + self.view.pixels[1])
 

@@ -11,9 +11,10 @@ from typing import TypeAlias
 
 import mujoco
 import numpy as np
+from PIL import Image
 
 from mjbeer.drawing import opengl
-from mjbeer.drawing.camera import View, circle, on_incline, scale
+from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import RenderingError
 from mjbeer.model import looks
@@ -90,6 +91,12 @@ class Display:
                 looks.pour(spec, _resize(scene), _EDGES)
             for pair in spec.pairs:
                 spec.delete(pair)
+            shell = spec.body("can").add_body()  # it comes after the load: what that hides is quickly drawn
+            for geom in spec.body("can").geoms:
+                moved = shell.add_geom()
+                for attribute in looks.attributes(type(geom)):
+                    setattr(moved, attribute, getattr(geom, attribute))
+                spec.delete(geom)
             for geom in spec.geoms:
                 of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
                 geom.group = number % _UNSEEN if of_can else _UNSEEN
@@ -190,17 +197,17 @@ class Scenery:
         seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(self.scene, 1.0, 0.0)
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
         dark = stripes[np.round(stripes / _STRIPE) % 2 == 1]
-        up = np.insert(on_incline(self.scene, 0.0, 1.0), 1, 0.0)
+        up = in_space(self.scene, 0.0, 1.0, 0.0)
         faces = ((up, (front, over), (back, over)), (-up, (front, under), (back, under)))
         for normal, one, other in (*faces, (_NEAR, (front, under), (front, over))):
 
             def bands(begin: np.ndarray, length: float, edges=(one, one, other, other)) -> np.ndarray:
                 """Return the places of the parts of this face that begin somewhere down the incline."""
                 ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
-                points = [np.insert(on_incline(self.scene, along, z), 1, y, axis=-1) for along, (y, z) in ends]
+                points = [in_space(self.scene, along, z, y) for along, (y, z) in ends]
                 return _apart(view.pixel(np.stack(points, axis=1)) + shift)
 
-            if (view.eye - np.insert(on_incline(self.scene, 0.0, one[1]), 1, one[0])) @ normal <= 0:
+            if (view.eye - in_space(self.scene, 0.0, one[1], one[0])) @ normal <= 0:
                 continue
             sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(texture[16, 16], normal, view))
             sheet.area(bands(dark, _STRIPE), self._lit(texture[16, 48], normal, view))
@@ -223,7 +230,7 @@ class Scenery:
 
 def _apart(shapes: np.ndarray) -> np.ndarray:
     """Return places of several lines or polygons of shape (n, k, 2) as one path, with gaps (NaN)."""
-    return np.insert(shapes, shapes.shape[1], np.nan, axis=1).reshape(-1, 2)
+    return np.concatenate([shapes, np.full_like(shapes[:, :1], np.nan)], axis=1).reshape(-1, 2)
 
 
 class Painter:
@@ -246,20 +253,18 @@ class Painter:
         model.vis.global_.offwidth, model.vis.global_.offheight = 2 * width, 2 * height
         model.vis.quality.offsamples = 0  # twice as many pixels, each way, take less time and show more
         model.vis.quality.shadowsize = 0  # no light casts one
-        self._gl = opengl.context(2 * width, 2 * height)
+        self._gl = opengl.context()
         try:
             self._gl.make_current()
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
-            mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         except (mujoco.FatalError, RuntimeError) as error:
-            self._gl.free()
             raise RenderingError(f"no off-screen picture of {width} x {height} pixels: {error}") from error
 
     def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
         """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
         if self._empty is None:
             self._scenery.draw(sheet, view, top)
-            self._empty = sheet.picture()[top : top + view.pixels[1]] if self._still else None
+            self._empty = sheet.part(top, top + view.pixels[1]) if self._still else None
         else:
             sheet.put(self._empty, 0, top)
         self._display.pose(positions)
@@ -287,13 +292,13 @@ class Painter:
                 light.pos, light.dir = view.eye, -view.axes[2]
         width, height = view.pixels
         self._gl.make_current()
+        mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
         mujoco.mjr_render(mujoco.MjrRect(0, 0, 2 * width, 2 * height), scene, self._context)
-        fine = opengl.read(self._context, 2 * width, 2 * height)[::-1]
-        four = sum(fine[row::2, column::2].astype(np.uint16) for row in (0, 1) for column in (0, 1))
-        return np.asarray(four >> 2).astype(np.uint8)
+        fine = opengl.read(self._context, 2 * width, 2 * height)
+        # As red, green, blue and padding, for Pillow divides colours by what it takes for their opacity.
+        return np.asarray(Image.frombuffer("RGBX", fine.shape[1::-1], fine, "raw", "RGBX", 0, -1).reduce(2))
 
     def close(self) -> None:
         """Free the graphics memory."""
         self._gl.make_current()
         self._context.free()
-        self._gl.free()

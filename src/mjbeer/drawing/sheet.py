@@ -8,7 +8,7 @@ from functools import cache, lru_cache
 import numpy as np
 from matplotlib import get_data_path
 from matplotlib.backends.backend_agg import RendererAgg
-from matplotlib.colors import to_rgb
+from matplotlib.colors import to_hex
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D, Bbox
 from PIL import Image, ImageDraw, ImageFont
@@ -57,18 +57,16 @@ class Sheet:
         self.boxes: list[Box] = []
         """The boxes of all texts since this list was last emptied."""
         self._clip: Box | None = None
+        self._unclipped = self._renderer.new_gc()
 
     def put(self, picture: np.ndarray, left: int = 0, top: int = 0) -> None:
-        """Put a picture on the sheet, with its upper left corner at a place.
+        """Put a picture of shape (height, width, 4), uint8, with a last channel of 255, below and right of a place."""
+        rows, columns, _ = picture.shape
+        self._pixels[top : top + rows, left : left + columns] = picture
 
-        It has the shape (height, width, 3), or (height, width, 4) with a last channel of 255, and is uint8.
-        """
-        rows, columns, channels = picture.shape
-        part = self._pixels[top : top + rows, left : left + columns]
-        if channels == 4:
-            part[:] = picture
-        else:
-            _copy(picture, part)
+    def part(self, top: int, bottom: int) -> np.ndarray:
+        """Return a copy of some rows of the sheet, which can be `put` there again."""
+        return self._pixels[top:bottom].copy()
 
     def lay(self, picture: np.ndarray, left: int, top: int) -> None:
         """Lay a picture of shape (height, width, 4) on the sheet, whose last channel is how much it covers.
@@ -86,10 +84,9 @@ class Sheet:
         self._pixels[top:bottom, left:right] = 255
 
     def picture(self) -> np.ndarray:
-        """Return a copy of what is on the sheet, shape (height, width, 3), uint8."""
-        picture = np.empty((self.height, self.width, 3), np.uint8)
-        _copy(self._pixels, picture)
-        return picture
+        """Return a copy of what is on the sheet, shape (height, width, 3), uint8; it can only be read."""
+        whole = Image.frombuffer("RGBX", (self.width, self.height), self._pixels, "raw", "RGBX", 0, 1)
+        return np.frombuffer(whole.tobytes("raw", "RGB"), np.uint8).reshape(self.height, self.width, 3)
 
     def clip(self, box: Box | None) -> None:
         """Draw only within a box from now on, or everywhere."""
@@ -144,14 +141,10 @@ class Sheet:
 
         With a `halo` the text has a white edge, so that it can be read on anything.
         """
-        left, top, _, _ = box = self.box(place, words, size, anchor, bold)
+        left, _, _, bottom = box = self.box(place, words, size, anchor, bold)
         for edge, ink in [(_EDGE, "white")] * halo + [(0, colour)]:
-            rows, columns, shares = _covered(words, size, bold, edge)
-            rows, columns = rows + top, columns + left
-            inside = (rows >= 0) & (rows < self.height) & (columns >= 0) & (columns < self.width)
-            spots = rows[inside], columns[inside], np.s_[:3]
-            before, after = self._pixels[spots], 255 * np.array(to_rgb(ink), np.float32)
-            self._pixels[spots] = before + shares[inside] * (after - before) + np.float32(0.5)
+            written = _written(words, size, bold, edge, ink)
+            self._renderer.draw_image(self._unclipped, left - _EDGE, self.height - bottom - _EDGE, written)
         self.boxes.append(box)
         return box
 
@@ -195,23 +188,14 @@ def _size(words: str, size: float, bold: bool) -> tuple[int, int]:
 
 
 @lru_cache(maxsize=512)
-def _covered(words: str, size: float, bold: bool, edge: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return rows and columns of the pixels that a text with an edge covers, from its box's corner, and their shares.
-
-    The shares are from 0 to 1, of shape (pixels, 1).
-    """
+def _written(words: str, size: float, bold: bool, edge: int, colour: Colour) -> np.ndarray:
+    """Return a text with an edge as red, green, blue and opacity, uint8, with room for a halo; the lowest row first."""
     width, height = _size(words, size, bold)
     image = Image.new("L", (width + 2 * _EDGE, height + 2 * _EDGE))
     ImageDraw.Draw(image).text((_EDGE, _EDGE), words, 255, _font(size, bold), stroke_width=edge)
-    covered = np.asarray(image)
-    rows, columns = np.nonzero(covered)
-    return rows - _EDGE, columns - _EDGE, covered[rows, columns, np.newaxis].astype(np.float32) / 255
-
-
-def _copy(source: np.ndarray, target: np.ndarray) -> None:
-    """Copy red, green and blue from one picture to another, one by one: together they would take four times as long."""
-    for channel in range(3):
-        target[..., channel] = source[..., channel]
+    written = Image.new("RGB", image.size, to_hex(colour))
+    written.putalpha(image)
+    return np.asarray(written)[::-1].copy()
 
 
 def _font(size: float, bold: bool) -> ImageFont.FreeTypeFont:

@@ -2,7 +2,6 @@
 
 import contextlib
 import dataclasses
-import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -181,7 +180,7 @@ class Strip:
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
             sides = {"left": 4.5 * unit / width, "right": 1 - 2 * unit / width}
             figure.subplots_adjust(**sides, top=0.84, bottom=0.27, wspace=10 * unit / (width / len(charts)))
-            drawn = [self._draw(panel, chart) for panel, chart in zip(panels, charts, strict=True)]
+            drawn = [line for pair in zip(panels, charts, strict=True) for line in self._draw(*pair)]
             panels[0].set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()
@@ -190,36 +189,34 @@ class Strip:
                 corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0), "ncols": 4}
                 figure.legend(named.values(), named, **corner, **room)
             canvas.draw()
-            self._complete = np.array(canvas.buffer_rgba())
-            for line in itertools.chain(*drawn):
-                line.set_visible(False)
-            canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
+            for line in drawn:
+                figure.draw_artist(line)
+            self._complete = np.array(canvas.buffer_rgba())
             self._panels = [(panel.transData, panel.get_window_extent()) for panel in panels]
 
     def _draw(self, panel: Axes, chart: Chart) -> list:
-        """Draw a chart, and return the lines that are to be seen up to now only."""
-        unit, drawn = self._unit, []
+        """Draw a chart but for the lines that are to be seen up to now only, and return those."""
+        unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
             possible = line.time <= line.possible
             style: dict[str, Any] = {
                 "color": line.colour or _THEORY,
                 "linewidth": (0.18 if line.colour else 0.5) * unit,
+                "animated": line.colour is not None,
             }
-            shown = panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
+            panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
             if not possible.all():
                 style |= {"linestyle": ":", "linewidth": 0.25 * unit}
                 label = f"{line.name}, if it could not lift off"
                 panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style, label=label)
-            if line.colour is not None:
-                drawn += shown
         panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
         low, high = panel.get_ylim()
         room = max(0.0, chart.least - (high - low)) / 2
         panel.set_ylim(max(low - room, chart.low), min(high + room, chart.high))
         panel.tick_params(pad=0.25 * unit, length=0.3 * unit)
-        return drawn
+        return [line for line in panel.lines if line.get_animated()]
 
     def draw(self, sheet: Sheet, time: float, top: int) -> None:
         """Draw the strip as it is at a `time` [s], with its upper edge at a row of the sheet."""

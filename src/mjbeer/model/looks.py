@@ -159,13 +159,13 @@ def _remove_mechanics(spec: mujoco.MjSpec) -> None:
     pairs = [(element, body) for element in spec.bodies[1:]]
     pairs += [(getattr(spec.default, kind), getattr(fresh.default, kind)) for kind in _ADDED]
     for element, own in (*pairs, (spec.option, fresh.option)):
-        for attribute in _attributes(type(own)):
+        for attribute in attributes(type(own)):
             setattr(element, attribute, getattr(own, attribute))
     spec.memory, spec.stat.meaninertia = fresh.memory, math.nan  # both act on contacts
 
 
 @functools.cache
-def _attributes(kind: type) -> tuple[str, ...]:
+def attributes(kind: type) -> tuple[str, ...]:
     """Return the names of the attributes that can be set in a kind of element, except those that identify it."""
     settable = (each for each in dir(kind) if getattr(getattr(kind, each), "fset", None) is not None)
     return tuple(each for each in settable if each not in _IDENTITY)
