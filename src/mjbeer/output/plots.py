@@ -12,6 +12,7 @@ from cycler import cycler
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
@@ -42,7 +43,6 @@ STYLE: Any = {
     "axes.spines.top": False,
     "axes.titlelocation": "left",
     "axes.titlesize": 11,
-    "figure.constrained_layout.use": True,
     "font.sans-serif": ["DejaVu Sans", "Verdana"],  # where there is no DejaVu Sans, Verdana has the same widths
     "font.size": 10.0,
     "grid.alpha": 0.3,
@@ -80,19 +80,20 @@ def chart(
       OutputError: if a file cannot be written.
     """
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(width, height))
+        figure = FigureCanvasSVG(Figure(figsize=(width, height), dpi=72)).figure
         used = 0.0  # height of title and subtitle at the top left [inches]
         for text, line, look in ((title, 0.32, _TITLE), (subtitle, 0.24, _SUBTITLE)):
             if text:
                 place = _EDGE / width, 1 - (_EDGE / 2 + used) / height
                 figure.text(*place, text, ha="left", va="top", **look)
                 used += line
-        figure.set_layout_engine(ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)))
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
         for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
             if isinstance(axis.get_major_formatter(), LogFormatter):
                 axis.set_major_formatter(FuncFormatter(_power))
+        # Set out here and not by `savefig`, which would draw the whole plot for it first.
+        ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)).execute(figure)
         named = {"Title": title, "Description": subtitle} if title else {}
         with files.whole(path.with_name(path.name + ".svg")) as temporary:
             figure.savefig(temporary, facecolor="white", dpi=150, metadata={"Date": None, **named})

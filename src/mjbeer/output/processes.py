@@ -16,6 +16,8 @@ def pool(most: int) -> Generator[ProcessPoolExecutor]:
     At the end of the block, or when it is interrupted, the processes are ended.
     """
     # Not forked: a copy of a process with several threads may hang, and a copy of OpenGL is of no use.
+    # Threads for linear algebra would take the cores from other processes; NumPy asks when it is loaded.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     context, count = multiprocessing.get_context("spawn"), max(1, min(os.cpu_count() or 1, most))
     executor = ProcessPoolExecutor(count, context, follow_parent)
     try:
