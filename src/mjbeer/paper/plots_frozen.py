@@ -162,7 +162,7 @@ def draw_period(path: pathlib.Path) -> None:
     with chart(path, 1, 2, width=12, height=5.2, title=title, subtitle=subtitle) as (period, swing):
         for name, scene in scenes.items():
             rest, (_, high) = scene.equilibrium(), scene.separatrix()
-            amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 100))
+            amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 60))
             small = 2 * math.pi / scene.frequency()
             theory = [scene.period(amplitude) / small for amplitude in amplitudes]
             (line,) = period.plot(np.degrees(amplitudes), theory, label=name)

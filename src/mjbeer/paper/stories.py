@@ -20,7 +20,7 @@ from mjbeer.paper import plots_frozen, plots_sliding, real_beer
 from mjbeer.paper.hopping import MU
 from mjbeer.theory.scene import INCLINE
 
-SIZE = 960, 540, 30
+SIZE = 960, 540, 25
 """Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""
 _BLUE, _RED = (0.1, 0.35, 0.6), (0.75, 0.2, 0.1)
 

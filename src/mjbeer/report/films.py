@@ -85,7 +85,7 @@ COMMANDS = {
     "--speed 0.1",
 }
 """The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
-_SMALL, _WIDE = (640, 360, 30), (1152, 648, 30)
+_SMALL, _WIDE = (640, 360, 25), (1152, 648, 25)
 """Width and height [pixels] and pictures per second in a quick report, and of a race, which has the page's width."""
 GALLERY = 720, 405, 20
 """The same of an animated picture for the documents: each of the files then takes less than 1.5 MB."""

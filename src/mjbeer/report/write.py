@@ -44,8 +44,8 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
             for order in drawn:  # those of an earlier report are not of this one
                 order.path.unlink(missing_ok=True)
             drawn = []
-        # The checks take longest, and compile what the films run; plots of what is known need none of it.
-        orders = [_Checks(folder / "validation.json"), *page.plots(folder / "plots"), *drawn, *stories.plots(papers)]
-        validation, *_ = studio.produce(orders, console)
+        # The checks take longest, and compile what the films run; plots of what is known need not. The last are quick.
+        orders = [_Checks(folder / "validation.json"), *page.plots(folder / "plots"), *drawn]
+        validation, *_ = studio.produce([*orders, *reversed(stories.plots(papers))], console)
         index.write_text(page.html(folder, validation, quick, not_drawn), encoding="utf-8")
     return validation, not_drawn
