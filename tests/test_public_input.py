@@ -55,7 +55,7 @@ GOOD: dict[str, Any] = {
 }
 """Good arguments, by the names of the parameters."""
 GOOD_HERE: dict[str, dict[str, Any]] = {
-    "save_frame": {"time": 0.1, "path": "can.png"}, "frame": {"time": 0.1}, "export": {"path": "can.xml"},
+    "frame": {"time": 0.1}, "export": {"path": "can.xml"},
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)}, "attach": {"can": mjbeer.standing()},
 }  # fmt: skip
 """Those that are others in one function."""
@@ -80,7 +80,7 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
         ("Run()", RUN),
     ):
         yield from methods(name, type(instance), instance)
-    for more in (Setting, Softness, export, loop, video.save_frame, video.frame):
+    for more in (Setting, Softness, export, loop, video.frame):
         yield more.__name__, more
 
 

@@ -189,20 +189,9 @@ def test_an_interrupted_video_leaves_what_was_there(
     assert (tmp_path / "can.mp4").read_text() == "an older video"
 
 
-@pytest.mark.draws
-def test_a_saved_frame_is_the_frame(tmp_path: pathlib.Path) -> None:
-    moved = motion()
-    video.save_frame(moved, 0.2, tmp_path / "can.png", **SIZE)
-    with Image.open(tmp_path / "can.png") as image:
-        assert np.array_equal(np.array(image), video.frame(moved, 0.2, **SIZE))
-    assert os.listdir(tmp_path) == ["can.png"]
-
-
-def test_a_frame_outside_of_the_trajectory_is_an_error(tmp_path: pathlib.Path) -> None:
+def test_a_frame_outside_of_the_trajectory_is_an_error() -> None:
     with pytest.raises(ParameterError, match=r"time must be within the trajectory, 0 to 0\.5 s, got 0\.6"):
         video.frame(motion(), 0.6)
-    with pytest.raises(ParameterError, match=r"must end in \.png"):
-        video.save_frame(motion(), 0.1, tmp_path / "can.jpg")
 
 
 @pytest.mark.draws

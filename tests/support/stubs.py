@@ -131,6 +131,5 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, A
     monkeypatch.setattr(page, "plots", pages.plots)
     monkeypatch.setattr(viewer, "require_window", lambda: None)
     monkeypatch.setattr(viewer, "_play", lambda player: None)
-    for name in ("render", "save_frame"):
-        monkeypatch.setattr(video, name, stub(name, getattr(video, name)))
+    monkeypatch.setattr(video, "render", stub("render", video.render))
     return calls

@@ -60,7 +60,8 @@ def render(
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    target = _file(path, ".mp4")
+    if (target := require.path(path)).suffix.lower() != ".mp4":
+        raise ParameterError(f"the file's name must end in .mp4, got {require.shown(str(path))}")
     console = terminal.STDERR if require.boolean("progress", progress) else None
     film = _reel(trajectory, camera, require.positive("speed", speed))
     with terminal.progress_bar(console, len(film.times(fps))) as begin:
@@ -93,21 +94,6 @@ def write_webp(film: Reel, path: pathlib.Path, width: int, height: int, fps: flo
         first.save(temporary, "WEBP", save_all=True, append_images=others, duration=round(1000 / fps), loop=0, **_WEBP)
 
 
-def save_frame(
-    trajectory: Trajectory,
-    time: float,
-    path: str | os.PathLike[str],
-    width: int = 1280,
-    height: int = 720,
-    camera: Camera = "auto",
-) -> None:
-    """Write the picture of a trajectory at a `time` [s] as a PNG of `width` by `height` pixels, as `frame` draws it."""
-    target = _file(path, ".png")
-    picture = frame(trajectory, time, width=width, height=height, camera=camera)
-    with files.whole(target) as temporary:
-        Image.fromarray(picture).save(temporary)
-
-
 def frame(
     trajectory: Trajectory, time: float, width: int = 1280, height: int = 720, camera: Camera = "auto"
 ) -> np.ndarray:
@@ -131,13 +117,6 @@ def _reel(trajectory: Trajectory, camera: Camera, speed: float) -> Reel:
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
     return reel(trajectory, Look.usual(trajectory, camera), speed)
-
-
-def _file(path: str | os.PathLike[str], suffix: str) -> pathlib.Path:
-    target = require.path(path)
-    if target.suffix.lower() != suffix:
-        raise ParameterError(f"the file's name must end in {suffix}, got {require.shown(str(path))}")
-    return target
 
 
 def problem() -> str | None:
