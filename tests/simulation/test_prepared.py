@@ -37,8 +37,9 @@ def bits(prepared: Prepared) -> bytes:
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
     for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
-        with Prepared.borrowed(scene, setting) as prepared:
-            assert bits(prepared) == bits(Prepared(scene, setting))
+        for _ in range(2):  # the second time the model has the scene's numbers already
+            with Prepared.borrowed(scene, setting) as prepared:
+                assert bits(prepared) == bits(Prepared(scene, setting))
     assert len(run._idle) < len(SCENES)
 
 

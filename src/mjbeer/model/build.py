@@ -215,11 +215,16 @@ class Stepped:
                 _skeletons[made.kind] = skeleton
         self.model = copy.copy(skeleton)
         self.data = mujoco.MjData(self.model)
+        self._made: Numbers | None = None
         self.write(made)
 
     def write(self, made: Numbers) -> None:
-        """Write numbers of the same kind into the model, with the same errors, and reset the data."""
+        """Write numbers of the same kind into the model, if they are new, and reset the data: with the same errors."""
         model, data = self.model, self.data
+        if made == self._made:
+            mujoco.mj_resetData(model, data)
+            return
+        self._made = None  # until all of it is written
         numbers.write(made, model)
         data.warning.number[:] = 0  # of the scene before
         with quiet():
@@ -233,6 +238,7 @@ class Stepped:
         if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
             raise _refused(_SINGULAR)
         mujoco.mj_resetData(model, data)
+        self._made = made
 
 
 def _make_rigid(model: mujoco.MjModel) -> None:

@@ -6,8 +6,7 @@ does not import this.
 
 import ctypes
 import math
-from collections.abc import Generator
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from functools import partial
 from typing import Any
 
@@ -72,14 +71,6 @@ class _Compiling(event.Listener):
     def on_end(self, _: Any) -> None: ...
 
 
-@contextmanager
-def stepping(kernel: Any) -> Generator[None]:
-    """Let a compiled `kernel` step in the block: MuJoCo is quiet and reads no clock."""
-    heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
-    with quiet(), untimed(), heard:
-        yield
-
-
 def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, watch: Watcher | None) -> int:
     """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
 
@@ -90,7 +81,8 @@ def drive(name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: f
       DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
     """
     status, total = BLOCK_END, 0
-    with stepping(kernel):
+    heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
+    with quiet(), untimed(), heard:
         while status == BLOCK_END:
             if total > limit:
                 raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
