@@ -58,7 +58,7 @@ Form.__doc__ = """J = base + chord sin^2(phi/2) + swing sin^2(phi), -V' = slope 
 
 The method's own time goes as fast as time where J is `scale`. J over that is `even` + `uneven` sin^2(`turns` phi), and
 vanishes at a complex angle of some `height` [rad] in each `period` [rad]. The `share` of the swing in u is u's change
-with sin(phi) [m]. There are no `bounds`, see there, if all steps are even.
+with sin(phi) [m]. There are no `bounds` if all steps are even; see `_bounds`.
 """
 _Line = namedtuple("_Line", "curve first second step back")
 _Line.__doc__ = """Coefficients of phi between the steps, both sums, the step [s], and how many steps back it begins."""
@@ -87,12 +87,12 @@ def form(scene: Scene, phi0: float = 0.0, precision: float = 0.0) -> Form:
         share=scene.load.moment / scene.effective_mass,
         height=min(height, _HIGHEST),
         period=math.pi / turns,
-        bounds=bounds(precision),
+        bounds=_bounds(precision),
     )
 
 
 @functools.lru_cache(maxsize=32)
-def bounds(precision: float) -> np.ndarray:
+def _bounds(precision: float) -> np.ndarray:
     """Return how far away J must vanish for each number of points, from 0, to have a `precision`; none for one of 0.
 
     That is the square of a complex angle's distance from the middle, over half of the angle between the ends. The error
