@@ -38,6 +38,7 @@ def saved(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
 
 def faults(figure: Figure) -> list[str]:
     """Return a sentence for each fault of a figure that was saved, which has laid it out."""
+    figure.set_dpi(100)  # with fewer, letters that are hinted to whole pixels are too wide
     boxes = _texts(figure)
     found = [f"{text!r} spells out a letter or a unit" for text, _ in boxes if SPELLED.search(text)]
     found += [
