@@ -74,8 +74,7 @@ class GaussJackson:
             raise UnsupportedError("GaussJackson integrates smooth motions only, and this model has constraints")
         if not model.opt.disableflags & _DAMPER:
             raise UnsupportedError("GaussJackson integrates undamped motions only, and this model has damping")
-        self._dynamics, self.size = dynamics or Dynamics(model), model.nv
-        self._even = form(scene)
+        self._dynamics, self._scene, self.size = dynamics or Dynamics(model), scene, model.nv
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
@@ -102,7 +101,7 @@ class GaussJackson:
         history, sums = np.empty((2, COUNT + BLOCK)), np.empty((2, 5))
         kernel, record = self._dynamics.kernel, recorder.kernel if recorder else _NO_RECORD
         work = np.empty((2, COUNT + 2)), np.empty((3, 2 * size)), np.empty(3)
-        fixed = *kernel, uneven or self._even, push, start, sums, history, work, times, samples, record
+        fixed = *kernel, uneven or form(self._scene), push, start, sums, history, work, times, samples, record
         self.evaluations = drive(GAUSS_JACKSON, _advance, fixed, (0.0, 0, timestep, 0), limit, None)
         return samples
 

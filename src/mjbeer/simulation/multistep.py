@@ -320,8 +320,8 @@ def _go_on(sums, span, drawn):
 
 
 @inner
-def _parts(record, place):
-    """Return whether rolling is not possible at a place, for the first time that a `record` has seen."""
+def _leaves(record, place):
+    """Return whether rolling ends at a place: it is not possible there, and was so at all that a `record` has seen."""
     numbers, found = record
     if found.size == 0 or found[FAILS_AT] < np.inf:
         return False
@@ -355,7 +355,7 @@ def read_off(form, sums, node, history, end, back, step, work, state, times, sam
         after = _place(form, line, 1.0)
     # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
     drawn = (before[2] * history[1, end - 2 - back] + after[2] * history[1, end - 1 - back]) / (before[2] + after[2])
-    if times[sample] > (sums[0, 2] + span) * (1 + 1e-14) and not _parts(record, after):
+    if times[sample] > (sums[0, 2] + span) * (1 + 1e-14) and not _leaves(record, after):
         if found.size > 0:
             _write(form, sums, after, span, drawn, state)
             see(numbers, found, sums[0, 2] + span, state)
@@ -381,7 +381,7 @@ def _by_parts(form, sums, line, before, at_end, motion, work, state, times, samp
     while left < 1.0 and sample < times.size:
         after = at_end if right == 1.0 else _place(form, line, right)
         count = _count(form, before, after, line.step * (right - left), seen)
-        if (count == 0 and right - left > _SHORTEST) or (right - left > _SHARP and _parts(record, after)):
+        if (count == 0 and right - left > _SHORTEST) or (right - left > _SHARP and _leaves(record, after)):
             right = (left + right) / 2  # more points than there are, or the moment is within a shorter part
             continue
         if not (right - left == 1.0 and span > 0):

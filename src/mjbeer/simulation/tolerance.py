@@ -73,7 +73,7 @@ to 2 for swings of 2.85 rad. There the distance of the runs shows how much the m
 _MORE = 4
 """Evaluations of a run over those of the run before, from where on it is rounding that makes its steps small."""
 
-_LOOSE = 1e-5
+_LOOSE = _ASYMPTOTIC[1]
 """Largest tolerance for Gauss-Jackson: what is asked for more loosely has its timestep, which is nearly the longest."""
 _FINER = 1.15
 """Timestep of one run of Gauss-Jackson over that of the next."""
