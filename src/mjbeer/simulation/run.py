@@ -24,7 +24,7 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
 if TYPE_CHECKING:
-    from mjbeer.simulation.kernels import Dynamics
+    from mjbeer.integrators.dynamics import Dynamics
 
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
@@ -73,7 +73,7 @@ class Prepared:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), made.data)
         else:
-            from mjbeer.simulation.kernels import Dynamics  # only here, as in `_own`
+            from mjbeer.integrators.dynamics import Dynamics  # only here, as in `_own`
 
             self.dynamics = dynamics or Dynamics(self.model, made.data)
             timestep = setting.timestep * (_GREATER if uneven else 1)
@@ -130,26 +130,26 @@ class Prepared:
 def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float, dynamics: "Dynamics") -> _Solve:
     """Return how mjbeer's own integrators solve a model to a tolerance, or with a `timestep` [s]."""
     # Imported only here: numba, which compiles them, takes longer to import than all else together.
-    from mjbeer.simulation.dop853 import Integrator
-    from mjbeer.simulation.gauss_jackson import GaussJackson
-    from mjbeer.simulation.kernels import SmoothRecorder
-    from mjbeer.simulation.tolerance import Solver
+    from mjbeer.integrators.dop853 import Dop853
+    from mjbeer.integrators.gauss_jackson import GaussJackson
+    from mjbeer.simulation.smooth_recorder import SmoothRecorder
+    from mjbeer.simulation.tolerance import Solver, even_at_most
 
     if (tolerance := setting.tolerance) is not None:
         solver = Solver(model, scene, dynamics)
         return lambda start, times, friction: solver.run(
             start, times, tolerance, math.inf if friction is None else friction
         )
-    method = Integrator(model, dynamics) if setting.integrator == DOP853 else GaussJackson(model, scene, dynamics)
 
     def solve(start: np.ndarray, times: np.ndarray, friction: float | None) -> Solution:
-        if friction is None:
-            return Solution(method.run(start, times, timestep))
-        if isinstance(method, Integrator):
-            recorder = Recorder(model, scene, friction, within=True)
-            return Solution(method.run(start, times, timestep, watch=recorder), record=recorder.record)
-        smooth = SmoothRecorder(scene, friction)
-        return Solution(method.run(start, times, timestep, smooth), record=smooth.record)
+        recorder: Recorder | SmoothRecorder | None = None
+        if setting.integrator == DOP853:
+            recorder = None if friction is None else Recorder(model, scene, friction, within=True)
+            states = Dop853(model, dynamics).run(start, times, timestep, observer=recorder)
+        else:
+            recorder = None if friction is None else SmoothRecorder(scene, friction)
+            states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
+        return Solution(states, record=recorder.record if recorder else None)
 
     return solve
 

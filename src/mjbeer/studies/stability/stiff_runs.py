@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
+from mjbeer.integrators.dop853 import Dop853
 from mjbeer.model.build import build
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import stiffest
@@ -22,7 +23,6 @@ from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
 from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow, spring
 from mjbeer.predictions.soft_rolling import System, diagonal_excess
-from mjbeer.simulation import dop853
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.stability.judge import REFUSALS, Angles, explodes
@@ -112,7 +112,7 @@ class ShortRuns:
         samples = np.arange(self._steps(timestep) + 1)
         try:
             if self._plan.integrator == DOP853:
-                states = dop853.Integrator(self._model).run(rest + start, samples * timestep, timestep)
+                states = Dop853(self._model).run(rest + start, samples * timestep, timestep)
             else:
                 states = Stepper(self._model).run(rest + start, samples)
         except DivergenceError:
