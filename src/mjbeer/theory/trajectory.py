@@ -182,12 +182,12 @@ class Trajectory(Coordinates):
 
     def video(
         self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
-    ) -> Any:
-        """Return a video of the motion, which a notebook shows, and write it to `path` (.mp4) if there is one.
+    ) -> None:
+        """Write a video of the motion to `path` (.mp4), or show it in a notebook if there is none.
 
         `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        return pictures[0]().video(self, path, width, height, **others)
+        pictures[0]().video(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
