@@ -68,7 +68,7 @@ lint: $(LINTERS)
 
 $(PACKAGE): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mjbeer needs Python 3.11 or later, this is " + sys.version)'
-	@echo "Installing mjbeer and what it needs into $(VENV), about 0.75 GB: this takes a minute or two."
+	@echo "Installing mjbeer and what it needs into $(VENV), about 0.8 GB: this takes a minute or two."
 	@$(PYTHON) -m venv --clear $(VENV)
 	@$(PIP) --editable .
 	@echo "Compiling the integrators for this machine."

@@ -1,7 +1,7 @@
 """The environment of whoever runs the tests must not change what programs write, and when; and a fixture of several.
 
-What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends the tests instead, and
-any warning is an error but those that `pyproject.toml` lets pass.
+What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends the tests instead,
+and any warning is an error but those that `pyproject.toml` lets pass.
 """
 
 import functools

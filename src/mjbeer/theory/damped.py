@@ -135,7 +135,7 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
             length *= corner
             continue
         sizes = (np.abs(series[:-1]) / np.maximum(scale, np.abs(stages).max(axis=1))).max(axis=1)
-        needed = 1 + int(np.flatnonzero(sizes > _TAIL).max(initial=0))
+        needed = 1 + int(np.max(np.flatnonzero(sizes > _TAIL), initial=0))
         if needed == _STAGES:
             length /= 2
             continue

@@ -142,7 +142,7 @@ class Trajectory(Coordinates):
         scene, form = self.scene, self.scene.oscillator
         # After the last sample that swings phi_dot is rounding, whose changes of sign are no turning points.
         least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
-        swing = part(self, slice(int(np.flatnonzero(np.abs(self.phi_dot) > least).max(initial=-1)) + 1))
+        swing = part(self, slice(int(np.max(np.flatnonzero(np.abs(self.phi_dot) > least), initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
         change = accelerations(scene, phi, rate, swing.u_dot)[1]
         turns = _zeros(time, rate, change)

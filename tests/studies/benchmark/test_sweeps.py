@@ -36,7 +36,7 @@ def test_a_motion_that_is_off_has_an_error() -> None:
     sample = Sample(8)
     phi, u = sample.by_sweep()
     assert sample.errors((phi, u)).max() <= TOLERANCE
-    farthest = int(np.abs(phi - 1).argmax())
+    farthest = int(np.argmax(np.abs(phi - 1)))
     other, turned = (farthest + 1) % 8, abs(phi[farthest] - 1)
     assert turned > 1
     phi[farthest] += 1e-3

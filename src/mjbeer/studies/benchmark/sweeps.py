@@ -40,7 +40,7 @@ class Sample:
         draw = np.random.default_rng(_SEED)
         self.threads = os.cpu_count() or 1
         self.inclines, self.fills = draw.choice(_INCLINES, count), draw.choice(_FILLS, count)
-        self.scenes = [sliding(*each) for each in zip(self.inclines, self.fills, strict=True)]
+        self.scenes = [sliding(float(tilt), float(fill)) for tilt, fill in zip(self.inclines, self.fills, strict=True)]
         ends = [exact(scene, [_DURATION], _START) for scene in self.scenes]
         self._phi, self._u = np.array([[end.phi[0], end.u[0]] for end in ends]).T
         self._radius = np.array([scene.can.radius for scene in self.scenes])
