@@ -57,6 +57,7 @@ GOOD: dict[str, Any] = {
 GOOD_HERE: dict[str, dict[str, Any]] = {
     "frame": {"time": 0.1}, "export": {"path": "can.xml"},
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)}, "attach": {"can": mjbeer.standing()},
+    "refill": {"model": build(mjbeer.standing()), "can": mjbeer.standing()},
 }  # fmt: skip
 """Those that are others in one function."""
 FRESH = {"parent": mujoco.MjSpec}
