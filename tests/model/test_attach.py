@@ -261,6 +261,9 @@ def test_what_cannot_be_filled_anew_is_refused() -> None:
             refill(model, can, prefix)
     with pytest.raises(ParameterError, match="it has can, load, swing, slide"):
         refill(build(sliding(can=METAL), "equality"), sliding(can=METAL), "")
+    small = {"can": Can.sheet_metal(0.008, 0.03), "modes": 5}
+    with pytest.raises(UnsupportedError, match="moves no pendulum with an inertia below 1e-15"):
+        refill(build(standing(**small, damping_ratio=0.5)), standing(**small), "")
     model.opt.timestep = 0.05
     with pytest.warns(UntrustedWarning, match=r"the model's options spoil the can: the timestep of 0\.05 s is coarse"):
         refill(model, NEW, "own-")
