@@ -164,24 +164,25 @@ def test_the_timestep_that_rk4_is_given_is_the_limit() -> None:
 
 @pytest.mark.parametrize("modes", [0, 1])
 def test_a_can_slides_as_coulomb_says(modes: int) -> None:
-    """For a second, from when it has begun; with MuJoCo's friction of 1 it stays, as the larger coefficient counts."""
+    """For two seconds, once it has begun; with MuJoCo's friction of 1 it stays, as the larger coefficient counts."""
     angle, friction, velocities = math.radians(17), 0.2, []
     down = np.array([math.cos(angle), 0, -math.sin(angle)])
     turn = [math.cos(angle / 2), 0.0, math.sin(angle / 2), 0.0]
     for own in (friction, None):
         spec = mujoco.MjSpec()
+        spec.option.timestep = 5e-4
         spec.worldbody.add_geom(type=PLANE, size=[0, 0, 1], quat=turn, friction=[friction, 0.005, 1e-4])
         attach(spec, standing(modes=modes), quat=turn, friction=own)
         model = spec.compile()
         data = mujoco.MjData(model)
-        for steps in (100, 500):
+        for steps in (400, 4000):
             mujoco.mj_step(model, data, steps)
             mujoco.mj_forward(model, data)
             mujoco.mj_subtreeVel(model, data)
             velocities.append(float(data.subtree_linvel[model.body("can-can").id] @ down))
     expected = 9.81 * (math.sin(angle) - friction * math.cos(angle))
-    # Exact but for the momentum across the incline: friction times 0.1 m/s, with which the can hops at most, in 1 s.
-    assert velocities[1] - velocities[0] == pytest.approx(expected, rel=0.02)
+    # Exact but for the hops of a can that slides: of 60 starts that differ by 1e-6 m/s none is more than 1.2 % off.
+    assert velocities[1] - velocities[0] == pytest.approx(2 * expected, rel=0.03)
     assert abs(velocities[3]) < 0.05 * expected
 
 
