@@ -95,6 +95,7 @@ def test_a_can_may_be_fixed_to_a_body() -> None:
         (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_DAMPER)}, "damper disabled it has no damping"),
         (HONEY, {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_DAMPER)}, "damper disabled it has no damping"),
         (standing(), {"timestep": 0.05}, r"the timestep of 0\.05 s is coarse: the fastest mode turns by 1\.2 rad"),
+        (standing(), {"timestep": 0.5001 / standing().frequencies(1)[0]}, r"turns by 0\.5001 rad in it, not 0\.5 or"),
         (standing(), {"gravity": [0, 0, -1.62]}, r"gravity is 1\.62 m/s\^2, and the can is made for 9\.81"),
         (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_CONTACT)}, "contact disabled it touches nothing"),
         (frozen(can=METAL), {"integrator": mujoco.mjtIntegrator.mjINT_IMPLICITFAST}, "another integrator than RK4"),
@@ -278,7 +279,10 @@ def test_what_cannot_be_filled_anew_is_refused() -> None:
         (standing(), {"body": "hand", "free": False}, ParameterError, "body must be one of 'world'; got 'hand'"),
         (standing(), {"pos": [0, 0]}, ParameterError, "pos must have 3 numbers, got"),
         (standing(), {"quat": [0, 0, 0, 0]}, ParameterError, "quat must have 4 numbers, not all 0, got"),
-        (standing(), {"prefix": ""}, ParameterError, "prefix must be a text that is not empty"),
+        *(
+            (standing(), {"prefix": each}, ParameterError, "prefix must be a text that can")
+            for each in ("", "\0", "\ud800")
+        ),
         (sliding(), {}, UnsupportedError, "without mass and inertia around a sliding load"),
         (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
         (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),

@@ -9,6 +9,7 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
+from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, about_run, liquid_in
 from mjbeer.theory.load import segment
@@ -85,6 +86,12 @@ def test_liquids_roll_as_estimated(name: str, effective: float, speed: float) ->
     assert scene.terminal_speed() == pytest.approx(speed, rel=0.15)
     assert used.damping.torque(used.slip) / used.slip == pytest.approx(effective, rel=0.15)
     assert used.law == ("creep" if name == "honey" else "thin layers")
+
+
+@pytest.mark.parametrize("viscosity", [5e-324, 1e-10, 1e7, 1e308])
+def test_a_viscosity_that_no_liquid_has_is_refused(viscosity: float) -> None:
+    with pytest.raises(ParameterError, match=r"viscosity must be between 1e-09 and 1e\+06 \[m\^2/s\], got"):
+        liquid(viscosity=viscosity)
 
 
 def test_a_swing_has_stokes_layers() -> None:

@@ -92,8 +92,8 @@ def attach(
         if len(array) != count or (name == "quat" and not array.any()):
             zero = ", not all 0" if name == "quat" else ""
             raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.shown(value)}")
-    if not isinstance(prefix, str) or not prefix:
-        raise ParameterError(f"prefix must be a text that is not empty, got {require.shown(prefix)}")
+    if not (isinstance(prefix, str) and prefix and prefix.isprintable()):  # MuJoCo's names end at the first "\0"
+        raise ParameterError(f"prefix must be a text that can be printed and is not empty, got {require.shown(prefix)}")
     if parent.body(f"{prefix}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
@@ -200,8 +200,8 @@ def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
     elif can.modes > 0 and (turned := option.timestep * float(can.frequencies()[-1])) > _COARSE:
         reasons.append(
-            f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turned:.2g} rad, not "
-            f"{_COARSE:g} or less"
+            f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by "
+            f"{require.above(turned, _COARSE)} rad in it, not {_COARSE:g} or less"
         )
     if explicit and option.timestep * decay > _RK4:
         remedy = "" if isinstance(can, Scene) else ", or another integrator"

@@ -242,8 +242,8 @@ class Run(Trajectory):
             rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
                 found.append(
-                    f"the load turns by {turn:.2g} rad in a timestep (trusted up to {_TURN:g}), in which its weight "
-                    "and inertia change unseen"
+                    f"the load turns by {require.above(turn, _TURN)} rad in a timestep (trusted up to {_TURN:g}), in "
+                    "which its weight and inertia change unseen"
                 )
         return tuple(found)
 
@@ -260,7 +260,8 @@ class Run(Trajectory):
             return self.doubts
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
-            found = f"phi and u/a are off by {error:.2g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
+            off = require.above(error, ERROR)
+            found = f"phi and u/a are off by {off} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
         else:
             found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
         return (*self.doubts, found)

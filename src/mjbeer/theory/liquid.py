@@ -64,6 +64,8 @@ LIQUIDS: dict[Name, Properties] = {
 }
 """Handbook values at 20 degrees Celsius; where samples differ, by how much is said beside them."""
 
+_VISCOSITY = 1e-9, 1e6
+"""Viscosities that a liquid may have [m^2/s]: that of liquid helium is 2e-8, that of pitch 2e5."""
 WALL = 0.8875
 """Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L."""
 ENDS = 2 * 0.61592
@@ -174,7 +176,7 @@ def liquid_in(
     """Return what `liquid` uses for the same arguments, with the same errors."""
     own = LIQUIDS[require.choice("liquid", name, NAMES)]
     density = own.density if density is None else require.positive("density", density, "kg/m^3")
-    nu = own.viscosity if viscosity is None else require.positive("viscosity", viscosity, "m^2/s")
+    nu = own.viscosity if viscosity is None else require.within("viscosity", viscosity, *_VISCOSITY, "m^2/s")
     free = sliding(incline, fill, can, density, gravity)
     load, a, length = free.load, free.can.radius, free.can.length
     if load.offset == 0 or free.gravity == 0:
@@ -182,7 +184,7 @@ def liquid_in(
             "a liquid's damping is that of a can which it fills in part, under gravity: fill must be less than 1 and "
             f"gravity more than 0, got fill = {fill!r} and gravity = {free.gravity!r} m/s^2"
         )
-    shape = segment(fill)
+    shape = segment(require.number("fill", fill))
     moment = shape.area * (shape.inertia + shape.offset**2)  # second moment of the wetted area of an end, over a^4
     arc = 2 * shape.half_angle
     layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)

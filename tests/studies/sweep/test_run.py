@@ -136,7 +136,7 @@ def test_a_period_is_that_of_exact_theory() -> None:
         ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
         ({"duration": 1e9}, "too many timesteps of 0.001 s for a sweep: at most 1,000,000,000$"),
         ({"quantity": highest, "duration": 2e3}, "at most 1,000,000, at each of which a function of a trajectory has"),
-        ({"quantity": "perod"}, "quantity must be one of .*did you mean 'period'"),
+        ({"quantity": "perod"}, "quantity must be one of .*'period', .*; got 'perod'$"),
         ({"quantity": [highest, named("highest", broken)]}, "quantity 'highest' is there already"),
         ({"quantity": named("fill", highest), "fill": [0.5]}, "quantity 'fill' is there already"),
         ({"make": made_of_u, "u": [0.1]}, "a quantity has the name of the parameter 'u'"),

@@ -147,7 +147,7 @@ def sweep(
     )
     for note in notes:
         warnings.warn(note, LiquidWarning, stacklevel=2)
-    if path is not None and path.exists() and not overwrite:
+    if path is not None and os.path.exists(path) and not overwrite:
         result = _continued(path, result)
     _fill(result, work, executor, path, progress)
     return result
