@@ -171,6 +171,7 @@ def told(folder: pathlib.Path, films: bool, note: str = "") -> Generator[None]:
     Raises:
       OutputError: if the folder cannot be written to.
     """
+    files.make_folder(folder)
     with files.whole(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
         files.write(folder / "letters.svg", _read("letters.svg"))
