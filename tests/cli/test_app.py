@@ -60,12 +60,13 @@ def test_standard_output_has_the_csv_or_the_json_alone(
     assert out == csv(run)
     assert "phi at the end" in err
     (note,) = figures.notes
-    told = [*(f"not to be trusted: {warning}" for warning in run.warnings), f"note: {note}"]
+    told = [*(f"model does not hold: {warning}" for warning in run.warnings), f"note: {note}"]
     assert err.splitlines()[-len(told) :] == told
     assert main([*words.split(), "--json"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out, parse_constant=pytest.fail) == json.loads(figures.json())
-    assert (json.loads(out)["trusted"], err.splitlines()) == (False, told)
+    assert (json.loads(out)["model holds"], err.splitlines()) == (False, told)
+    assert json.loads(out)["equations solved"] is True
     assert not os.listdir(tmp_path)
 
 
@@ -185,10 +186,19 @@ def test_an_export_says_how_its_start_is_loaded(tmp_path: pathlib.Path, capsys: 
 
 
 def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "0.1"]
+    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "1"]
     assert main([*words, "--json"]) == 0
     out, err = capsys.readouterr()
     told = liquid_in("olive oil", fill=0.7)
     assert err.startswith(f"{told}\nnote: olive oil as one lump is an order of magnitude only")
-    run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 0.1, np.radians(20))
+    run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
+    assert err.splitlines()[2:] == [f"model does not hold: {warning}" for warning in run.warnings] != []
+
+
+def test_an_equation_that_is_not_solved_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["simulate", "frozen", "--duration", "0.5", "--integrator", "Euler", "--timestep", "4e-3"]
+    assert main(words) == 0
+    out, err = capsys.readouterr()
+    assert "equations solved                no: those of rolling, in reduced coordinates\n" in out
+    assert err.startswith("equations not solved: energy or momentum drift like an error of ")

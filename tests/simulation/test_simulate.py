@@ -279,8 +279,12 @@ def test_a_liquid_that_is_no_lump_any_more_is_a_warning() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LiquidWarning)
         scene = liquid("water")
-    with pytest.warns(LiquidWarning, match=r"from t = 0\.\d+ s on the wall's centrifugal acceleration is more than"):
+    with pytest.warns(
+        LiquidWarning, match=r"from t = 0\.\d+ s on the wall's centrifugal acceleration is more than"
+    ) as told:
         run = simulate(scene, 1.0, 1.0)
+    assert run.warnings == (str(told[0].message),)
+    assert (run.trusted, run.solver_warnings, run.rolling_warnings) == (False, (), ())
     speed = float(np.interp(run.record.no_lump_at, run.time, np.abs(run.u_dot)))
     # To a timestep of 1 ms, in which it gains less than 2 mm/s.
     assert speed == pytest.approx(math.sqrt(scene.can.radius * scene.gravity * math.cos(scene.incline)), abs=2e-3)

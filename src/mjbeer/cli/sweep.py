@@ -44,6 +44,7 @@ def sweep(given: Namespace) -> int:
     NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
     1e-6 rad.
     """
+    from mjbeer.studies.sweep.measure import BEYOND
     from mjbeer.studies.sweep.result import checked, shown
     from mjbeer.studies.sweep.run import sweep
 
@@ -72,7 +73,8 @@ def sweep(given: Namespace) -> int:
     for first, *others in sorted(alike.values(), key=len, reverse=True):
         named = zip(result.dims, first.index, strict=True)
         place = ", ".join(f"{name} = {shown(name, result[name])[index]:.6g}" for name, index in named)
-        say(f"failed: {1 + len(others)} scene{'s' * bool(others)}, the first at {place}: {first.reason}", "yellow")
+        what = "beyond the model" if result["status"][first.index] == BEYOND else "failed"
+        say(f"{what}: {1 + len(others)} scene{'s' * bool(others)}, the first at {place}: {first.reason}", "yellow")
     say(f"wrote {given.output}")
     terminal.write(f"{result.counts}\n")
     return 0

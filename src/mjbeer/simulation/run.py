@@ -19,7 +19,7 @@ from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, OWN, TUNED, Setting
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.record import ERROR, Record, doubts
+from mjbeer.theory.record import ERROR, Record, departures, doubts
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
@@ -234,8 +234,8 @@ class Run(Trajectory):
 
     @cached_property
     def doubts(self) -> tuple[str, ...]:
-        """Return those reasons not to trust this motion that take no second run."""
-        found = doubts(self.record, self.rolling, self.setting.friction)
+        """Return those reasons to doubt that the equations were solved that take no second run."""
+        found = doubts(self.record, self.rolling)
         turn = self.record.fastest * (timestep := self.timestep or 0.0)
         if turn > _TURN and self.integrator != DOP853:
             # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
@@ -248,8 +248,13 @@ class Run(Trajectory):
         return tuple(found)
 
     @cached_property
-    def warnings(self) -> tuple[str, ...]:
-        """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
+    def rolling_warnings(self) -> tuple[str, ...]:
+        """Return where the can did not, or could not, roll without slipping, one sentence for each."""
+        return tuple(departures(self.record, self.rolling, self.setting.friction))
+
+    @cached_property
+    def solver_warnings(self) -> tuple[str, ...]:
+        """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
         if self.solution.error is None and (lost := self._second[1]) > ERROR:
             return (
                 *self.doubts,

@@ -10,7 +10,6 @@ from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
 from mjbeer.simulation.run import Run, integrate
-from mjbeer.theory.liquid import about_run
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
@@ -73,9 +72,9 @@ def simulate(
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
-    if run.doubts:
-        warnings.warn("this run is not to be relied on: " + "; ".join(run.doubts), UntrustedWarning, stacklevel=2)
-    if about := about_run(scene, run.record.fastest_slip, run.record.no_lump_at):
+    if found := (*run.doubts, *run.rolling_warnings):
+        warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
+    for about in run.liquid_warnings:
         warnings.warn(about, LiquidWarning, stacklevel=2)
     return run
 

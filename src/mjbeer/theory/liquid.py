@@ -149,10 +149,9 @@ def liquid(
         speed = 0.0
     reasons = []
     if used.carried > _CARRIED:
-        share = f"{100 * used.carried:.0f} %" if used.carried < 1 else "all"
         reasons.append(
-            f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold {share} of "
-            "the liquid"
+            f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold "
+            f"{_share(used.carried)} of the liquid"
         )
     if (ratio := float(centrifugal(scene, speed))) > 1:
         reasons.append(
@@ -205,27 +204,42 @@ def liquid_in(
             f"viscosity is too small or the can too fast, got {nu:.4g} m^2/s in {free!r}"
         )
     holds = DECADE[0] * slip * bent / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
-    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds)
+    coats_at = (_CARRIED * shape.area * a / FILM_LOAD) ** 2 * free.gravity / (nu * a)
+    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds, coats_at=coats_at)
     law = "swing" if rolled < 1 else "thin layers" if drag > creep else "creep"
     film = math.sqrt(nu * a * steady / free.gravity)
     return Liquid(name, density, nu, law, steady, film, FILM_LOAD * film / (shape.area * a), damping)
 
 
-def about_run(scene: Scene, fastest: float, spread_at: float) -> str | None:
+def about_run(scene: Scene, fastest: float, spread_at: float, turns: float) -> str | None:
     """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
 
-    `fastest` is the largest slip rate of the run [rad/s], and from `spread_at` [s] on `centrifugal` was more than 1.
+    `fastest` is the largest slip rate of the run [rad/s], from `spread_at` [s] on `centrifugal` was more than 1, and
+    the can has turned by so many `turns`.
     """
-    spread = (
-        f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
-        "spreads it round the can"
-    )
-    return _no_lump("the liquid", scene, fastest, [spread] if spread_at < math.inf else [], "the run")
+    reasons = []
+    if spread_at < math.inf:
+        reasons.append(
+            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), "
+            "which spreads it round the can"
+        )
+    # A film grows with the wall that has come up.
+    carried = _CARRIED * math.sqrt(fastest / scene.damping_law.coats_at) * min(1.0, turns)
+    if carried > _CARRIED:
+        reasons.append(
+            f"it coats the can: after {turns:.2g} turns at up to {fastest:.3g} rad/s the film on the wall can hold "
+            f"{_share(carried)} of it"
+        )
+    return _no_lump("the liquid", scene, fastest, reasons, "the run")
 
 
 def centrifugal(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
+
+
+def _share(carried: float) -> str:
+    return f"{100 * carried:.0f} %" if carried < 1 else "all"
 
 
 def _no_lump(name: str, scene: Scene, slip: float, reasons: list[str], what: str) -> str | None:

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from mjbeer import Scene, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer import Scene, Trajectory, exact, frozen, hoop, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import NoLibrationError, TemplateError
 from mjbeer.simulation.run import Run
 from mjbeer.studies.stability import judge as judging
@@ -70,6 +71,22 @@ def test_warnings_that_differ_in_numbers_alone_are_equal_and_a_pull_is_none() ->
     pulled = judge(lambda: simulate(frozen(), 2, math.pi))
     assert pulled.says
     assert not pulled.alarms
+
+
+def test_a_liquid_that_is_no_lump_hides_no_wrong_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is judged is whether the equations were solved; whether they are those of a liquid is another matter."""
+
+    def water(**setting: Any) -> Run:
+        return simulate(liquid("water", math.radians(7)), 1.0, 0.5, **setting)
+
+    right = judge(lambda: water(tolerance=1e-9))
+    assert (right.verdict, right.says, right.alarms) == (ACCURATE, "", ())
+    assert judge(lambda: water(integrator="Euler", timestep=0.02)).verdict == judging.INACCURATE
+    monkeypatch.setattr("mjbeer.theory.record.Record.implied_error", 0.0)
+    monkeypatch.setattr("mjbeer.simulation.run.Run.error_estimate", 0.0)
+    run = water(integrator="Euler", timestep=0.02)
+    assert run.liquid_warnings
+    assert judge(lambda: run).verdict == SILENT
 
 
 @pytest.mark.parametrize("error", [TemplateError("gone"), ZeroDivisionError()])

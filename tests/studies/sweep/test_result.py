@@ -1,7 +1,6 @@
 """A sweep is shown, kept and read back as it is."""
 
 import csv
-import math
 import pathlib
 import sys
 import zipfile
@@ -40,8 +39,8 @@ def test_parameters_and_quantities_are_found_by_name(swept: Sweep) -> None:
 
 
 def test_a_run_that_is_not_trusted_is_counted() -> None:
-    """The frozen can that is released upside down leaves the incline."""
-    swept = mjbeer.sweep(frozen, 2.0, [0.1, math.pi - 0.1], tolerance=1e-6)
+    """The timestep is too long for the wider swing: by the second run it is 0.02 rad off, and the other 0.006."""
+    swept = mjbeer.sweep(frozen, 0.5, [0.1, 1.0], integrator="Euler", timestep=4e-3)
     assert swept["trusted"].tolist() == [True, False]
     assert "2 of 2 scenes went well; 1 of these are not trusted" in repr(swept)
 

@@ -17,7 +17,7 @@ from mjbeer import Can, LiquidWarning, Scene, Trajectory, frozen, liquid, pendul
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.output import processes
 from mjbeer.studies.sweep import measure, run
-from mjbeer.studies.sweep.measure import DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
+from mjbeer.studies.sweep.measure import BEYOND, DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
 from mjbeer.studies.sweep.result import Sweep, load
 
 INCLINES, FILLS = np.radians([3.0, 11.0, 20.0]), np.array([0.2, 0.5, 0.7, 0.95])
@@ -77,7 +77,7 @@ def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, An
     for (row, _, rate), status in np.ndenumerate(swept["status"]):
         single = simulate(make(INCLINES[row], 0.3), 0.3, 0.7, swept["phi_dot0"][rate], times=[0.3], **setting)
         found = {name: array[row, 0, rate] for name, array in swept.quantities.items()}
-        assert status == WELL
+        assert status == (BEYOND if single.rolling_warnings else WELL)
         for name in ("phi", "u", "phi_dot", "u_dot"):
             assert found[name] == getattr(single, name)[-1]
         assert (found["error"], found["trusted"]) == (single.error_estimate, single.trusted)
@@ -187,6 +187,17 @@ def test_what_goes_wrong_inside_of_a_run_is_listed(monkeypatch: pytest.MonkeyPat
     assert "diverged at t" in wild.failed[-1].reason
     monkeypatch.setattr(measure, "integrate", lambda *_: 1 / 0)
     assert mjbeer.sweep(sliding, 0.1, 1.0).failed == [((), "", "ZeroDivisionError: division by zero")]
+
+
+def test_a_run_that_left_the_range_of_its_model_is_listed_with_its_values() -> None:
+    """Water is no lump above 0.57 m/s; the frozen can that is released upside down would leave the incline."""
+    for make, phi0, reason in ((liquid, [0.1], "centrifugal"), (frozen, [math.pi - 0.1], "would have to pull")):
+        swept = mjbeer.sweep(make, 2.0, phi0, tolerance=1e-6, incline=[math.radians(7)])
+        (failure,) = swept.failed
+        assert (swept["status"].tolist(), swept["trusted"].tolist()) == ([[BEYOND]], [[False]])
+        assert reason in failure.reason
+        assert np.isfinite(swept["phi"]).all()
+        assert "0 of 1 scenes went well; 1: the model left its range" in repr(swept)
 
 
 def test_a_quantity_without_a_value_leaves_the_others(tmp_path: pathlib.Path) -> None:

@@ -16,7 +16,7 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.reference import LongMotionError, reference
 from mjbeer.theory.equations import Coordinates, kinetic_energy
 from mjbeer.theory.exact import solution
-from mjbeer.theory.record import ERROR, LIFT, SLIP, doubts
+from mjbeer.theory.record import ERROR, LIFT, SLIP
 from mjbeer.theory.scene import Scene
 
 VERDICTS = {
@@ -234,16 +234,20 @@ def judge(make: Callable[[], Run]) -> Outcome:
     radius = run.scene.can.radius
     motion = truth(run.scene, run.time, run.phi0, run.phi_dot0)
     error = motion.off(run.phi, run.u / radius)
-    pulls = run.rolling != "contact" and math.isfinite(run.record.fails_at)
-    pull = doubts(run.record, run.rolling, run.setting.friction)[-1:] if pulls else []
+    pull = () if run.rolling == "contact" else run.rolling_warnings
     return Outcome(
         verdict=_verdict(run, motion, error),
         error=_finite(error),
         admitted=_finite((run.error_estimate or 0.0) + (run.record.slip + run.record.lift) / radius),
-        says="; ".join(run.warnings),
+        says="; ".join(warned(run)),
         apart=motion.apart,
-        alarms=tuple(_numberless(warning) for warning in run.warnings if warning not in pull),
+        alarms=tuple(_numberless(warning) for warning in warned(run) if warning not in pull),
     )
+
+
+def warned(run: Run) -> tuple[str, ...]:
+    """Return the warnings of a run that are judged: all but those of a liquid, which are of no equation's solution."""
+    return (*run.solver_warnings, *run.rolling_warnings)
 
 
 def explodes(run: Run, kinetic: float) -> bool:
@@ -295,12 +299,12 @@ def _verdict(run: Run, motion: Truth, error: float) -> str:
     """Return how a run ended whose error is known, if theory has its motion."""
     if not motion.explained:
         return UNKNOWN if run.scene.dissipates else THEORIES
-    if run.trusted and not error <= ERROR:
+    if not warned(run) and not error <= ERROR:
         return SILENT
     tolerance = run.setting.tolerance
     if tolerance is not None and run.rolling != "contact" and not error - (motion.apart or 0.0) <= tolerance:
         return MISSED
-    if not run.trusted and explodes(run, motion.kinetic):
+    if warned(run) and explodes(run, motion.kinetic):
         return UNSTABLE
     return ACCURATE if error <= ERROR else INACCURATE
 

@@ -25,7 +25,7 @@ from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow, spring
 from mjbeer.predictions.soft_rolling import System, diagonal_excess
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.studies.stability.judge import REFUSALS, Angles, explodes
+from mjbeer.studies.stability.judge import REFUSALS, Angles, explodes, warned
 from mjbeer.theory.can import Can
 from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.exact import exact
@@ -241,7 +241,7 @@ class DampedRuns:
         start = _START, self._scene.start(_START, 0.0)[0] / radius
         truth = Angles(self._exact.phi[at], self._exact.u[at] / radius, start)
         self.error = truth.off(run.phi, run.u / radius)
-        if run.trusted:
+        if not warned(run):
             return TRUSTED if self.error <= ERROR else SILENT
         if explodes(run, self._kinetic):
             return EXPLODED

@@ -71,6 +71,7 @@ STATUSES = {
     (DIVERGED := 2): "the motion diverged",
     (NOT_REACHED := 3): "the tolerance was not reached",
     (NO_VALUE := 4): "a quantity has no value",
+    (BEYOND := 5): "the model left its range",
     (NOT_YET := -1): "not yet simulated",
 }
 
@@ -144,6 +145,8 @@ def _outcome(work: Work, row: np.ndarray, values: list[float]) -> tuple[bool, in
             values[place] = float(of(run))
         except Exception as error:
             status, reason = NO_VALUE, f"{name}: {_in_a_line(error)}"
+    if status == WELL and (beyond := (*run.rolling_warnings, *run.liquid_warnings)):
+        status, reason = BEYOND, "; ".join(beyond)
     return trusted, status, reason
 
 

@@ -30,7 +30,7 @@ _UNITS |= {"wheel_mass": "kg", "load_mass": "kg", "hoop_mass": "kg"}
 
 
 class Failure(NamedTuple):
-    """A scene that was refused, that diverged, or that lacks a quantity."""
+    """A scene that was refused, that diverged, that lacks a quantity, or that left the range of its model."""
 
     index: tuple[int, ...]
     """Where it is in the sweep's arrays."""
@@ -79,7 +79,7 @@ class Sweep:
 
     @property
     def failed(self) -> list[Failure]:
-        """Return each scene that was refused, that diverged or that lacks a quantity, and why."""
+        """Return each scene that was refused, diverged, lacks a quantity or left the range of its model, and why."""
         return [
             Failure(tuple(map(int, self._places(number)))[: len(self.dims)], self.named(number), reason)
             for number, reason in sorted(self.reasons.items())
