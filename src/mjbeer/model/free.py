@@ -97,7 +97,8 @@ def attach(
     if parent.body(f"{prefix}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
-    listed = friction if isinstance(friction, (list, tuple, np.ndarray)) else [friction]
+    several = isinstance(friction, (list, tuple)) or (isinstance(friction, np.ndarray) and friction.ndim > 0)
+    listed = friction if several else [friction]
     coefficients = [] if friction is None else [require.non_negative("friction", each) for each in listed]
     if friction is not None and not 1 <= len(coefficients) <= 3:
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.shown(friction)}")
@@ -133,7 +134,8 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
       UnsupportedError: if MuJoCo cannot move such a can freely.
     """
     require.instance("model", model, mujoco.MjModel)
-    require.instance("prefix", prefix, str)
+    if not (isinstance(prefix, str) and prefix.isprintable()):
+        raise ParameterError(f"prefix must be a text that can be printed, got {require.shown(prefix)}")
     spec = mujoco.MjSpec()
     body = spec.worldbody.add_body(name="can")
     if isinstance(can, Scene):
@@ -175,7 +177,7 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
     size = [shell.radius, shell.length / 2]
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=_WRITTEN, atol=0):
         raise ParameterError(
-            f"the model must have a can under the prefix {prefix!r} with radius and half length {size} m and with "
+            f"the model must have a can under the prefix {require.shown(prefix)} with radius and half length {size} m and with "
             f"{', '.join(needed)}; it has {', '.join(there) or 'none'}, got {require.shown(can)}"
         )
 

@@ -42,9 +42,9 @@ def simulate(
       phi_dot0: its rate at the start [rad/s].
       rolling: how the can is made to roll, as in `build`: "reduced", "equality" or "contact".
       integrator: one of MuJoCo's five, "DOP853" or, in "reduced" without damping, "GaussJackson"; RK4 if none is given.
-      timestep: fixed timestep [s]; with a tolerance the interval between samples, and what a contact is tuned to.
+      timestep: fixed timestep [s], to which a contact is tuned; with a tolerance the interval between samples.
       tolerance: largest error of phi and u/a [rad], relative beyond 1 rad, to which the integrator and its steps are
-        then chosen. It is the error of integrating the model, which in a soft contact has one of its own.
+        then chosen. A "contact" is refused, as its softness is an error of the model.
       times: increasing times of the samples [s], for MuJoCo's integrators multiples of the timestep.
       friction: coefficient of friction of a contact.
 

@@ -18,7 +18,6 @@ from mjbeer.model.state import places, read
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.stepping import Recorder, Solution
 from mjbeer.theory.equations import stiffness
-from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _PARTS = np.linspace(0, 1, 33)
@@ -221,7 +220,8 @@ class Solver:
             recorder = Recorder(self._model, self._scene, friction, within=True)
             fine = run(start, local, recorder)
             distances.append(_distance(self._angles, coarse, fine, start))
-            drift, error = self._drift(recorder.record), safety * max(distances[-1], distances[-2] / ratio)
+            drift = max(_DRIFT * recorder.record.swing_error_at_most, recorder.record.axis_error)
+            error = safety * max(distances[-1], distances[-2] / ratio)
             if max(error, drift) <= tolerance:
                 break
             stalled = 0 if max(error, drift) <= _STALLED * estimate else stalled + 1
@@ -243,12 +243,6 @@ class Solver:
             if rounding > tolerance:
                 raise _not_reached(tolerance, f"the rounding of the start grows to {rounding:.2g} rad")
         return Solution(fine, recorder.record, max(error, drift, rounding), DOP853)
-
-    def _drift(self, record: Record) -> float:
-        """Return the error of phi and u/a [rad] that the drift of energy and momentum in a record implies."""
-        if self._model.npair:  # a contact takes energy, and gives it back
-            return 0.0
-        return max(_DRIFT * record.swing_error_at_most, record.axis_error)
 
     def _loss(self, found: Solution, times: np.ndarray, tolerance: float) -> float:
         """Return the error [rad] that a joint equality makes whose sums lose what moves the load, in all runs alike."""
