@@ -177,8 +177,8 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
     size = [shell.radius, shell.length / 2]
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=_WRITTEN, atol=0):
         raise ParameterError(
-            f"the model must have a can under the prefix {require.shown(prefix)} with radius and half length {size} m and with "
-            f"{', '.join(needed)}; it has {', '.join(there) or 'none'}, got {require.shown(can)}"
+            f"the model must have a can under the prefix {require.shown(prefix)} with radius and half length {size} m "
+            f"and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, got {require.shown(can)}"
         )
 
 
