@@ -12,7 +12,7 @@ PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 export PYTHONDONTWRITEBYTECODE :=
 PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-compile
 
-.PHONY: help report test quick everything search portability renders tables api lint clean
+.PHONY: help report test quick everything search portability renders templates tables api lint clean
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
@@ -22,6 +22,7 @@ help:
 	@echo "make lint         runs ruff, the type checker, and import-linter, which is for those who change something"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
+	@echo "make templates    writes the files of mjcf/ that a viewer opens, from its mechanics and looks"
 	@echo "make tables       writes the tables of the documents anew"
 	@echo "make api          writes a reference of all functions from their docstrings: build/api/index.html"
 	@echo "make portability  tries exported models in other tools (an hour, 1.5 GB)"
@@ -50,6 +51,9 @@ portability: $(TOOLS)
 renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.films renders
 	$(BIN)/python -m mjbeer.report.carry docs/figures/carry
+
+templates: $(PACKAGE)
+	$(BIN)/python -m mjbeer.model.templates mjcf
 
 tables: $(TOOLS)
 	$(BIN)/python -m tests.support.documents

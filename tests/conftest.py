@@ -13,7 +13,7 @@ import shutil
 import pytest
 
 from mjbeer.drawing import opengl
-from mjbeer.model import looks
+from mjbeer.model import mechanics
 from tests.support import screen
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE"):
@@ -70,8 +70,8 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 
 @pytest.fixture
 def copy(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
-    """A copy of the templates in the place of the templates."""
+    """A copy of the MJCF, which is read instead."""
     folder = tmp_path / "mjcf"
-    shutil.copytree(looks.folder(), folder)
-    monkeypatch.setattr(looks, "FOLDERS", (folder,))
+    shutil.copytree(mechanics.folder(), folder)
+    monkeypatch.setenv(mechanics.VARIABLE, str(folder))
     return folder

@@ -33,10 +33,10 @@ SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoo
 SIMULATE = """
 import json, pathlib, sys
 import mjbeer
-from mjbeer.model import looks
+from mjbeer.model import mechanics
 package = pathlib.Path(mjbeer.__file__).parent
 assert package == pathlib.Path(sys.argv[1]) / "mjbeer", package
-assert looks.folder() == package / "mjcf", looks.folder()
+assert mechanics.folder() == package / "mjcf", mechanics.folder()
 found = {}
 for name in ("sliding", "frozen", "pendulum", "hoop"):
     scene = getattr(mjbeer, name)()
@@ -93,7 +93,7 @@ def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> N
     package = {each.relative_to(source) for each in (source / "mjbeer").rglob("*") if each.is_file()}
     expected = {f"mjbeer/{each.as_posix()}" for each in templates}
     expected |= {each.as_posix() for each in package if each.parent.name != "__pycache__"}
-    assert {each.suffix or each.name for each in templates} == {".xml", ".obj", ".md", "LICENSE"}
+    assert {each.suffix or each.name for each in templates} == {".xml", ".obj", ".md", ".png", "LICENSE"}
     assert {"mjbeer/py.typed", "mjbeer/studies/benchmark/study.jsonl"} < expected
     assert {name for name in zipfile.ZipFile(wheel).namelist() if name.startswith("mjbeer/")} == expected
 

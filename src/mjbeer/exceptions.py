@@ -55,7 +55,7 @@ class LiquidWarning(UserWarning):
 
 
 class TemplateError(MjbeerError):
-    """An MJCF template is missing, lacks a part that mjbeer uses, or has a part that could act on the motion."""
+    """A file of MJCF is missing, lacks an element that mjbeer uses, or moves otherwise than theory says."""
 
 
 class OutputError(MjbeerError):

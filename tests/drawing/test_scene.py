@@ -39,7 +39,7 @@ def check(display: Display, number: int, u: float, phi: float, roll: float, lift
     axis = data.body(f"{prefix}can").xpos
     assert in_incline(scene, axis) == close((u, a + lift), abs=tolerance)
     assert axis[1] == close(display.lanes[number], abs=ROUNDING)
-    load = data.body(f"{prefix}load")
+    load = data.body(f"{prefix}{'load' if scene.attachment == 'sliding' else 'can'}")
     centre = load.xpos + load.xmat.reshape(3, 3) @ [0, 0, -b * scale(scene)]
     assert in_incline(scene, centre) == close((u - b * math.sin(phi), a + lift - b * math.cos(phi)), abs=tolerance)
     # What was on top of the can where it has not rolled goes downhill from there.

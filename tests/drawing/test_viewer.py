@@ -15,7 +15,7 @@ from mjbeer import exact, frozen
 from mjbeer.drawing import viewer
 from mjbeer.drawing.viewer import Player, view
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import looks
+from mjbeer.model import mechanics
 from mjbeer.model.build import compile_spec
 from mjbeer.model.export import present
 from mjbeer.model.setting import Setting
@@ -55,7 +55,7 @@ def shown(tmp_path: pathlib.Path) -> Generator[Screen]:
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_a_template_shows_its_can_after_three_seconds(name: str, shown: Screen) -> None:
     """In MuJoCo's viewer as it comes, which runs the model at once."""
-    command = [sys.executable, "-m", "mujoco.viewer", f"--mjcf={looks.folder() / name}.xml"]
+    command = [sys.executable, "-m", "mujoco.viewer", f"--mjcf={mechanics.folder() / name}.xml"]
     with subprocess.Popen(command, env=shown.environment) as process:
         try:
             shown.wait(is_drawn)

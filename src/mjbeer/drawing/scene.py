@@ -92,7 +92,7 @@ class Display:
             for pair in spec.pairs:
                 spec.delete(pair)
             shell = spec.body("can").add_body()  # it comes after the load: what that hides is quickly drawn
-            for geom in spec.body("can").geoms:
+            for geom in [each for each in spec.body("can").geoms if each.name not in looks.OF_THE_LOAD]:
                 moved = shell.add_geom()
                 for attribute in looks.attributes(type(geom)):
                     setattr(moved, attribute, getattr(geom, attribute))

@@ -1,7 +1,7 @@
 """Builds the MuJoCo model of a scene, for each of three ways of rolling.
 
-A model that is only stepped is a skeleton: joints, masses, forces and what touches. One that is seen has the template's
-looks too. Both get their elements from `_add`, and their numbers from `numbers.write`.
+Its mechanics are those of an MJCF file, into which the numbers of the scene are written. A model that is only stepped
+is a skeleton: joints, masses, forces and what touches. One that is seen has looks too.
 
 - "reduced" has no constraint: its coordinates allow no other motion than rolling without slipping. The can's rotation
   follows from u, or from phi, and its inertia is added to theirs. There is no error but the integrator's.
@@ -11,15 +11,15 @@ looks too. Both get their elements from `_add`, and their numbers from `numbers.
 
 import copy
 import inspect
-import math
+import os
 import threading
 import warnings
 
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import check, looks, numbers, state
+from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
+from mjbeer.model import check, looks, mechanics, state
 from mjbeer.model import free as free_cans
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
@@ -29,18 +29,6 @@ from mjbeer.theory.standing import Standing
 
 START = "start"
 """The name of the keyframe."""
-_JOINTS = {
-    "slide": ("can", mujoco.mjtJoint.mjJNT_SLIDE, (1, 0, 0)),  # u, positive downhill
-    "lift": ("can", mujoco.mjtJoint.mjJNT_SLIDE, (0, 0, 1)),  # positive away from the incline
-    "roll": ("can", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),
-    "swing": ("load", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),  # the load's angle relative to the can
-    "phi": ("can", mujoco.mjtJoint.mjJNT_HINGE, (0, 1, 0)),  # the load's angle, in a model of one body
-}
-"""Body, type and axis of each joint."""
-_TURNED = [math.sqrt(0.5), 0, math.sqrt(0.5), 0]
-"""Orientation of every inertial frame: a quarter turn about the axis, in which the inertia is the same. If the frame
-were parallel to the body's, MuJoCo would move a centre of mass within 1e-6 m of the origin to the origin."""
-_DISABLE, _ENABLE = mujoco.mjtDisableBit, mujoco.mjtEnableBit
 _SINGULAR = "Inertia matrix is too close to singular"
 """What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
 _skeletons: dict[Kind, mujoco.MjModel] = {}
@@ -59,6 +47,7 @@ def build(
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
     free: bool = True,
+    mjcf: str | os.PathLike[str] | None = None,
 ) -> mujoco.MjModel:
     """Return a compiled MuJoCo model of a scene, whose keyframe "start" is at `phi0` [rad], `phi_dot0` [rad/s].
 
@@ -77,24 +66,27 @@ def build(
     change the motion; so they are in a reduced model with damping under "discrete", which would not see small forces.
 
     A `standing` can stands on a floor, on a free joint; without `free` it is held by the world. It has no other
-    parameters than `visuals`, `integrator` and `timestep`, and a free joint only a standing can may have.
+    parameters than `visuals`, `integrator`, `timestep` and `mjcf`, and a free joint only a standing can may have.
+
+    `mjcf` is a folder to be read instead of mjbeer's own; without it, that of the environment variable MJBEER_MJCF
+    counts. All but the parameters that its README lists is in the model as it stands there. If it then moves otherwise
+    than theory says, an `UntrustedWarning` has the file and the largest difference of accelerations.
 
     Raises:
       ParameterError: if a name is unknown or a number is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
-      TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
+      TemplateError: if a file of MJCF is missing, or lacks an element into which a number is written.
     """
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling, friction=friction, phi0=phi0, phi_dot0=phi_dot0)
         return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep))
     refuse_held(scene, free)
     visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
-    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction)
+    setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = compose(scene, setting, visuals)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec, rigid=setting.rigid)
-    if visuals:
-        check.require_theory(model, scene, setting)
+    _warn_of_edits(model if visuals else None, scene, setting)
     return model
 
 
@@ -106,6 +98,7 @@ def specify(
     timestep: float = 1e-3,
     friction: float = FRICTION,
     free: bool = True,
+    mjcf: str | os.PathLike[str] | None = None,
 ) -> mujoco.MjSpec:
     """Return the specification of the model that `build` compiles, to be edited or attached to another one.
 
@@ -119,11 +112,26 @@ def specify(
         return free_cans.compose(scene, visuals, free, integrator, timestep)
     refuse_held(scene, free)
     visuals = require.boolean("visuals", visuals)
-    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction)
+    setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = compose(scene, setting, visuals)
-    if visuals:
-        check.require_theory(compile_spec(spec), scene, setting)
+    _warn_of_edits(compile_spec(spec.copy()) if visuals else None, scene, setting)
     return spec
+
+
+def _warn_of_edits(seen: mujoco.MjModel | None, scene: Scene, setting: Setting) -> None:
+    """Give a warning to whoever calls if the mechanics file, or a model with looks, does not move as theory says."""
+    if fault := edited(scene, setting, seen):
+        warnings.warn(f"{fault}; the model is as the file has it", UntrustedWarning, stacklevel=3)
+
+
+def edited(scene: Scene, setting: Setting, seen: mujoco.MjModel | None = None) -> str | None:
+    """Return what is wrong with the mechanics file of a scene, or with a model of it with looks; None if nothing is."""
+    folder = mechanics.folder(setting.mjcf)
+    if fault := check.of_file(folder, scene.attachment, setting.rolling):
+        return fault
+    if seen is not None and (fault := check.of_model(seen, scene, setting)):
+        return f"{folder / 'looks'}, in {looks.name(scene)}, {fault}"
+    return None
 
 
 def refuse_others(**given: object) -> None:
@@ -150,30 +158,31 @@ def refuse_held(scene: Scene, free: bool) -> None:
 
 
 def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
-    """Return the specification of a scene in a setting, with the errors of `build`; its motion is not checked yet."""
+    """Return the specification of a scene in a setting, from its mechanics file and, with `visuals`, from the looks.
+
+    What is only stepped lacks what is only seen or measured, and what exerts no force. A file that does not move as
+    theory says is left whole.
+    """
     made = Numbers.of(scene, setting, visuals)
+    folder = mechanics.folder(setting.mjcf)
+    path = folder / "mechanics" / f"{made.file}.xml"
+    root = mechanics.read(path)
+    mechanics.write(root, made.parameters, path)
+    mechanics.remove(root, "keyframe")  # of the file's own scene
+    right = check.of_file(folder, scene.attachment, setting.rolling) is None
     if visuals:
-        spec = looks.dressed(scene)
-        for element, angle in ((spec.body("incline"), scene.incline), (spec.frame("level"), -scene.incline)):
-            element.alt.type = mujoco.mjtOrientation.mjORIENTATION_QUAT
-            element.quat = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
-        if "slide" in made.joints and "roll" not in made.joints:  # nothing turns with the can, but these with the load
-            for geom in filter(None, map(spec.geom, looks.TURNING)):
-                spec.delete(geom)
-    else:
-        spec = mujoco.MjSpec()
-        can = spec.worldbody.add_body(name="incline").add_body(name="can")
-        if "load" in made.bodies:
-            can.add_body(name="load")
-        for stage in _unused(made):
-            spec.option.disableflags |= int(_DISABLE.__members__[f"mjDSBL_{stage}"])
-    # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen, or
-    # in contact, must lie on the incline.
-    spec.compiler.fusestatic = not visuals
-    spec.body("can").pos = [0, 0, scene.can.radius if visuals else 0.0]
-    _add(spec, made)
-    numbers.write(made, spec)
-    return spec
+        if right:
+            mechanics.remove_idle(root)
+        looks.dress(root, looks.name(scene))
+        mechanics.include(root, folder)
+        if made.force or made.unit != 1:
+            mechanics.remove_energies(root)
+        spec = mechanics.to_spec(root, path)
+        looks.fit(spec, scene, folder)
+        return spec
+    if right:
+        mechanics.leave_out(root)
+    return mechanics.to_spec(root, path)
 
 
 def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -> None:
@@ -186,7 +195,7 @@ def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
     """Return the model that a specification compiles to, in which a joint equality is made `rigid` if asked for.
 
     Raises:
-      UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the template.
+      UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the file.
     """
     with _compiling, warnings.catch_warnings():
         warnings.filterwarnings("error", _SINGULAR)
@@ -209,11 +218,13 @@ class Stepped:
     def __init__(self, made: Numbers) -> None:
         with _compiling:
             if (skeleton := _skeletons.get(made.kind)) is None:
+                check.require_file(mechanics.folder(made.setting.mjcf), made.scene.attachment, made.setting.rolling)
                 skeleton = compile_spec(compose(made.scene, made.setting), made.setting.rigid)
                 _skeletons[made.kind] = skeleton
         self.model = copy.copy(skeleton)
         self.data = mujoco.MjData(self.model)
         self._made: Numbers | None = None
+        self._places = mechanics.places(self.model, made.parameters)
         self.write(made)
 
     def write(self, made: Numbers) -> None:
@@ -223,7 +234,7 @@ class Stepped:
             mujoco.mj_resetData(model, data)
             return
         self._made = None  # until all of it is written
-        numbers.write(made, model)
+        mechanics.write_compiled(model, made.parameters, self._places)
         data.warning.number[:] = 0  # of the scene before
         with quiet():
             mujoco.mj_setConst(model, data)
@@ -247,67 +258,10 @@ def _make_rigid(model: mujoco.MjModel) -> None:
     nearly infinite stiffness to the inertias.
     """
     model.dof_invweight0[:] = 0
-    model.opt.enableflags &= ~int(_ENABLE.mjENBL_DIAGEXACT)
+    model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
     model.opt.solver = mujoco.mjtSolver.mjSOL_PGS
     model.opt.iterations, model.opt.tolerance = 1, 0.0
 
 
 def _refused(reason: str) -> UnsupportedError:
     return UnsupportedError(f"MuJoCo cannot represent this scene: {reason}")
-
-
-def _unused(made: Numbers) -> tuple[str, ...]:
-    """Return the stages of a step that a kind of model does not need. Autoreset would hide a divergence."""
-    never = ("AUTORESET", "CLAMPCTRL", "FRICTIONLOSS", "ISLAND", "LIMIT", "MIDPHASE", "SENSOR", "SPRING")
-    constraint = {"reduced": ("CONSTRAINT", "CONTACT", "EQUALITY", "WARMSTART"), "equality": ("CONTACT",)}
-    forces = (*(() if made.scene.dissipates else ("DAMPER",)), *(() if made.force else ("ACTUATION",)))
-    return (*never, *forces, *constraint.get(made.setting.rolling, ()))
-
-
-def _add(spec: mujoco.MjSpec, made: Numbers) -> None:
-    """Add the elements of a kind to the bodies "incline", "can" and "load", without their numbers."""
-    for body in filter(None, map(spec.body, ("can", "load"))):
-        body.explicitinertial, body.iquat = True, _TURNED  # its masses are its own, not those of its geoms
-        body.mass, body.inertia = 0.0, [0.0] * 3  # a load that is part of the can has none
-    for name in made.joints:  # the order matters in one body: a slide that came after a hinge would turn with it
-        body, type_, axis = _JOINTS[name]
-        spec.body(body).add_joint(spec.default, name=name, type=type_, axis=axis)
-    if made.force:
-        joint, bias = mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtBias.mjBIAS_AFFINE
-        weight = spec.add_actuator(name="weight", target=made.joints[0], trntype=joint, biastype=bias)
-        weight.gainprm[0] = 0.0
-    if made.chord:
-        can = spec.body("can")
-        top = [0, 0, float(can.pos[2]) + numbers.ARM]
-        spec.body("incline").add_site(spec.default, name="chord_top", pos=top, group=4)
-        can.add_site(spec.default, name="chord_end", pos=[0, 0, -numbers.ARM], group=4)
-        chord = spec.add_tendon(name="chord", rgba=[0, 0, 0, 0])
-        chord.wrap_site("chord_top")
-        chord.wrap_site("chord_end")
-    if made.scene.damping_law and made.setting.rolling == "reduced":
-        # The length of this tendon, phi - u/a, is the angle by which the load is ahead of the can. Its damping is the
-        # torque between them, though the can has no joint: the torque on the can, over its radius, acts on the slide.
-        spec.add_tendon(name="damper").wrap_joint("phi", 1.0)  # the slide follows with its number
-    if made.setting.rolling != "reduced":
-        _add_constraint(spec, made.setting)
-
-
-def _add_constraint(spec: mujoco.MjSpec, setting: Setting) -> None:
-    """Add a joint equality, or two massless geoms that collide as a pair and with nothing else."""
-    # MuJoCo's default diagonal adds the inverse inertias of slide and hinge without regard to metres and radians.
-    spec.option.enableflags |= int(_ENABLE.mjENBL_DIAGEXACT)
-    spec.option.disableflags |= int(_DISABLE.mjDSBL_REFSAFE)
-    if setting.rolling == "equality":
-        spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1="slide", name2="roll")
-        return
-    plane, cylinder = mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
-    surface = spec.body("incline").add_geom(spec.default, name="surface", type=plane, size=[0, 0, 1])
-    can = spec.body("can").add_geom(spec.default, name="can", type=cylinder, size=[1, 1, 0])
-    can.quat = [math.sqrt(0.5), math.sqrt(0.5), 0, 0]
-    collision = spec.find_default("collision")
-    for geom in (surface, can):
-        geom.contype, geom.conaffinity, geom.mass = 0, 0, 0.0
-        if collision is not None:
-            geom.group, geom.rgba = collision.geom.group, collision.geom.rgba
-    spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
-    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC

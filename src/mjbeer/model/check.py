@@ -1,36 +1,48 @@
 """What a compiled model does: its accelerations beside those of theory.
 
-A model that is right accelerates as theory says, at some states. One from an edited template may not, and is refused.
+A model that is right accelerates as theory says, at some states. One from an edited file may not.
 One of a scene with unequal masses may have lost something in rounding: MuJoCo adds masses, and multiplies arms by
 forces, in double precision and in the coordinates of the world. All runs of such a model are wrong alike, so that no
 comparison of runs can show it.
 """
 
 import copy
+import functools
 import math
+import pathlib
 from dataclasses import replace
 
 import mujoco
 import numpy as np
 
 from mjbeer.exceptions import TemplateError
-from mjbeer.model import looks
+from mjbeer.model import mechanics
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Numbers
-from mjbeer.model.setting import Setting
+from mjbeer.model.setting import Rolling, Setting
 from mjbeer.model.state import START_DEPTH, places, read, write
+from mjbeer.theory.can import Can
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import Coordinates, accelerations, part, stiffness
+from mjbeer.theory.load import Load
 from mjbeer.theory.record import Record
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import Attachment, Scene
 
 STATES = 9
 """Number of states of a run, evenly spread, at which accelerations are compared."""
+_PROBES = {
+    "sliding": Scene(
+        Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "sliding", 5.0, Damping(1e-3, 1e-4, 1e-5), 0.5
+    ),
+    "frozen": Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "frozen", 5.0),
+}
+"""Scenes that need all that is in a file, with other numbers than the paper's; the can is heavy enough for a weight."""
 _ANGLES = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])
-"""Angles at which a template is compared [rad]: no two are each other's mirror image, or a quarter turn apart."""
+"""Angles at which a model is compared [rad]: no two are each other's mirror image, or a quarter turn apart."""
 _RATES = np.array([2.0, -1.0, 0.5, 3.0, -2.0])
 """Rates of phi at which it is compared, over that at which an angle of 1 rad passes in a fall through the radius."""
 _ALLOWED = 1e-9
-"""Largest difference of phi_ddot from theory's that a template may have, over the accelerations at those rates. With
+"""Largest difference of phi_ddot from theory's that a model may have, over the accelerations at those rates. With
 the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""
 _SMALL_SWING = 0.1
 """Smallest acceleration with which a difference is compared, relative to the largest that gravity gives at rest: a
@@ -39,26 +51,64 @@ _OF_SLIP = 8 * float(np.finfo(float).eps)
 """Rounding of a slip rate, over the rates whose difference it is: each is rounded a few times."""
 
 
-def require_theory(model: mujoco.MjModel, scene: Scene, setting: Setting) -> None:
-    """Check that a model from a template moves as the scene does, or raise a TemplateError that says what differs.
+def require_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> None:
+    """Check that a mechanics file moves as theory says.
+
+    Raises:
+      TemplateError: if not; the message names the file and the largest difference of accelerations.
+    """
+    if fault := of_file(folder, attachment, rolling):
+        raise TemplateError(fault)
+
+
+@functools.lru_cache(maxsize=64)
+def of_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> str | None:
+    """Return what is wrong with a mechanics file, None if nothing is: as it stands, and with other numbers in it.
+
+    As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
+
+    Raises:
+      TemplateError: if it cannot be read, or lacks an element.
+    """
+    path, setting = folder / "mechanics" / f"{attachment}_{rolling}.xml", Setting(rolling)
+    metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
+    paper = Scene(metal, Load.segment(), attachment=attachment)
+    for scene, given in ((paper, False), (_PROBES[attachment], True)):
+        root, values = mechanics.read(path), Numbers.of(scene, setting, visuals=True).parameters
+        if given:
+            mechanics.write(root, values, path)
+        fault = of_model(mechanics.to_spec(root, path).compile(), scene, setting)
+        edited = [] if given else mechanics.differences(root, values, path)
+        if fault or edited:
+            what = f"{path} {fault or 'has other numbers than the paper'}"
+            told = f"; mjbeer writes a scene's own numbers into {', '.join(edited)}" if edited else ""
+            return f"{what}{told}"
+    return None
+
+
+def of_model(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | None:
+    """Return how a model moves otherwise than its scene, None if it does not.
 
     It must have the scene's joints, no constraint but that of rolling, and theory's accelerations at a few states.
     """
-    if fault := _fault(model, scene, setting):
-        raise TemplateError(f"{looks.template(scene)} {fault}: an edit of it acts on the motion; restore the template")
-
-
-def _fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | None:
-    joints, radius = Numbers.of(scene, setting, visuals=True).joints, scene.can.radius
+    rolling, sliding, radius = setting.rolling, scene.attachment == "sliding", scene.can.radius
+    if rolling == "reduced":
+        joints = ("slide", "phi") if sliding else ("phi",)
+    else:
+        joints = ("slide", *(("lift",) if rolling == "contact" else ()), "roll", *(("swing",) if sliding else ()))
     if (found := tuple(places(model))) != joints:
         return f"gives the joints {', '.join(found)}, not {', '.join(joints)}"
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi, phi_dot, zeros = _ANGLES, rate * _RATES, np.zeros(len(_ANGLES))
-    roll, roll_dot = (phi[::-1], phi_dot[::-1]) if scene.attachment == "sliding" else (phi, phi_dot)
+    roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
     rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
     lift = zeros - START_DEPTH * radius
     states = write(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
-    data, rolling = mujoco.MjData(model), setting.rolling
+    difference, _ = residual(model, scene, states, exact_constraint=False)
+    size = np.abs(accelerations(scene, phi, phi_dot, rates["u_dot"])[1]).max() + rate**2
+    if not difference <= _ALLOWED * size:
+        return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
+    data = mujoco.MjData(model)
     for state in states:
         data.qpos[:], data.qvel[:] = np.split(state, 2)
         with quiet():
@@ -68,10 +118,6 @@ def _fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | None:
             return f"gives {data.nefc} rows of constraints, not only those of rolling"
         if any(warning.number for warning in data.warning):
             return "makes MuJoCo warn of a state of rolling"
-    difference, _ = residual(model, scene, states, exact_constraint=False)
-    size = np.abs(accelerations(scene, phi, phi_dot, rates["u_dot"])[1]).max() + rate**2
-    if not difference <= _ALLOWED * size:
-        return f"accelerates phi by {difference:.2g} rad/s^2 (of {size:.2g}) otherwise than theory"
     return None
 
 

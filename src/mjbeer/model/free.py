@@ -8,6 +8,7 @@ cylinder.
 
 import math
 import warnings
+import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
 import mujoco
@@ -15,7 +16,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
-from mjbeer.model import looks, numbers
+from mjbeer.model import looks, mechanics, numbers
 from mjbeer.model.setting import INTEGRATORS, Integrator
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
@@ -31,14 +32,8 @@ _SPIN = 1e-9
 _BREAKING = 0.02
 """Damping ratio that a mode has more at the rate omega, growing with the square of the rate: waves break. It is chosen,
 not computed: with it thrown cans are stable at 5 ms. At an elevation of 0.1 R it adds 2e-4."""
-_HARD = 1e9
-"""solmix of a lying can: of a contact's solref and solimp all but 1e-9 is its own."""
 _COARSE = 0.5
 """Largest angle [rad] of a mode's oscillation in a timestep: semi-implicit integrators then have it 1 % too fast."""
-_ALONG_Y = [math.sqrt(0.5), math.sqrt(0.5), 0, 0]
-"""Turns a cylinder's own axis, z, to that of a lying can."""
-_SITES = {"group": 5, "size": [1e-4] * 3, "rgba": [0, 0, 0, 0]}
-"""How sites look that only sensors need."""
 _RK4 = 2.785
 """Largest product of a timestep and a rate of decay with which RK4 is stable."""
 _SPOILING = {
@@ -83,7 +78,7 @@ def attach(
     Raises:
       ParameterError: if a parameter is not allowed, or there is no such body.
       UnsupportedError: if MuJoCo cannot move such a can freely.
-      TemplateError: if a template is missing or lacks a part.
+      TemplateError: if a file of MJCF is missing or lacks an element.
     """
     require.instance("parent", parent, mujoco.MjSpec)
     free = require.boolean("free", free)
@@ -102,8 +97,9 @@ def attach(
     coefficients = [] if friction is None else [require.non_negative("friction", each) for each in listed]
     if friction is not None and not 1 <= len(coefficients) <= 3:
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.shown(friction)}")
-    child = _lying(can) if isinstance(can, Scene) else dressed(require.instance("can", can, Standing), visuals=True)
-    _settle(parent.option, can)
+    lying = isinstance(can, Scene)
+    child = _lying(can) if lying else _standing(require.instance("can", can, Standing), visuals=True, free=False)
+    _settle(parent.option, child.option, lying)
     reasons = [*_spoilt(parent.option, can), *_bounded(parent.compiler, child)]
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
@@ -136,20 +132,16 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     require.instance("model", model, mujoco.MjModel)
     if not (isinstance(prefix, str) and prefix.isprintable()):
         raise ParameterError(f"prefix must be a text that can be printed, got {require.shown(prefix)}")
-    spec = mujoco.MjSpec()
-    body = spec.worldbody.add_body(name="can")
     if isinstance(can, Scene):
-        drawn = {}
-        lie(body, body.add_body(name="load"), can)
+        spec, drawn = _lying(can, visuals=False), {}
     else:
-        stand(spec, require.instance("can", can, Standing))
-        drawn = looks.column(can)
+        spec, drawn = _standing(require.instance("can", can, Standing), False, False), looks.column(can)
     _require_parts(model, prefix, spec, can)
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
             f"MuJoCo moves no pendulum with an inertia below {mujoco.mjMINVAL:g} kg m^2, as of {can}"
         )
-    for each in spec.bodies[1:]:
+    for each in filter(None, map(spec.body, _PARTS)):
         part = model.body(f"{prefix}{each.name}")
         part.mass, part.inertia, part.ipos = each.mass, each.inertia, each.ipos
         if each.name != "can":
@@ -182,15 +174,14 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
         )
 
 
-def _settle(option: mujoco.MjOption, can: Standing | Scene) -> None:
-    """Change a parent's options that nobody chose."""
+def _settle(option: mujoco.MjOption, own: mujoco.MjOption, lying: bool) -> None:
+    """Change a parent's options that nobody chose to those that a can has in its own file."""
     if option.cone == _CONES.mjCONE_PYRAMIDAL:
-        option.cone = _CONES.mjCONE_ELLIPTIC
-    if isinstance(can, Scene):
-        if option.impratio == 1:
-            option.impratio = numbers.FRICTION_HARDNESS
-        if option.integrator == _KINDS.mjINT_EULER:
-            option.integrator = _KINDS.mjINT_RK4
+        option.cone = own.cone
+    if lying and option.impratio == 1:
+        option.impratio = own.impratio
+    if lying and option.integrator == _KINDS.mjINT_EULER:
+        option.integrator = own.integrator
 
 
 def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
@@ -260,51 +251,76 @@ def compose(can: Standing, visuals: bool, free: bool, integrator: Integrator, ti
 
     Raises:
       ParameterError: if the integrator is not one of MuJoCo's, or the timestep is not allowed.
-      TemplateError: if the template is missing or lacks a part.
+      TemplateError: if a file of MJCF is missing or lacks an element.
     """
-    spec = dressed(can, require.boolean("visuals", visuals))
-    option = spec.option
-    option.integrator = int(
-        _KINDS.__members__[f"mjINT_{require.choice('integrator', integrator, INTEGRATORS).upper()}"]
-    )
-    option.timestep = require.within("timestep", timestep, *require.TIMESTEP, "s")
-    option.cone, option.gravity = _CONES.mjCONE_ELLIPTIC, [0, 0, -can.gravity]
-    if require.boolean("free", free):
-        spec.body("can").add_freejoint(name="free")
-        plane = mujoco.mjtGeom.mjGEOM_PLANE
-        spec.worldbody.add_geom(spec.default, name="surface", type=plane, size=[0, 0, 1], group=3)
+    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free))
+    integrator = require.choice("integrator", integrator, INTEGRATORS)
+    spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
+    spec.option.timestep = require.within("timestep", timestep, *require.TIMESTEP, "s")
     return spec
 
 
-def dressed(can: Standing, visuals: bool) -> mujoco.MjSpec:
-    """Return a specification with a standing can, which has no joint yet, and with its looks if they are wanted."""
-    if visuals:
-        spec = looks.upright(can)
-    else:
-        spec = mujoco.MjSpec()
-        spec.worldbody.add_body(name="can")
-    stand(spec, can)
-    touch(spec.body("can"), can.can)
+def _standing(can: Standing, visuals: bool, free: bool) -> mujoco.MjSpec:
+    """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
+    folder = mechanics.folder()
+    path = folder / "mechanics" / "standing.xml"
+    root = mechanics.read(path)
+    mechanics.remove(root, "keyframe")
+    if not free:
+        mechanics.remove(root, "freejoint", "geom[@name='surface']")
+    body, sensors = root.find(".//body[@name='can']"), root.find("sensor")
+    assert body is not None
+    assert sensors is not None
+    first = [(parent, each) for parent in (body, sensors) for each in parent if "slosh1" in each.get("name", "")]
+    for mode in range(2, can.modes + 1):
+        for parent, each in first:
+            parent.append(ET.fromstring(ET.tostring(each, encoding="unicode").replace("slosh1", f"slosh{mode}")))
+    if can.modes == 0:
+        for parent, each in first:
+            parent.remove(each)
+    mechanics.write(root, standing_values(can), path)
+    if not visuals:
+        return mechanics.to_spec(root, path)
+    looks.dress(root, "standing")
+    mechanics.include(root, folder)
+    spec = mechanics.to_spec(root, path)
+    looks.fit_upright(spec, can, folder)
     return spec
 
 
-def _lying(scene: Scene) -> mujoco.MjSpec:
-    """Return a specification with a lying can in it, which has no joint yet."""
-    spec = looks.dressed(scene)
-    lie(spec.body("can"), spec.body("load"), scene)
-    touch(spec.body("can"), scene.can, lying=True)
+def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
+    """Return the specification of a lying can, which has no free joint yet."""
+    folder = mechanics.folder()
+    path = folder / "mechanics" / "lying.xml"
+    root, values = mechanics.read(path), lying_values(scene)
+    mechanics.remove(root, "keyframe", "freejoint")
+    if scene.attachment == "frozen":
+        mechanics.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
+    level = {("body incline", "euler"): (0, 0, 0), ("body can", "euler"): (0, 0, 0)}  # what it meets is the parent's
+    mechanics.write(root, {**values, **level}, path)
+    if not visuals:
+        return mechanics.to_spec(root, path)
+    looks.dress(root, looks.name(scene))
+    mechanics.include(root, folder)
+    spec = mechanics.to_spec(root, path)
+    looks.fit(spec, scene, folder)
     return spec
 
 
-def stand(spec: mujoco.MjSpec, can: Standing) -> None:
-    """Give the body "can", whose origin is the middle of the inside of the bottom, the masses of a standing can.
+def standing_values(can: Standing) -> mechanics.Values:
+    """Return the parameters of a standing can, in whose file the origin is the middle of the inside of the bottom.
 
     What does not slosh is the body "liquid". Each mode is a body "slosh1", "slosh2" ... on a ball joint of its name.
     The masses, first and second moments of all of them together are those of theory, bobs as they are included.
     """
-    body, shell, half = spec.body("can"), can.can, can.can.length / 2
+    shell, half = can.can, can.can.length / 2
     across = transverse_inertia(shell)
-    _inertial(body, shell.mass, half, [across, across, shell.inertia])
+    found: dict[tuple[str, str], tuple[float, ...] | str] = {
+        ("option", "gravity"): (0, 0, -can.gravity),
+        ("geom can", "size"): (shell.radius, half),
+        ("geom can", "pos"): (0, 0, half),
+        **_inertial("can", shell.mass, half, (across, across, shell.inertia)),
+    }
     middle = can.height / 2
     moments = can.fixed_moments()
     lengths = can.gravity / can.frequencies() ** 2
@@ -317,42 +333,48 @@ def stand(spec: mujoco.MjSpec, can: Standing) -> None:
         bob, arm = mass / (1 - share), length * (1 - share)
         place = pivot - middle - arm
         moments = moments - bob * place ** np.arange(3) - [0, 0, own]
-        slosh = spec.body(name) or body.add_body(name=name)
-        slosh.pos = [0, 0, pivot]
-        slosh.add_joint(spec.default, name=name, type=mujoco.mjtJoint.mjJNT_BALL, damping=[damper, 0, cubic])
-        _inertial(slosh, bob, -arm, [own] * 3)
-        _add_sensors(spec, body, slosh, rise)
+        found |= _inertial(name, bob, -arm, (own,) * 3)
+        found[f"body {name}", "pos"] = found[f"site {name}_pivot", "pos"] = 0, 0, pivot
+        found[f"joint {name}", "damping"] = damper, 0, cubic
+        found[f"site {name}_rise", "pos"] = 0, 0, -rise
     mass, first, second = moments
     level = second - first**2 / mass
     spin = can.mass * shell.radius**2 / 2 if can.modes == 0 else _SPIN * level
-    _inertial(spec.body("liquid") or body.add_body(name="liquid"), mass, middle + first / mass, [level, level, spin])
+    return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
 
 
-def lie(can: mujoco.MjsBody, load: mujoco.MjsBody, scene: Scene) -> None:
-    """Give two bodies, whose origins are on the axis of a lying can, the masses of its shell and of its load.
+def lying_values(scene: Scene) -> mechanics.Values:
+    """Return the parameters of a lying can, in whose file the origin is on the axis.
 
     Raises:
-      UnsupportedError: if MuJoCo cannot move them freely.
+      UnsupportedError: if MuJoCo cannot move it freely.
     """
     shell, beer = scene.can, scene.load
     if beer.fill is None:
         raise UnsupportedError(f"a can that is free in space has beer in it, got a load without a fill: {scene!r}")
     if scene.drag > 0:
         raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
+    found: dict[tuple[str, str], tuple[float, ...] | str] = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
         if shell.mass == 0 or shell.inertia == 0:
             raise UnsupportedError(
                 "a can without mass and inertia around a sliding load cannot move freely; give it some, as "
                 "can=Can.sheet_metal()"
             )
-        law = scene.damping_law.coefficients
-        load.add_joint(name="swing", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0], damping=law)
+        found["joint swing", "damping"] = tuple(scene.damping_law.coefficients)
     across = transverse_inertia(shell)
-    _inertial(can, shell.mass, 0.0, [across, shell.inertia, across])
-    shape = segment(beer.fill)
-    wide = beer.mass * shell.radius**2 * shape.width
+    wide = beer.mass * shell.radius**2 * segment(beer.fill).width
     along = beer.mass * shell.length**2 / 12
-    _inertial(load, beer.mass, -beer.offset, [beer.inertia - wide + along, beer.inertia, wide + along])
+    load = beer.inertia - wide + along, beer.inertia, wide + along
+    found |= _inertial("can", shell.mass, 0.0, (across, shell.inertia, across))
+    return found | _inertial("load", beer.mass, -beer.offset, load)
+
+
+def _inertial(
+    body: str, mass: float, height: float, inertia: tuple[float, ...]
+) -> dict[tuple[str, str], tuple[float, ...] | str]:
+    name = f"inertial {body}"
+    return {(name, "mass"): (mass,), (name, "pos"): (0, 0, height), (name, "diaginertia"): inertia}
 
 
 def transverse_inertia(can: Can) -> float:
@@ -363,38 +385,3 @@ def transverse_inertia(can: Can) -> float:
     """
     ends = min(max(2 * (can.mass - can.inertia / can.radius**2), 0.0), can.mass)
     return can.inertia / 2 + (can.mass - ends) * can.length**2 / 12 + ends * can.length**2 / 4
-
-
-def touch(body: mujoco.MjsBody, can: Can, lying: bool = False) -> None:
-    """Give a can the cylinder "can", which touches what it meets.
-
-    A standing can is as soft as MuJoCo's default: a hard blow would give its pendulums rates that large timesteps
-    cannot follow. A lying one is as hard as `rolling="contact"`, but for the time constant, which fits the timestep.
-    """
-    geom = body.add_geom(name="can", type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=[can.radius, can.length / 2, 0], mass=0)
-    if lying:
-        geom.quat, geom.solimp, geom.solmix = _ALONG_Y, [*numbers.IMPEDANCE, *numbers.WIDTH], _HARD
-    else:
-        geom.pos = [0, 0, can.length / 2]
-    geom.group, geom.rgba = 3, [0.2, 0.6, 0.9, 0.3]
-
-
-def _add_sensors(spec: mujoco.MjSpec, can: mujoco.MjsBody, slosh: mujoco.MjsBody, rise: float) -> None:
-    """Add what tells how a mode moves, in the frame of the can.
-
-    "slosh1_up" is the direction of its pendulum's upper end: x and y are the sines of its tilt. "slosh1_rise" is how
-    high the surface rises at the wall at x and at y, over the radius: the way of a site so far below the pivot [m].
-    """
-    name, kinds, objects = slosh.name, mujoco.mjtSensor, mujoco.mjtObj
-    can.add_site(name=f"{name}_pivot", pos=slosh.pos, **_SITES)
-    slosh.add_site(name=f"{name}_rise", pos=[0, 0, -rise], **_SITES)
-    for sensor, kind, what, where in (
-        ("up", kinds.mjSENS_FRAMEZAXIS, (objects.mjOBJ_XBODY, name), (objects.mjOBJ_XBODY, can.name)),
-        ("rise", kinds.mjSENS_FRAMEPOS, (objects.mjOBJ_SITE, f"{name}_rise"), (objects.mjOBJ_SITE, f"{name}_pivot")),
-    ):
-        names = dict(zip(("objtype", "objname", "reftype", "refname"), (*what, *where), strict=True))
-        spec.add_sensor(name=f"{name}_{sensor}", type=kind, **names)
-
-
-def _inertial(body: mujoco.MjsBody, mass: float, height: float, inertia: Sequence[float]) -> None:
-    body.explicitinertial, body.mass, body.ipos, body.inertia = True, mass, [0, 0, height], inertia

@@ -1,11 +1,13 @@
-"""The looks of a scene: an MJCF template without its mechanics, whose geoms, meshes and cameras fit the scene's sizes.
+"""The looks of a scene: geoms, meshes and cameras, which are included in the bodies of its mechanics and fit its sizes.
 
-Across the can's axis, the y axis, everything grows with the radius. What is at one end of the can stays there.
+Across the can's axis, the y axis, everything grows with the radius, and along it with the can's length.
 """
 
 import functools
 import math
 import pathlib
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -16,40 +18,26 @@ from mjbeer.theory.load import segment
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
-FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
-"""Where the templates are in an installed wheel, and in a checkout."""
-NEEDED = {
-    "body": ("incline", "can", "load"),
-    "frame": ("level",),
-    "camera": ("side", "quarter", "overview"),
-    "geom": ("load", "board"),
-    "mesh": ("can",),
-    "material": ("planks", "grid"),
-    "default": ("collision",),
+PARTS = {
+    "sliding": {"incline": ("board",), "can": ("can",), "load": ("beer",)},
+    "frozen": {"incline": ("board",), "can": ("can",), "load": ("ice",)},
+    "pendulum": {"incline": ("board",), "can": ("wheel", "spokes"), "load": ("bob",)},
+    "hoop": {"incline": ("board",), "can": ("wheel",), "load": ("bar",)},
+    "standing": {"can": ("upright",), "liquid": ("column",), "slosh1": ("top",)},
 }
-"""The elements that mjbeer addresses by name in every template, by kind; one with beer has a mesh "load" too."""
-_STANDING = {
-    "body": ("can", "liquid", "slosh1"),
-    "frame": ("upright",),
-    "camera": ("side", "quarter"),
-    "geom": ("beer", "beer_top"),
-    "mesh": ("can",),
-    "material": ("grid",),
-    "default": ("collision",),
-}
-"""The same in the template of a standing can."""
+"""What is included in each body, by the name of what is seen; a load that is no body of its own is in the can."""
+_NEEDED = (("camera", "side"), ("camera", "quarter"), ("camera", "overview"), ("mesh", "can"), ("material", "grid"))
+_ROLLING = (("geom", "load"), ("geom", "board"), ("geom", "wall"), ("material", "planks"))
+_UPRIGHT = (("geom", "beer"), ("frame", "upright"))
+"""The elements that mjbeer addresses by name: in all looks, in those of a can that rolls, and of one that stands."""
 _TOP = 0.1
 """Thickness of the drawn surface of a standing can, in radii."""
-_MECHANISM = ("keys", "sensors", "actuators", "equalities", "pairs", "excludes", "tendons", "joints")
-"""Kinds of elements that mjbeer makes anew, or leaves out; what refers to others comes before them."""
-_COLLIDING = ("surface", "can")
-"""The geoms that collide where rolling is by contact. They are made anew as well."""
-_ADDED = ("joint", "geom", "site", "equality", "pair", "tendon", "actuator")
-"""Kinds of elements that mjbeer adds: with MuJoCo's own defaults, whatever those of the template are."""
 _IDENTITY = ("name", "classname", "childclass", "info", "userdata", "plugin")
 """Attributes that identify an element."""
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
+OF_THE_LOAD = ("load", "foam")
+"""The geoms of a load that may be in the body of its can."""
 WALL = 0.06
 """Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
 FOAM, _FOAM_SHARE, _LEAST_FOAM = 0.025, 0.25, 1e-4
@@ -57,75 +45,93 @@ FOAM, _FOAM_SHARE, _LEAST_FOAM = 0.025, 0.25, 1e-4
 one than the last is not drawn."""
 _LEAST_FILL = 1e-6
 """Smallest fill that is drawn: a mesh must not be flat, and so little beer cannot be seen."""
-_LEAST_VOLUME = 1e-12
-"""Smallest volume [m^3] of a solid mesh. A smaller one becomes a shell, which looks the same: MuJoCo refuses 1e-15."""
 EDGES = 256
 """Number of edges around the arc of the beer. The error of the polygon falls as its square; with 256 edges mass,
 centroid and inertia are within 6e-4 for every fill up to 0.95."""
 _HALF_TURNS = (-20, 980)
-"""Where the templates' board begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
+"""Where the board of the looks begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
 _SPARE = 20
 """Half turns of board beyond either end of a motion: more than a camera at the can sees."""
 _ALONG_THE_AXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE)
 """Types of geoms whose sides are parallel to the axes: each side is stretched by itself."""
+_DRAWN = 2
+"""MuJoCo's group of the geoms that are only drawn."""
 
 Mesh = tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3) [m] and faces (k, 3), closed and oriented outwards. Where two surfaces meet at an edge that is to
 look sharp, each has vertices of its own."""
 
 
-def folder() -> pathlib.Path:
-    """Return the folder of the templates; if there is none, that is a TemplateError."""
-    for candidate in FOLDERS:
-        if (candidate / "shared.xml").is_file():
-            return candidate
-    raise TemplateError(f"no MJCF templates: neither {FOLDERS[0]} nor {FOLDERS[1]} holds them; reinstall mjbeer")
-
-
 def name(scene: Scene) -> str:
-    """Return the name of the template for a scene; a load without a fill is drawn as a ball."""
+    """Return the name of a scene's looks; a load without a fill is drawn as a ball."""
     if scene.attachment == "sliding":
         return "pendulum" if scene.load.fill is None else "sliding"
     return "hoop" if scene.load.fill is None else "frozen"
 
 
-def template(scene: Scene) -> pathlib.Path:
-    """Return the template's file for a scene, with the errors of `folder`."""
-    return folder() / f"{name(scene)}.xml"
+def dress(root: ET.Element, what: str, looks: str = "looks") -> None:
+    """Include the looks of PARTS in the bodies of a mechanics file, whose own geoms are then in group 3.
+
+    A geom without a name, which shows where the load is in a file without looks, goes. `looks` is the folder of their
+    files, as an include is to name it.
+    """
+    for body in root.iter("body"):
+        for geom in body.findall("geom"):
+            if geom.get("name") is None:
+                body.remove(geom)
+    for geom in root.iter("geom"):
+        geom.attrib |= {"group": "3", "class": "main"}
+    root.insert(0, ET.Element("include", file=f"{looks}/world.xml"))
+    for body, files in PARTS[what].items():
+        parent = root.find(f".//body[@name='{body}']")
+        if parent is None and body == "load":
+            parent = root.find(".//body[@name='can']")
+        if parent is None:
+            continue
+        parent.set("childclass", "visual")
+        place = next((place for place, each in enumerate(parent) if each.tag == "body"), len(parent))
+        parent[place:place] = [ET.Element("include", file=f"{looks}/{file}.xml") for file in files]
+    can, incline = (root.find(f".//body[@name='{name}']") for name in ("can", "incline"))
+    if can is not None and incline is not None:  # the cameras at the can are level
+        angle = float(incline.get("euler", "0 0 0").split()[1])
+        level = ET.SubElement(can, "frame", name="level", euler=f"0 {0 - angle:.17g} 0")
+        level.append(ET.Element("include", file=f"{looks}/cameras.xml"))
+    if what == "standing":
+        floor = ET.SubElement(root, "worldbody")
+        floor.append(ET.Element("include", file=f"{looks}/floor.xml"))
 
 
-def dressed(scene: Scene) -> mujoco.MjSpec:
-    """Return what is drawn of a scene: its template, of which nothing is left that mjbeer makes anew.
-
-    It has the bodies "incline", "can" and "load" without joints and masses, and MuJoCo's own options and defaults.
+def fit(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
+    """Fit what is drawn to the sizes of a scene.
 
     Raises:
-      TemplateError: if it cannot be read, or lacks an element that mjbeer addresses by name.
+      TemplateError: if the looks lack an element that mjbeer addresses by name, or a mesh cannot be read.
     """
-    needed = NEEDED | ({"mesh": ("can", "load")} if scene.load.fill is not None else {})
-    spec = _read(template(scene), needed)
-    _remove_mechanics(spec)
-    _fit(spec, scene)
-    return spec
+    _fit_sizes(spec, scene.can, folder, (*_ROLLING, *(("mesh", "load"),) * (scene.load.fill is not None)))
+    if scene.attachment == "sliding" and spec.joint("phi") is not None:  # no joint turns with the can
+        for geom in filter(None, map(spec.geom, TURNING)):
+            spec.delete(geom)
+    if scene.load.fill is not None:
+        pour(spec, scene)
+    else:
+        _hang(spec, scene)
+    drawn = {geom.meshname for geom in spec.geoms}
+    for mesh in spec.meshes:
+        if mesh.name not in drawn:
+            spec.delete(mesh)
 
 
-def upright(standing: Standing) -> mujoco.MjSpec:
-    """Return what is drawn of a standing can, as `dressed` does, with the same errors.
+def fit_upright(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
+    """Fit what is drawn to a standing can, with the errors of `fit`.
 
     The beer is a column in the body "liquid" under a disc that tilts with the body "slosh1".
     """
-    can = standing.can
-    spec = _read(folder() / "standing.xml", _STANDING)
-    _remove_mechanics(spec)
-    for site in spec.sites:
-        spec.delete(site)
-    _fit_sizes(spec, can)
-    spec.frame("upright").pos = [0, 0, can.length / 2]
-    if standing.modes == 0:
-        spec.delete(spec.body("slosh1"))
-    for name, (low, high) in column(standing).items():
-        spec.geom(name).pos, spec.geom(name).size = [0, 0, (low + high) / 2], [can.radius, (high - low) / 2, 0]
-    return spec
+    top = (("geom", "beer_top"),) * (standing.modes > 0)
+    _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *top))
+    spec.frame("upright").pos = [0, 0, standing.can.length / 2]
+    for each, (low, high) in column(standing).items():
+        spec.geom(each).pos = [0, 0, (low + high) / 2]
+        spec.geom(each).size = [standing.can.radius, (high - low) / 2, 0]
 
 
 def column(standing: Standing) -> dict[str, tuple[float, float]]:
@@ -137,37 +143,6 @@ def column(standing: Standing) -> dict[str, tuple[float, float]]:
     return {"beer": (0.0, height - thickness), "beer_top": (height - 2 * thickness - pivot, height - pivot)}
 
 
-def _read(path: pathlib.Path, needed: dict[str, tuple[str, ...]]) -> mujoco.MjSpec:
-    """Return the specification in a template, which must have the elements that mjbeer addresses by name."""
-    try:
-        spec = mujoco.MjSpec.from_file(str(path))
-    except (ValueError, OSError) as error:
-        raise TemplateError(f"{path} is not readable MJCF: {error}") from error
-    for kind, names in needed.items():
-        find = spec.find_default if kind == "default" else getattr(spec, kind)
-        for each in names:
-            if find(each) is None:
-                raise TemplateError(f"{path} has no {kind} named {each!r}, which mjbeer uses; restore the template")
-    return spec
-
-
-def _remove_mechanics(spec: mujoco.MjSpec) -> None:
-    """Remove what mjbeer makes anew, and give what it adds to, and all options, MuJoCo's own values."""
-    colliding = filter(None, map(spec.geom, _COLLIDING))
-    for element in (*(each for kind in _MECHANISM for each in getattr(spec, kind)), *colliding):
-        spec.delete(element)
-    for geom in spec.geoms:
-        geom.contype, geom.conaffinity, geom.mass = 0, 0, 0.0
-    fresh = mujoco.MjSpec()
-    body = fresh.worldbody.add_body()
-    pairs = [(element, body) for element in spec.bodies[1:]]
-    pairs += [(getattr(spec.default, kind), getattr(fresh.default, kind)) for kind in _ADDED]
-    for element, own in (*pairs, (spec.option, fresh.option)):
-        for attribute in attributes(type(own)):
-            setattr(element, attribute, getattr(own, attribute))
-    spec.memory, spec.stat.meaninertia = fresh.memory, math.nan  # both act on contacts
-
-
 @functools.cache
 def attributes(kind: type) -> tuple[str, ...]:
     """Return the names of the attributes that can be set in a kind of element, except those that identify it."""
@@ -175,27 +150,40 @@ def attributes(kind: type) -> tuple[str, ...]:
     return tuple(each for each in settable if each not in _IDENTITY)
 
 
-def _fit(spec: mujoco.MjSpec, scene: Scene) -> None:
-    """Fit what is drawn to the scene's sizes."""
-    _fit_sizes(spec, scene.can)
-    if scene.load.fill is not None:
-        pour(spec, scene)
-    else:
-        _hang(spec, scene)
-
-
-def _fit_sizes(spec: mujoco.MjSpec, can: Can) -> None:
-    """Fit what is drawn to the sizes of a can."""
+def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequence[tuple[str, str]]) -> None:
+    """Fit what is drawn to the sizes of a can; it must have what is needed, by kind and name."""
+    for kind, each in (*_NEEDED, *needed):
+        if getattr(spec, kind)(each) is None:
+            raise TemplateError(f"{folder / 'looks'} has no {kind} named {each!r}, which mjbeer uses; restore it")
     size, length = can.radius / RADIUS, can.length
     for geom in spec.geoms:
-        _stretch(geom, size, length)
+        if geom.group == _DRAWN:
+            _stretch(geom, size, length)
     for camera in spec.cameras:
         camera.pos = _stretched(camera.pos, size, length)
     grid = spec.material("grid")
     grid.texrepeat = np.array(grid.texrepeat) / size
     spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
-    for element in spec.meshes:
-        _fit_mesh(element, pathlib.Path(spec.modelfiledir, spec.meshdir), size, length)
+    for mesh in spec.meshes:
+        path = folder / "assets" / mesh.file
+        try:
+            vertices, faces, mesh.usertexcoord = _shape(path, path.stat().st_mtime_ns)
+        except (OSError, ValueError) as error:
+            raise TemplateError(f"{path} is no mesh that MuJoCo can read: {error}") from error
+        _reshape(mesh, (vertices * mesh.scale * [size, length / LENGTH, size], faces))
+    spec.meshdir = ""
+
+
+@functools.lru_cache(maxsize=32)
+def _shape(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return vertices, faces, and places in a texture as one row, of a mesh, as MuJoCo reads them from a file."""
+    spec = mujoco.MjSpec()
+    spec.add_mesh(name="mesh", file=str(path.resolve()), inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="mesh")
+    model, turned = spec.compile(), np.zeros(9)
+    mujoco.mju_quat2Mat(turned, model.mesh_quat[0])  # MuJoCo keeps it along its principal axes
+    vertices = model.mesh_vert @ turned.reshape(3, 3).T + model.mesh_pos[0]
+    return vertices, model.mesh_face.copy(), model.mesh_texcoord.astype(float).ravel()
 
 
 def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:
@@ -210,7 +198,7 @@ def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None
 
 
 def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
-    """Move and scale a geom of the template to fit a can that is `size` times as wide and has a `length` [m]."""
+    """Move and scale a geom of the looks to fit a can that is `size` times as wide and has a `length` [m]."""
     if not math.isnan(geom.fromto[0]):
         geom.fromto = _stretched(np.reshape(geom.fromto, (2, 3)), size, length).ravel()
         geom.size = np.array(geom.size) * size
@@ -222,7 +210,7 @@ def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
 
 
 def _stretched(points: np.ndarray, size: float, length: float) -> np.ndarray:
-    """Return where points of the template, shape (..., 3), belong on a can `size` times as wide and `length` [m] long.
+    """Return where points of the looks, shape (..., 3), belong on a can `size` times as wide and `length` [m] long.
 
     Across the axis they scale with the radius. Along the axis their distance from the nearer end of the can does, but
     so that what is inside stays in its half.
@@ -235,41 +223,11 @@ def _stretched(points: np.ndarray, size: float, length: float) -> np.ndarray:
     return points
 
 
-def _fit_mesh(element: mujoco.MjsMesh, place: pathlib.Path, size: float, length: float) -> None:
-    """Stretch a mesh of the template, so that no file is needed; one that is not as mjbeer's keeps its proportions."""
-    path = place / element.file
-    if path.suffix == ".obj" and path.is_file() and (shape := _triangles(path, path.stat().st_mtime_ns)):
-        vertices, places, faces = shape
-        element.usertexcoord = places
-        _reshape(element, (_stretched(vertices * element.scale, size, length), faces))
-    else:
-        element.scale = np.array(element.scale) * size  # if the file is missing, MuJoCo says so
-
-
-@functools.lru_cache(maxsize=32)
-def _triangles(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Return vertices, their places in a texture as one row, and faces of a file; None for one unlike mjbeer's.
-
-    mjbeer's files have triangles, and as many places in a texture as vertices, or none.
-    """
-    rows = [line.split() for line in path.read_text().splitlines()]
-    vertices, places, faces = ([row[1:] for row in rows if row[:1] == [kind]] for kind in ("v", "vt", "f"))
-    corners = [each.split("/") for face in faces for each in face]
-    alike = len(places) in (0, len(vertices)) and all(len(set(each)) == 1 for each in corners)
-    if not alike or any(len(face) != 3 for face in faces):
-        return None
-    indices = np.array([int(first) - 1 for first, *_ in corners]).reshape(-1, 3)
-    return np.array(vertices, float), np.array(places, float).ravel(), indices
-
-
 def _reshape(element: mujoco.MjsMesh, shape: Mesh) -> None:
-    """Replace the file of a template's mesh by a shape."""
+    """Replace the file of a mesh by a shape."""
     vertices, faces = shape
     element.scale, element.file, element.content_type = [1, 1, 1], "", ""
     element.uservert, element.userface = vertices.ravel(), faces.ravel()
-    corners = vertices[faces]
-    if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6 < _LEAST_VOLUME:
-        element.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL
 
 
 def _hang(spec: mujoco.MjSpec, scene: Scene) -> None:

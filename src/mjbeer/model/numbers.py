@@ -1,25 +1,24 @@
-"""A scene in a setting as MuJoCo's numbers: which joints and elements a model has, and what is written into them.
+"""A scene in a setting as MuJoCo's numbers: which mechanics file a model is read from, and what is written into it.
 
-Models of one `kind` have the same elements and differ in numbers alone. The numbers go into a specification, or into a
-model that is compiled already, by the same function `write`.
+Models of one `kind` have the same elements and differ in numbers alone. `Numbers.parameters` has these numbers by
+element and attribute of MJCF, as `mjcf/README.md` lists them.
 """
 
 import math
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, TypeAlias
-
-import mujoco
+from typing import NamedTuple, TypeAlias
 
 from mjbeer.exceptions import UnsupportedError
+from mjbeer.model import mechanics
 from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.theory.scene import Scene
 
 Kind: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
-Made: TypeAlias = mujoco.MjSpec | mujoco.MjModel
-"""What numbers are written into."""
+Parameter: TypeAlias = tuple[str, str]
+"""An element of a mechanics file, by its tag and its name, and an attribute."""
 
 _SMALLEST = 1e-9
 """Smallest mass [kg] and inertia [kg m^2] that is not scaled: MuJoCo's smallest value (mjMINVAL, 1e-15), a million
@@ -36,14 +35,7 @@ _FORCES_SEEN = 2.0**60
 """Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
 [N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
 ARM = 1.0
-"""Length r of the arms of the chord [m]; any length gives the same inertia."""
-IMPEDANCE = (0.9999, 0.9999)
-"""dmin and dmax of solimp, the share of its reference acceleration that a constraint reaches: MuJoCo's mjMAXIMP."""
-WIDTH = (0.001, 0.5, 2)
-"""The other numbers of solimp, MuJoCo's defaults: they have no effect where dmin = dmax."""
-FRICTION_HARDNESS = 100.0
-"""impratio. More gains little, and from 1e6 on the solver stops converging (errors measured on frozen: 3e-7 rad at 100,
-2e-7 rad at 1e4, 5e-3 rad at 1e6)."""
+"""Length r of the arms of the chord [m], as in the file; any length gives the same inertia."""
 _TOLERANCE = 1e-14
 """The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
 load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
@@ -74,8 +66,6 @@ class Numbers:
     tilted: bool
     """Whether gravity is tilted instead of the incline."""
     unit: float
-    joints: tuple[str, ...]
-    """In the order of qpos."""
     bodies: Mapping[str, Inertial]
     """The bodies that have mass, by name."""
     armature: float = 0.0
@@ -95,9 +85,9 @@ class Numbers:
           UnsupportedError: if MuJoCo cannot move one of the bodies.
         """
         if setting.rolling != "reduced":
-            joints, bodies, forces = _constrained(scene, setting.rolling)
+            bodies, forces = _constrained(scene)
         else:
-            joints, bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
+            bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
         unit = mass_unit(scene)
         if setting.rolling == "reduced" and setting.integrator == "discrete" and scene.damping_law and not visuals:
             unit *= _FORCES_SEEN
@@ -107,16 +97,68 @@ class Numbers:
             timestep=timestep or setting.timestep,
             tilted=not visuals,
             unit=unit,
-            joints=joints,
             bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in bodies},
             **{name: unit * force for name, force in forces.items()},
         )
+
+    @property
+    def file(self) -> str:
+        """Return the name of the mechanics file, without its folder and ending."""
+        return f"{self.scene.attachment}_{self.setting.rolling}"
 
     @cached_property
     def kind(self) -> Kind:
         """Return what decides which elements and flags the model has."""
         forces = self.force != 0, self.chord > 0, bool(self.scene.damping_law), self.scene.dissipates
-        return self.setting.rolling, *forces, *self.joints
+        return mechanics.folder(self.setting.mjcf), self.file, *forces
+
+    @cached_property
+    def parameters(self) -> dict[Parameter, tuple[float, ...] | str]:
+        """Return what is written into the mechanics file, by element and attribute."""
+        scene, setting, radius = self.scene, self.setting, self.scene.can.radius
+        alpha, g, contact = scene.incline, scene.gravity, setting.rolling == "contact"
+        # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen,
+        # or in contact, must lie on the incline.
+        height = radius if contact or not self.tilted else 0.0
+        found: dict[Parameter, tuple[float, ...] | str] = {
+            ("option", "timestep"): (self.timestep,),
+            # mjbeer's own integrators step by themselves
+            ("option", "integrator"): "RK4" if setting.integrator in OWN else setting.integrator,
+            ("option", "gravity"): (g * math.sin(alpha), 0, -g * math.cos(alpha)) if self.tilted else (0, 0, -g),
+            ("body incline", "euler"): (0, 0 if self.tilted else math.degrees(alpha), 0),
+            ("body can", "pos"): (0, 0, height),
+        }
+        for name, body in self.bodies.items():
+            found[f"inertial {name}", "mass"] = (body.mass,)
+            found[f"inertial {name}", "pos"] = 0, 0, -body.offset
+            found[f"inertial {name}", "diaginertia"] = (body.inertia,) * 3
+        if scene.attachment == "sliding":
+            found["joint slide", "damping"] = 0, self.unit * scene.drag, 0
+            damper = "fixed damper" if setting.rolling == "reduced" else "joint swing"
+            found[damper, "damping"] = tuple(self.unit * each for each in scene.damping_law.coefficients)
+        if setting.rolling == "reduced":
+            found["general weight", "biasprm"] = (self.force,)
+            if scene.attachment == "sliding":
+                found["joint slide", "armature"] = (self.armature,)
+                found["fixed damper/slide", "coef"] = (-1 / radius,)
+            else:
+                found["spatial chord", "armature"] = (self.chord,)
+                found["site chord_top", "pos"] = 0, 0, height + ARM
+                found["fixed u/phi", "coef"] = (radius,)
+            return found
+        found["fixed slip/roll", "coef"] = (-radius,)
+        rolling = "pair rolling" if contact else "joint rolling"
+        found[rolling, "solref"] = stiffest(setting.integrator, self.timestep, contact), 1
+        if contact:
+            found[rolling, "friction"] = setting.friction, setting.friction, 0.005, 1e-4, 1e-4
+            found["geom can", "size"] = radius, scene.can.length / 2
+            # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia.
+            light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
+            share = min(1.0, max(light, _LIGHTEST))
+            found["option", "tolerance"] = (_TOLERANCE * share * max(g, _WEIGHTLESS) ** 2,)
+        else:
+            found[rolling, "polycoef"] = 0, radius, 0, 0, 0
+        return found
 
 
 def mass_unit(scene: Scene) -> float:
@@ -150,8 +192,8 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     return timestep if contact else timestep / 2
 
 
-_Parts: TypeAlias = tuple[tuple[str, ...], list[tuple[str, Inertial]], dict[str, float]]
-"""Joints, bodies, and armature, force and chord."""
+_Parts: TypeAlias = tuple[list[tuple[str, Inertial]], dict[str, float]]
+"""Bodies, and armature, force and chord."""
 
 
 def _sliding(scene: Scene) -> _Parts:
@@ -168,7 +210,7 @@ def _sliding(scene: Scene) -> _Parts:
         "armature": left + can.inertia / can.radius**2,
         "force": left * scene.gravity * math.sin(scene.incline),
     }
-    return ("slide", "phi"), [("can", _load_with(scene, moved))], forces
+    return [("can", _load_with(scene, moved))], forces
 
 
 def _frozen(scene: Scene) -> _Parts:
@@ -185,12 +227,12 @@ def _frozen(scene: Scene) -> _Parts:
     if mass * offset**2 > oscillator.base / 2:
         mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
     body = Inertial(mass, offset, oscillator.base - mass * offset**2)
-    return ("phi",), [("can", body)], {"force": oscillator.slope, "chord": oscillator.chord / ARM**2}
+    return [("can", body)], {"force": oscillator.slope, "chord": oscillator.chord / ARM**2}
 
 
-def _constrained(scene: Scene, rolling: str) -> _Parts:
+def _constrained(scene: Scene) -> _Parts:
     """Return can and load as they are, which a constraint makes roll."""
-    can, joints = scene.can, ("slide", "lift", "roll") if rolling == "contact" else ("slide", "roll")
+    can = scene.can
     if scene.attachment == "frozen":
         inertia = _frozen_inertia(scene)
         if inertia == 0:
@@ -198,7 +240,7 @@ def _constrained(scene: Scene, rolling: str) -> _Parts:
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
                 'use rolling="reduced", or give the can mass'
             )
-        return joints, [("can", Inertial(scene.mass, scene.centre_of_mass, inertia))], {}
+        return [("can", Inertial(scene.mass, scene.centre_of_mass, inertia))], {}
     for lacking, value, remedy in (
         ("a massless can with", can.mass, "mass, as can=Can.sheet_metal() or, on the command line, --can metal"),
         ("a can without inertia around", can.inertia, "inertia"),
@@ -209,8 +251,7 @@ def _constrained(scene: Scene, rolling: str) -> _Parts:
                 f"inertia; give the can {remedy}"
             )
     moved = _moved_to_point(scene)
-    bodies = [("can", Inertial(can.mass - moved, 0.0, can.inertia)), ("load", _load_with(scene, moved))]
-    return (*joints, "swing"), bodies, {}
+    return [("can", Inertial(can.mass - moved, 0.0, can.inertia)), ("load", _load_with(scene, moved))], {}
 
 
 def _moved_to_point(scene: Scene) -> float:
@@ -233,80 +274,3 @@ def _frozen_inertia(scene: Scene) -> float:
     """Return the moment of inertia of can and frozen load about their common centre of mass [kg m^2]."""
     can, load = scene.can, scene.load
     return load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2
-
-
-def write(numbers: Numbers, made: Made) -> None:
-    """Write all numbers into a specification that has the elements of their kind, or a model compiled from it."""
-    scene, setting, compiled = numbers.scene, numbers.setting, isinstance(made, mujoco.MjModel)
-    option = made.opt if compiled else made.option
-    integrator = "RK4" if setting.integrator in OWN else setting.integrator  # mjbeer's own step by themselves
-    option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
-    option.timestep = numbers.timestep
-    tilt = scene.incline if numbers.tilted else 0.0
-    option.gravity = [scene.gravity * math.sin(tilt), 0, -scene.gravity * math.cos(tilt)]
-    for name, body in numbers.bodies.items():
-        part = made.body(name)
-        part.mass, part.ipos, part.inertia = body.mass, [0, 0, -body.offset], [body.inertia] * 3
-    if "slide" in numbers.joints:
-        made.joint("slide").armature = numbers.armature
-    if numbers.force != 0:
-        made.actuator("weight").biasprm[0] = numbers.force
-    if numbers.chord > 0 and compiled:
-        made.tendon_armature[made.tendon("chord").id] = numbers.chord
-    elif numbers.chord > 0:
-        made.tendon("chord").armature = numbers.chord
-    if scene.dissipates:
-        _write_damping(numbers, made)
-    if setting.rolling == "equality":
-        rolling, radius = made.equality("rolling"), scene.can.radius
-        rolling.data[:5] = [0, radius, 0, 0, 0]
-        _write_softness(rolling, numbers)
-    elif setting.rolling == "contact":
-        _write_contact(made, option, numbers)
-
-
-def _write_contact(made: Made, option: Any, numbers: Numbers) -> None:
-    scene, setting = numbers.scene, numbers.setting
-    radius, half = scene.can.radius, scene.can.length / 2
-    made.body("can").pos = [0, 0, radius]
-    made.geom("can").size = [radius, half, 0]
-    rolling = made.pair("rolling")
-    rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
-    _write_softness(rolling, numbers)
-    option.impratio = FRICTION_HARDNESS
-    # What the weight of the load gains, over what that of all masses gains: each is a force squared over an inertia.
-    light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
-    option.tolerance = _TOLERANCE * min(1.0, max(light, _LIGHTEST)) * max(scene.gravity, _WEIGHTLESS) ** 2
-    if isinstance(made, mujoco.MjModel):  # what the compiler derives from the size
-        made.geom("can").rbound = math.sqrt(radius**2 + half**2)
-        made.geom_aabb[made.geom("can").id] = [0, 0, 0, radius, radius, half]
-
-
-def _write_softness(rolling: Any, numbers: Numbers) -> None:
-    """Write the softness of the row of a joint equality, or of a contact's rows."""
-    rolling.solimp = [*IMPEDANCE, *WIDTH]
-    contact = numbers.setting.rolling == "contact"
-    rolling.solref = stiffest(numbers.setting.integrator, numbers.timestep, contact), 1
-
-
-def _write_damping(numbers: Numbers, made: Made) -> None:
-    """Write MuJoCo's polynomials of a rate v, d1 v + d2 v |v| + d3 v^3; a drag of 0 may follow another one."""
-    scene, compiled = numbers.scene, isinstance(made, mujoco.MjModel)
-    damped = [("dof", made.joint("slide"), (0.0, scene.drag, 0.0))]
-    if scene.damping_law:
-        load = ("dof", made.joint("swing")) if "swing" in numbers.joints else ("tendon", made.tendon("damper"))
-        damped.append((*load, scene.damping_law.coefficients))
-    for kind, element, coefficients in damped:
-        first, *others = (numbers.unit * each for each in coefficients)
-        if compiled:  # each joint has one degree of freedom
-            getattr(made, f"{kind}_damping")[element.id], getattr(made, f"{kind}_dampingpoly")[element.id] = (
-                first,
-                others,
-            )
-        else:
-            element.damping = [first, *others]
-    if scene.damping_law and "swing" not in numbers.joints:  # the tendon's length is phi - u/a
-        if compiled:
-            made.wrap_prm[made.tendon_adr[made.tendon("damper").id] + 1] = -1 / scene.can.radius
-        else:
-            made.tendon("damper").wrap_joint("slide", -1 / scene.can.radius)

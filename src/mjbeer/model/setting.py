@@ -1,6 +1,7 @@
 """Settings: how a can is made to roll, and how it is stepped."""
 
 import math
+import os
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -45,6 +46,8 @@ class Setting:
     """Largest error of phi and u/a [rad], relative beyond 1 rad; None for a fixed timestep."""
     friction: float = FRICTION
     """Friction coefficient of a contact."""
+    mjcf: str | os.PathLike[str] | None = None
+    """A folder of MJCF to be read instead of mjbeer's; None for that of the environment's MJBEER_MJCF, if any."""
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)

@@ -45,9 +45,9 @@ def places(model: mujoco.MjModel) -> dict[str, int]:
 
 
 def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
-    """Return the positions and the rates of joints at a start, shape (2, joints)."""
+    """Return the positions and the rates of joints at a start, shape (2, joints); one that is not a scene's is at 0."""
     values = _values(begin(scene, phi0, phi_dot0))
-    return np.array([values[name] for name in joints]).T
+    return np.array([values.get(name, (0.0, 0.0)) for name in joints]).T
 
 
 def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:

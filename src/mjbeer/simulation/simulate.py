@@ -1,6 +1,7 @@
 """The function `simulate`, which checks its arguments and runs MuJoCo."""
 
 import math
+import os
 import warnings
 
 import numpy as np
@@ -32,6 +33,7 @@ def simulate(
     tolerance: float | None = None,
     times: ArrayLike | None = None,
     friction: float = FRICTION,
+    mjcf: str | os.PathLike[str] | None = None,
 ) -> Run:
     """Return the motion of a scene, stepped by MuJoCo in compiled code.
 
@@ -47,6 +49,7 @@ def simulate(
         then chosen. A "contact" is refused, as its softness is an error of the model.
       times: increasing times of the samples [s], for MuJoCo's integrators multiples of the timestep.
       friction: coefficient of friction of a contact.
+      mjcf: a folder of MJCF that is read instead of mjbeer's, as in `build`.
 
     A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
     `UntrustedWarning`, one in which a liquid is no lump any more a `LiquidWarning`, and a start beyond a whole turn an
@@ -55,6 +58,7 @@ def simulate(
     Raises:
       ParameterError: if a parameter is not allowed.
       UnsupportedError: if MuJoCo cannot have such a model.
+      TemplateError: if the MJCF is missing, lacks an element, or moves otherwise than theory says.
       DivergenceError: if the motion stops being finite.
       ToleranceError: if the tolerance is not reached.
     """
@@ -62,7 +66,7 @@ def simulate(
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0)
-    setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
+    setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, mjcf=mjcf)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:
