@@ -53,7 +53,7 @@ renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.carry docs/figures/carry
 
 templates: $(PACKAGE)
-	$(BIN)/python -m mjbeer.model.templates mjcf
+	$(BIN)/python tools/templates.py mjcf
 
 tables: $(TOOLS)
 	$(BIN)/python -m tests.support.documents

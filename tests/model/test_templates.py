@@ -13,11 +13,12 @@ import pytest
 
 from mjbeer import Scene, build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
 from mjbeer.exceptions import TemplateError, UntrustedWarning
-from mjbeer.model import mechanics, state, templates
+from mjbeer.model import mechanics, state
 from mjbeer.model.check import of_file
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import ROLLINGS, Rolling, Setting
 from tests.support.scenes import METAL, SCENES
+from tools import templates
 
 OWN = mechanics.folder()
 MECHANICS: dict[str, tuple[Scene, Rolling]] = {
@@ -108,7 +109,7 @@ def test_python_s_default_is_the_file(name: str) -> None:
     """Written with the paper's numbers, a file stays as it is; so its model is the one that `build` makes."""
     (scene, rolling), path = MECHANICS[name], OWN / "mechanics" / f"{name}.xml"
     values = Numbers.of(scene, Setting(rolling), visuals=True).parameters
-    assert mechanics.differences(mechanics.read(path), values, path) == []
+    assert mechanics.differences(mechanics.read(path), values) == []
     model, data = load(f"mechanics/{name}"), []
     for each in (model, build(scene, rolling)):
         data.append(mujoco.MjData(each))

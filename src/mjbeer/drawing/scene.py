@@ -5,6 +5,7 @@ too small or too large for the graphics, which compute in single precision.
 """
 
 import dataclasses
+import functools
 import math
 from collections.abc import Sequence
 from typing import TypeAlias
@@ -42,8 +43,17 @@ _SQUARE = 0.1
 """Distance of the lines on the wall [m]: it repeats its texture, whose edge is a line, with x = 0 in its middle."""
 _PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003
 """Colour of lines across the board, and half their width [m]."""
+_IDENTITY = ("name", "classname", "childclass", "info", "userdata", "plugin")
+"""Attributes that identify an element."""
 _NEAR = np.array([0.0, -1.0, 0.0])
 """Unit vector towards the reader."""
+
+
+@functools.cache
+def _attributes(kind: type) -> tuple[str, ...]:
+    """Return the names of the attributes that can be set in a kind of element, except those that identify it."""
+    settable = (each for each in dir(kind) if getattr(getattr(kind, each), "fset", None) is not None)
+    return tuple(each for each in settable if each not in _IDENTITY)
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
@@ -94,7 +104,7 @@ class Display:
             shell = spec.body("can").add_body()  # it comes after the load: what that hides is quickly drawn
             for geom in [each for each in spec.body("can").geoms if each.name not in looks.OF_THE_LOAD]:
                 moved = shell.add_geom()
-                for attribute in looks.attributes(type(geom)):
+                for attribute in _attributes(type(geom)):
                     setattr(moved, attribute, getattr(geom, attribute))
                 spec.delete(geom)
             for geom in spec.geoms:

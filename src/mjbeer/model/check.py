@@ -73,16 +73,18 @@ def of_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> s
     path, setting = folder / "mechanics" / f"{attachment}_{rolling}.xml", Setting(rolling)
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
     paper = Scene(metal, Load.segment(), attachment=attachment)
-    for scene, given in ((paper, False), (_PROBES[attachment], True)):
+    for scene, given in ((_PROBES[attachment], True), (paper, False)):
         root, values = mechanics.read(path), Numbers.of(scene, setting, visuals=True).parameters
         if given:
             mechanics.write(root, values, path)
-        fault = of_model(mechanics.to_spec(root, path).compile(), scene, setting)
-        edited = [] if given else mechanics.differences(root, values, path)
-        if fault or edited:
-            what = f"{path} {fault or 'has other numbers than the paper'}"
-            told = f"; mjbeer writes a scene's own numbers into {', '.join(edited)}" if edited else ""
-            return f"{what}{told}"
+        try:
+            model = mechanics.to_spec(root, path).compile()
+        except ValueError as error:
+            raise TemplateError(f"{path} is refused by MuJoCo: {'; '.join(str(error).splitlines())}") from error
+        edited = mechanics.differences(root, values)
+        told = f"; mjbeer writes a scene's own numbers into {', '.join(edited)}" if edited else ""
+        if (fault := of_model(model, scene, setting)) or edited:
+            return f"{path} {fault or 'has other numbers than the paper'}{told}"
     return None
 
 

@@ -32,8 +32,6 @@ _UPRIGHT = (("geom", "beer"), ("frame", "upright"))
 """The elements that mjbeer addresses by name: in all looks, in those of a can that rolls, and of one that stands."""
 _TOP = 0.1
 """Thickness of the drawn surface of a standing can, in radii."""
-_IDENTITY = ("name", "classname", "childclass", "info", "userdata", "plugin")
-"""Attributes that identify an element."""
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
 OF_THE_LOAD = ("load", "foam")
@@ -52,8 +50,6 @@ _HALF_TURNS = (-20, 980)
 """Where the board of the looks begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
 _SPARE = 20
 """Half turns of board beyond either end of a motion: more than a camera at the can sees."""
-_ALONG_THE_AXES = (mujoco.mjtGeom.mjGEOM_BOX, mujoco.mjtGeom.mjGEOM_PLANE)
-"""Types of geoms whose sides are parallel to the axes: each side is stretched by itself."""
 _DRAWN = 2
 """MuJoCo's group of the geoms that are only drawn."""
 
@@ -143,24 +139,19 @@ def column(standing: Standing) -> dict[str, tuple[float, float]]:
     return {"beer": (0.0, height - thickness), "beer_top": (height - 2 * thickness - pivot, height - pivot)}
 
 
-@functools.cache
-def attributes(kind: type) -> tuple[str, ...]:
-    """Return the names of the attributes that can be set in a kind of element, except those that identify it."""
-    settable = (each for each in dir(kind) if getattr(getattr(kind, each), "fset", None) is not None)
-    return tuple(each for each in settable if each not in _IDENTITY)
-
-
 def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequence[tuple[str, str]]) -> None:
     """Fit what is drawn to the sizes of a can; it must have what is needed, by kind and name."""
     for kind, each in (*_NEEDED, *needed):
         if getattr(spec, kind)(each) is None:
             raise TemplateError(f"{folder / 'looks'} has no {kind} named {each!r}, which mjbeer uses; restore it")
-    size, length = can.radius / RADIUS, can.length
+    size = can.radius / RADIUS
+    stretch = np.array([size, can.length / LENGTH, size])
     for geom in spec.geoms:
         if geom.group == _DRAWN:
-            _stretch(geom, size, length)
-    for camera in spec.cameras:
-        camera.pos = _stretched(camera.pos, size, length)
+            geom.pos, geom.fromto = geom.pos * stretch, geom.fromto * np.tile(stretch, 2)
+            geom.size = geom.size * (stretch if geom.type == mujoco.mjtGeom.mjGEOM_BOX else size)
+    for camera in spec.cameras:  # as many radii from the can's near end
+        camera.pos = size * camera.pos - [0, (can.length - size * LENGTH) / 2, 0]
     grid = spec.material("grid")
     grid.texrepeat = np.array(grid.texrepeat) / size
     spec.stat.extent, spec.stat.center = spec.stat.extent * size, np.array(spec.stat.center) * size
@@ -170,7 +161,7 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequ
             vertices, faces, mesh.usertexcoord = _shape(path, path.stat().st_mtime_ns)
         except (OSError, ValueError) as error:
             raise TemplateError(f"{path} is no mesh that MuJoCo can read: {error}") from error
-        _reshape(mesh, (vertices * mesh.scale * [size, length / LENGTH, size], faces))
+        _reshape(mesh, (vertices * mesh.scale * stretch, faces))
     spec.meshdir = ""
 
 
@@ -195,32 +186,6 @@ def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None
     board.pos = [(first + last) / 2 * turn, *board.pos[1:]]
     board.size = [(last - first) / 2 * turn, *board.size[1:]]
     planks.texrepeat = [last - first, planks.texrepeat[1]]
-
-
-def _stretch(geom: mujoco.MjsGeom, size: float, length: float) -> None:
-    """Move and scale a geom of the looks to fit a can that is `size` times as wide and has a `length` [m]."""
-    if not math.isnan(geom.fromto[0]):
-        geom.fromto = _stretched(np.reshape(geom.fromto, (2, 3)), size, length).ravel()
-        geom.size = np.array(geom.size) * size
-    elif geom.type in _ALONG_THE_AXES and geom.size[0] > 0:  # an infinite plane has size 0
-        low, high = (_stretched(np.array(geom.pos) + side * geom.size, size, length) for side in (-1, 1))
-        geom.pos, geom.size = (low + high) / 2, (high - low) / 2
-    else:
-        geom.pos, geom.size = _stretched(geom.pos, size, length), np.array(geom.size) * size
-
-
-def _stretched(points: np.ndarray, size: float, length: float) -> np.ndarray:
-    """Return where points of the looks, shape (..., 3), belong on a can `size` times as wide and `length` [m] long.
-
-    Across the axis they scale with the radius. Along the axis their distance from the nearer end of the can does, but
-    so that what is inside stays in its half.
-    """
-    points = size * np.array(points)
-    y = points[..., 1]
-    inside = size * LENGTH / 2 - np.abs(y)
-    inside = np.where(inside > 0, inside * min(1.0, length / (size * LENGTH)), inside)
-    points[..., 1] = np.where(y == 0, 0.0, np.copysign(length / 2 - inside, y))
-    return points
 
 
 def _reshape(element: mujoco.MjsMesh, shape: Mesh) -> None:

@@ -101,28 +101,17 @@ def write(root: ET.Element, values: Values, path: pathlib.Path, digits: int = 17
         element.set(attribute, value if isinstance(value, str) else " ".join(f"{each:.{digits}g}" for each in value))
 
 
-def differences(root: ET.Element, values: Values, path: pathlib.Path) -> list[str]:
-    """Return the parameters that have other values in a tree.
-
-    Raises:
-      TemplateError: if it lacks an element.
-    """
-    written = copy.deepcopy(root)
-    write(written, values, path)
+def differences(root: ET.Element, values: Values) -> list[str]:
+    """Return the parameters that have other numbers in a tree; all of them must be in it."""
     found = []
-    for name, attribute in values:
-        old, new = (_values(find(each, name), attribute) for each in (root, written))
-        if old.shape != new.shape or not np.allclose(old, new, rtol=_WRITTEN, atol=0):
+    for (name, attribute), value in values.items():
+        element = find(root, name)
+        text = "" if element is None else element.get(attribute, "")
+        numbers = np.array([] if isinstance(value, str) else text.split(), float)
+        wanted = np.array([] if isinstance(value, str) else value, float)
+        if numbers.shape != wanted.shape or not np.allclose(numbers, wanted, rtol=_WRITTEN, atol=0):
             found.append(f"{name} {attribute}")
     return found
-
-
-def _values(element: ET.Element | None, attribute: str) -> np.ndarray:
-    """Return an attribute's numbers, none where it is missing or a word: an integrator may be chosen in the file."""
-    try:
-        return np.array((element.get(attribute, "") if element is not None else "").split(), float)
-    except ValueError:
-        return np.empty(0)
 
 
 def remove(root: ET.Element, *elements: str) -> None:

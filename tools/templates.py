@@ -1,4 +1,4 @@
-"""Writes the files that a viewer opens, from mechanics and looks: `python -m mjbeer.model.templates mjcf`."""
+"""Writes the files that a viewer opens, from mechanics and looks: `python tools/templates.py mjcf`."""
 
 import pathlib
 import sys
