@@ -79,7 +79,7 @@ def build(
     """
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling, friction=friction, phi0=phi0, phi_dot0=phi_dot0)
-        return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep))
+        return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep, mjcf))
     refuse_held(scene, free)
     visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
@@ -109,7 +109,7 @@ def specify(
     """
     if isinstance(scene, Standing):
         refuse_others(rolling=rolling, friction=friction)
-        return free_cans.compose(scene, visuals, free, integrator, timestep)
+        return free_cans.compose(scene, visuals, free, integrator, timestep, mjcf)
     refuse_held(scene, free)
     visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)

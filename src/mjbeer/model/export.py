@@ -137,7 +137,7 @@ def present_standing(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
     Raises:
       TemplateError: if a file of MJCF is missing or lacks an element.
     """
-    spec = compose_free(can, True, free, made.integrator, made.timestep)
+    spec = compose_free(can, True, free, made.integrator, made.timestep, made.mjcf)
     spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
     if not free:
         return spec

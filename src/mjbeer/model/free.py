@@ -7,6 +7,8 @@ cylinder.
 """
 
 import math
+import os
+import pathlib
 import warnings
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
@@ -98,7 +100,7 @@ def attach(
     if friction is not None and not 1 <= len(coefficients) <= 3:
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.shown(friction)}")
     lying = isinstance(can, Scene)
-    child = _lying(can) if lying else _standing(require.instance("can", can, Standing), visuals=True, free=False)
+    child = _lying(can) if lying else _standing(require.instance("can", can, Standing))
     _settle(parent.option, child.option, lying)
     reasons = [*_spoilt(parent.option, can), *_bounded(parent.compiler, child)]
     touching = child.geom("can")
@@ -135,7 +137,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     if isinstance(can, Scene):
         spec, drawn = _lying(can, visuals=False), {}
     else:
-        spec, drawn = _standing(require.instance("can", can, Standing), False, False), looks.column(can)
+        spec, drawn = _standing(require.instance("can", can, Standing), visuals=False), looks.column(can)
     _require_parts(model, prefix, spec, can)
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
@@ -246,23 +248,32 @@ def _shares(can: Standing) -> np.ndarray:
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
 
 
-def compose(can: Standing, visuals: bool, free: bool, integrator: Integrator, timestep: float) -> mujoco.MjSpec:
+def compose(
+    can: Standing,
+    visuals: bool,
+    free: bool,
+    integrator: Integrator,
+    timestep: float,
+    mjcf: str | os.PathLike[str] | None = None,
+) -> mujoco.MjSpec:
     """Return the specification of a standing can: on the floor if it is `free`, or else held by the world.
 
     Raises:
       ParameterError: if the integrator is not one of MuJoCo's, or the timestep is not allowed.
       TemplateError: if a file of MJCF is missing or lacks an element.
     """
-    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free))
+    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free), mechanics.folder(mjcf))
     integrator = require.choice("integrator", integrator, INTEGRATORS)
     spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
     spec.option.timestep = require.within("timestep", timestep, *require.TIMESTEP, "s")
     return spec
 
 
-def _standing(can: Standing, visuals: bool, free: bool) -> mujoco.MjSpec:
+def _standing(
+    can: Standing, visuals: bool = True, free: bool = False, folder: pathlib.Path | None = None
+) -> mujoco.MjSpec:
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
-    folder = mechanics.folder()
+    folder = folder or mechanics.folder()
     path = folder / "mechanics" / "standing.xml"
     root = mechanics.read(path)
     mechanics.remove(root, "keyframe")

@@ -14,7 +14,8 @@ from typing import Any, TypeAlias
 import mujoco
 import numpy as np
 
-from mjbeer.exceptions import TemplateError
+from mjbeer import require
+from mjbeer.exceptions import ParameterError, TemplateError
 
 FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
 """Where the MJCF is in an installed wheel, and in a checkout."""
@@ -34,12 +35,14 @@ def folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's.
 
     Raises:
+      ParameterError: if one's own is no folder.
       TemplateError: if there is none.
     """
-    chosen = own or os.environ.get(VARIABLE)
-    if chosen:
-        return pathlib.Path(chosen)
-    return _installed(FOLDERS)
+    if own is None and (own := os.environ.get(VARIABLE)) is None:
+        return _installed(FOLDERS)
+    if not isinstance(own, (str, os.PathLike)) or not (path := pathlib.Path(own)).is_dir():
+        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.shown(own)}")
+    return path
 
 
 @functools.lru_cache(maxsize=4)

@@ -7,6 +7,7 @@ from typing import Any, Literal, get_args
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
+from mjbeer.model import mechanics
 from mjbeer.theory.scene import Scene
 
 Rolling = Literal["reduced", "equality", "contact"]
@@ -57,6 +58,7 @@ class Setting:
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             friction=require.within("friction", self.friction, _LEAST_FRICTION, math.inf),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
+            mjcf=None if self.mjcf is None else mechanics.folder(self.mjcf),
         )
         if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
             raise ParameterError(
