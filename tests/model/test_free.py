@@ -59,6 +59,15 @@ def test_a_standing_can_does_not_roll(name: str, value: object) -> None:
         build(standing(), **{name: value})
 
 
+def test_a_number_that_would_be_overwritten_is_named(copy: pathlib.Path) -> None:
+    path = copy / "mechanics" / "standing.xml"
+    path.write_text(path.read_text().replace('damping="4.0', 'damping="8.0'))
+    with pytest.raises(
+        TemplateError, match=r"standing\.xml has numbers of its own in joint slosh1 damping, "
+    ):
+        build(standing())
+
+
 def test_a_template_that_lacks_something_is_named(copy: pathlib.Path) -> None:
     path = copy / "looks" / "top.xml"
     path.write_text(path.read_text().replace('name="beer_top"', ""))

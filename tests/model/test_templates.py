@@ -210,6 +210,7 @@ EDITS = {
     "heavier wheel": (EQUALITY, 'mass="0.00856', 'mass="0.0856', PARAMETER),
     "heavier load": (FROZEN, 'mass="0.205', 'mass="0.493', PARAMETER),
     "wider can": (EQUALITY, 'polycoef="0 0.033', 'polycoef="0 0.066', PARAMETER),
+    "another integrator": (REDUCED, 'integrator="RK4"', 'integrator="Euler"', PARAMETER),
     "steeper incline": (REDUCED, 'euler="0 10 0"', 'euler="0 20 0"', PARAMETER),
 }  # fmt: skip
 

@@ -18,7 +18,7 @@ import warnings
 import mujoco
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
+from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
 from mjbeer.model import check, looks, mechanics, state
 from mjbeer.model import free as free_cans
 from mjbeer.model.engine import quiet
@@ -213,12 +213,14 @@ class Stepped:
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
+      TemplateError: if its file moves otherwise than theory says.
     """
 
     def __init__(self, made: Numbers) -> None:
         with _compiling:
             if (skeleton := _skeletons.get(made.kind)) is None:
-                check.require_file(mechanics.folder(made.setting.mjcf), made.scene.attachment, made.setting.rolling)
+                if fault := edited(made.scene, made.setting):
+                    raise TemplateError(fault)
                 skeleton = compile_spec(compose(made.scene, made.setting), made.setting.rigid)
                 _skeletons[made.kind] = skeleton
         self.model = copy.copy(skeleton)

@@ -51,16 +51,6 @@ _OF_SLIP = 8 * float(np.finfo(float).eps)
 """Rounding of a slip rate, over the rates whose difference it is: each is rounded a few times."""
 
 
-def require_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> None:
-    """Check that a mechanics file moves as theory says.
-
-    Raises:
-      TemplateError: if not; the message names the file and the largest difference of accelerations.
-    """
-    if fault := of_file(folder, attachment, rolling):
-        raise TemplateError(fault)
-
-
 @functools.lru_cache(maxsize=64)
 def of_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> str | None:
     """Return what is wrong with a mechanics file, None if nothing is: as it stands, and with other numbers in it.

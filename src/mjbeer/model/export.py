@@ -103,7 +103,8 @@ def export(
             _soften(spec, scene)
         spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
     spec.compiler.fusestatic = portable  # MuJoCo 3.3 refuses a body without mass that has a drawn geom
-    if portable:  # MJX 3.3 has no energy, and neither knows the flags that only save time
+    if portable:  # MJX 3.3 has no energy, and not all flags
+        spec.option.disableflags &= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
         spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         for energy in filter(None, map(spec.sensor, ("potential_energy", "kinetic_energy"))):
             spec.delete(energy)

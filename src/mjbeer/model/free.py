@@ -6,6 +6,7 @@ its axis, or frozen. Each is the body "can", with the full inertia of a body in 
 cylinder.
 """
 
+import functools
 import math
 import os
 import pathlib
@@ -22,8 +23,9 @@ from mjbeer.model import looks, mechanics, numbers
 from mjbeer.model.setting import INTEGRATORS, Integrator
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
+from mjbeer.theory.named import sliding
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.standing import MOST_MODES, Standing
+from mjbeer.theory.standing import MOST_MODES, Standing, standing
 
 _BOB = 1e-3, 0.1
 """Share of a pendulum's inertia that its bob has about itself, at least and over the damping ratio. MuJoCo moves
@@ -276,6 +278,7 @@ def _standing(
     folder = folder or mechanics.folder()
     path = folder / "mechanics" / "standing.xml"
     root = mechanics.read(path)
+    mechanics.require_same(root, _paper(lying=False), path)
     mechanics.remove(root, "keyframe")
     if not free:
         mechanics.remove(root, "freejoint", "geom[@name='surface']")
@@ -304,6 +307,7 @@ def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     folder = mechanics.folder()
     path = folder / "mechanics" / "lying.xml"
     root, values = mechanics.read(path), lying_values(scene)
+    mechanics.require_same(root, _paper(lying=True), path)
     mechanics.remove(root, "keyframe", "freejoint")
     if scene.attachment == "frozen":
         mechanics.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
@@ -379,6 +383,12 @@ def lying_values(scene: Scene) -> mechanics.Values:
     load = beer.inertia - wide + along, beer.inertia, wide + along
     found |= _inertial("can", shell.mass, 0.0, (across, shell.inertia, across))
     return found | _inertial("load", beer.mass, -beer.offset, load)
+
+
+@functools.cache
+def _paper(lying: bool) -> mechanics.Values:
+    """Return the parameters that a file has as it stands."""
+    return lying_values(sliding(can=Can.sheet_metal())) if lying else standing_values(standing())
 
 
 def _inertial(

@@ -105,16 +105,29 @@ def write(root: ET.Element, values: Values, path: pathlib.Path, digits: int = 17
 
 
 def differences(root: ET.Element, values: Values) -> list[str]:
-    """Return the parameters that have other numbers in a tree; all of them must be in it."""
+    """Return the parameters that have other values in a tree; all of them must be in it."""
     found = []
     for (name, attribute), value in values.items():
         element = find(root, name)
         text = "" if element is None else element.get(attribute, "")
-        numbers = np.array([] if isinstance(value, str) else text.split(), float)
-        wanted = np.array([] if isinstance(value, str) else value, float)
-        if numbers.shape != wanted.shape or not np.allclose(numbers, wanted, rtol=_WRITTEN, atol=0):
+        if isinstance(value, str):
+            same = text == value
+        else:
+            numbers = np.array(text.split(), float)
+            same = len(numbers) == len(value) and np.allclose(numbers, value, rtol=_WRITTEN, atol=0)
+        if not same:
             found.append(f"{name} {attribute}")
     return found
+
+
+def require_same(root: ET.Element, values: Values, path: pathlib.Path) -> None:
+    """Check that the file at a `path` has certain values.
+
+    Raises:
+      TemplateError: if not: mjbeer would overwrite what somebody has written.
+    """
+    if edited := differences(root, values):
+        raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
 
 
 def remove(root: ET.Element, *elements: str) -> None:
@@ -128,8 +141,7 @@ def remove(root: ET.Element, *elements: str) -> None:
 def leave_out(root: ET.Element) -> None:
     """Take from a tree what only is seen or measured, and disable the stages of a step that it does not need."""
     ET.SubElement(root, "compiler", fusestatic="true", discardvisual="true")
-    for flag in root.iter("flag"):
-        flag.attrib.pop("energy", None)
+    remove_energies(root)
     remove(root, "sensor")
     remove_idle(root)
     flags = ET.SubElement(ET.SubElement(root, "option"), "flag", sensor="disable")
