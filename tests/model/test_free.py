@@ -62,9 +62,7 @@ def test_a_standing_can_does_not_roll(name: str, value: object) -> None:
 def test_a_number_that_would_be_overwritten_is_named(copy: pathlib.Path) -> None:
     path = copy / "mechanics" / "standing.xml"
     path.write_text(path.read_text().replace('damping="4.0', 'damping="8.0'))
-    with pytest.raises(
-        TemplateError, match=r"standing\.xml has numbers of its own in joint slosh1 damping, "
-    ):
+    with pytest.raises(TemplateError, match=r"standing\.xml has numbers of its own in joint slosh1 damping, "):
         build(standing())
 
 

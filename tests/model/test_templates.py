@@ -138,6 +138,13 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
             assert {each.name for each in getattr(spec, kind)} <= names, (name, kind)
 
 
+def test_links_in_the_readme_hold_in_the_wheel_too() -> None:
+    """Where nothing is beside the folder."""
+    links = re.findall(r"\]\((?!http)([^)#]+)\)", (OWN / "README.md").read_text())
+    assert links
+    assert not [link for link in links if ".." in link or not (OWN / link).is_file()]
+
+
 def fits(name: str, files: str) -> bool:
     """Whether a mechanics file is among those that a row of the table names: all, or with all words of one part."""
     return files == "all" or any(all(word in name for word in part.split()) for part in files.split(", "))

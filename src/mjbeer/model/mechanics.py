@@ -40,9 +40,9 @@ def folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """
     if own is None and (own := os.environ.get(VARIABLE)) is None:
         return _installed(FOLDERS)
-    if not isinstance(own, (str, os.PathLike)) or not (path := pathlib.Path(own)).is_dir():
+    if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
         raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.shown(own)}")
-    return path
+    return pathlib.Path(own)
 
 
 @functools.lru_cache(maxsize=4)
