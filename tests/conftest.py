@@ -13,7 +13,7 @@ import shutil
 import pytest
 
 from mjbeer.drawing import opengl
-from mjbeer.model import mechanics
+from mjbeer.model import setting
 from tests.support import screen
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE"):
@@ -72,6 +72,6 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def copy(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Path:
     """A copy of the MJCF, which is read instead."""
     folder = tmp_path / "mjcf"
-    shutil.copytree(mechanics.folder(), folder)
-    monkeypatch.setenv(mechanics.VARIABLE, str(folder))
+    shutil.copytree(setting.mjcf_folder(), folder)
+    monkeypatch.setenv(setting.VARIABLE, str(folder))
     return folder

@@ -33,10 +33,10 @@ SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoo
 SIMULATE = """
 import json, pathlib, sys
 import mjbeer
-from mjbeer.model import mechanics
+from mjbeer.model.setting import mjcf_folder
 package = pathlib.Path(mjbeer.__file__).parent
 assert package == pathlib.Path(sys.argv[1]) / "mjbeer", package
-assert mechanics.folder() == package / "mjcf", mechanics.folder()
+assert mjcf_folder() == package / "mjcf", mjcf_folder()
 found = {}
 for name in ("sliding", "frozen", "pendulum", "hoop"):
     scene = getattr(mjbeer, name)()

@@ -15,10 +15,9 @@ from mjbeer import exact, frozen
 from mjbeer.drawing import viewer
 from mjbeer.drawing.viewer import Player, view
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import mechanics
 from mjbeer.model.build import compile_spec
 from mjbeer.model.export import present
-from mjbeer.model.setting import Setting
+from mjbeer.model.setting import Setting, mjcf_folder
 from tests.support import processes
 from tests.support.scenes import METAL
 from tests.support.screen import Screen, screen
@@ -55,7 +54,7 @@ def shown(tmp_path: pathlib.Path) -> Generator[Screen]:
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_a_template_shows_its_can_after_three_seconds(name: str, shown: Screen) -> None:
     """In MuJoCo's viewer as it comes, which runs the model at once."""
-    command = [sys.executable, "-m", "mujoco.viewer", f"--mjcf={mechanics.folder() / name}.xml"]
+    command = [sys.executable, "-m", "mujoco.viewer", f"--mjcf={mjcf_folder() / name}.xml"]
     with subprocess.Popen(command, env=shown.environment) as process:
         try:
             shown.wait(is_drawn)

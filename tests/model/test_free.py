@@ -14,7 +14,7 @@ from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
 from mjbeer.drawing.viewer import Player
 from mjbeer.exceptions import ParameterError, TemplateError
-from mjbeer.model import free, looks, mechanics
+from mjbeer.model import free, looks, setting
 from mjbeer.model.export import present_standing
 from mjbeer.model.setting import Setting
 from mjbeer.studies.validation import standing as measured
@@ -91,7 +91,7 @@ WRITTEN = 1e-11
 
 
 def test_the_template_of_a_standing_can_is_the_model() -> None:
-    template = mujoco.MjModel.from_xml_path(str(mechanics.folder() / "standing.xml"))
+    template = mujoco.MjModel.from_xml_path(str(setting.mjcf_folder() / "standing.xml"))
     made = present_standing(standing(), True, Setting()).compile()
     for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority", "geom_condim"):
         if name.startswith("geom"):  # the floor is made last
@@ -104,7 +104,7 @@ def test_the_template_of_a_standing_can_is_the_model() -> None:
 
 
 def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> None:
-    template = mujoco.MjModel.from_xml_path(str(mechanics.folder() / "lying.xml"))
+    template = mujoco.MjModel.from_xml_path(str(setting.mjcf_folder() / "lying.xml"))
     spec, scene = mujoco.MjSpec(), sliding(can=METAL)
     spec.option.timestep = 1e-3
     attach(spec, scene)

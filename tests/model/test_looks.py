@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
-from mjbeer.model import looks, mechanics
+from mjbeer.model import looks
 from mjbeer.model.build import compose
-from mjbeer.model.setting import ROLLINGS, Setting
+from mjbeer.model.setting import ROLLINGS, Setting, mjcf_folder
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.load import segment
 from tests.support.scenes import METAL
@@ -27,7 +27,7 @@ def shown(scene: Scene, rolling: str = "contact") -> tuple[mujoco.MjModel, mujoc
 
 
 def written(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    return posed(mujoco.MjModel.from_xml_path(str(mechanics.folder() / f"{name}.xml")))
+    return posed(mujoco.MjModel.from_xml_path(str(mjcf_folder() / f"{name}.xml")))
 
 
 def posed(model: mujoco.MjModel) -> tuple[mujoco.MjModel, mujoco.MjData]:

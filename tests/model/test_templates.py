@@ -13,14 +13,14 @@ import pytest
 
 from mjbeer import Scene, build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
 from mjbeer.exceptions import TemplateError, UntrustedWarning
-from mjbeer.model import mechanics, state
+from mjbeer.model import mechanics, setting, state
 from mjbeer.model.check import of_file
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import ROLLINGS, Rolling, Setting
 from tests.support.scenes import METAL, SCENES
 from tools import templates
 
-OWN = mechanics.folder()
+OWN = setting.mjcf_folder()
 MECHANICS: dict[str, tuple[Scene, Rolling]] = {
     "sliding_reduced": (sliding(), "reduced"),
     "sliding_equality": (sliding(can=METAL), "equality"),
@@ -154,7 +154,7 @@ def fits(name: str, files: str) -> bool:
 
 
 def test_no_mjcf_at_all(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(mechanics, "FOLDERS", (tmp_path / "wheel", tmp_path / "checkout"))
+    monkeypatch.setattr(setting, "FOLDERS", (tmp_path / "wheel", tmp_path / "checkout"))
     with pytest.raises(TemplateError, match=r"no MJCF: neither .*wheel nor .*checkout holds it; reinstall"):
         simulate(frozen(), 0.1, 1.0)
 
@@ -295,6 +295,6 @@ def test_a_folder_of_one_s_own_has_looks_of_its_own(copy: pathlib.Path, monkeypa
     edit(copy, *EDITS["colour"][:3])
     green = [0, 1, 0, 1]
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) == green
-    monkeypatch.delenv(mechanics.VARIABLE)
+    monkeypatch.delenv(setting.VARIABLE)
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) != green
     assert list(build(SCENES["sliding"], visuals=True, mjcf=copy).mat("beer").rgba) == green

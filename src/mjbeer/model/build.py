@@ -23,7 +23,7 @@ from mjbeer.model import check, looks, mechanics, state
 from mjbeer.model import free as free_cans
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
-from mjbeer.model.setting import FRICTION, Integrator, Rolling, Setting
+from mjbeer.model.setting import FRICTION, Integrator, Rolling, Setting, mjcf_folder
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
@@ -126,7 +126,7 @@ def _warn_of_edits(seen: mujoco.MjModel | None, scene: Scene, setting: Setting) 
 
 def edited(scene: Scene, setting: Setting, seen: mujoco.MjModel | None = None) -> str | None:
     """Return what is wrong with the mechanics file of a scene, or with a model of it with looks; None if nothing is."""
-    folder = mechanics.folder(setting.mjcf)
+    folder = mjcf_folder(setting.mjcf)
     if fault := check.of_file(folder, scene.attachment, setting.rolling):
         return fault
     if seen is not None and (fault := check.of_model(seen, scene, setting)):
@@ -164,7 +164,7 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     theory says is left whole.
     """
     made = Numbers.of(scene, setting, visuals)
-    folder = mechanics.folder(setting.mjcf)
+    folder = mjcf_folder(setting.mjcf)
     path = folder / "mechanics" / f"{made.file}.xml"
     root = mechanics.read(path)
     mechanics.write(root, made.parameters, path)

@@ -20,7 +20,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mechanics, numbers
-from mjbeer.model.setting import INTEGRATORS, Integrator
+from mjbeer.model.setting import INTEGRATORS, Integrator, mjcf_folder
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
 from mjbeer.theory.named import sliding
@@ -264,7 +264,7 @@ def compose(
       ParameterError: if the integrator is not one of MuJoCo's, or the timestep is not allowed.
       TemplateError: if a file of MJCF is missing or lacks an element.
     """
-    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free), mechanics.folder(mjcf))
+    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free), mjcf_folder(mjcf))
     integrator = require.choice("integrator", integrator, INTEGRATORS)
     spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
     spec.option.timestep = require.within("timestep", timestep, *require.TIMESTEP, "s")
@@ -275,7 +275,7 @@ def _standing(
     can: Standing, visuals: bool = True, free: bool = False, folder: pathlib.Path | None = None
 ) -> mujoco.MjSpec:
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
-    folder = folder or mechanics.folder()
+    folder = folder or mjcf_folder()
     path = folder / "mechanics" / "standing.xml"
     root = mechanics.read(path)
     mechanics.require_same(root, _paper(lying=False), path)
@@ -304,7 +304,7 @@ def _standing(
 
 def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a lying can, which has no free joint yet."""
-    folder = mechanics.folder()
+    folder = mjcf_folder()
     path = folder / "mechanics" / "lying.xml"
     root, values = mechanics.read(path), lying_values(scene)
     mechanics.require_same(root, _paper(lying=True), path)

@@ -5,7 +5,6 @@ A file is read once a process. All but its parameters is stepped as it stands.
 
 import copy
 import functools
-import os
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
@@ -14,13 +13,8 @@ from typing import Any, TypeAlias
 import mujoco
 import numpy as np
 
-from mjbeer import require
-from mjbeer.exceptions import ParameterError, TemplateError
+from mjbeer.exceptions import TemplateError
 
-FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
-"""Where the MJCF is in an installed wheel, and in a checkout."""
-VARIABLE = "MJBEER_MJCF"
-"""The environment variable that names another folder."""
 Values: TypeAlias = Mapping[tuple[str, str], tuple[float, ...] | str]
 """Numbers by element and attribute, as `Numbers.parameters`."""
 _WRITTEN = 1e-11
@@ -29,28 +23,6 @@ _STAGES = {"spring": ("stiffness", "springdamper"), "damper": ("damping", "sprin
 """Stages of a step, and the attributes that a model needs them for."""
 _FORCELESS = {"fixed": ("name",), "spatial": ("name", "rgba"), "general": ("name", "joint", "biastype")}
 """What a tendon or actuator may have besides numbers that are 0, if it exerts no force."""
-
-
-def folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's.
-
-    Raises:
-      ParameterError: if one's own is no folder.
-      TemplateError: if there is none.
-    """
-    if own is None and (own := os.environ.get(VARIABLE)) is None:
-        return _installed(FOLDERS)
-    if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
-        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.shown(own)}")
-    return pathlib.Path(own)
-
-
-@functools.lru_cache(maxsize=4)
-def _installed(candidates: tuple[pathlib.Path, ...]) -> pathlib.Path:
-    for candidate in candidates:
-        if (candidate / "mechanics").is_dir():
-            return candidate
-    raise TemplateError(f"no MJCF: neither {candidates[0]} nor {candidates[1]} holds it; reinstall mjbeer")
 
 
 def read(path: pathlib.Path) -> ET.Element:

@@ -11,8 +11,7 @@ from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 from mjbeer.exceptions import UnsupportedError
-from mjbeer.model import mechanics
-from mjbeer.model.setting import DOP853, OWN, Setting
+from mjbeer.model.setting import DOP853, OWN, Setting, mjcf_folder
 from mjbeer.theory.scene import Scene
 
 Kind: TypeAlias = tuple[Hashable, ...]
@@ -110,7 +109,7 @@ class Numbers:
     def kind(self) -> Kind:
         """Return what decides which elements and flags the model has."""
         forces = self.force != 0, self.chord > 0, bool(self.scene.damping_law), self.scene.dissipates
-        return mechanics.folder(self.setting.mjcf), self.file, *forces
+        return mjcf_folder(self.setting.mjcf), self.file, *forces
 
     @cached_property
     def parameters(self) -> dict[Parameter, tuple[float, ...] | str]:

@@ -1,13 +1,14 @@
 """Settings: how a can is made to roll, and how it is stepped."""
 
+import functools
 import math
 import os
+import pathlib
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError
-from mjbeer.model import mechanics
+from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.theory.scene import Scene
 
 Rolling = Literal["reduced", "equality", "contact"]
@@ -27,6 +28,11 @@ FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 _LEAST_FRICTION = 1e-5
 """Smallest friction coefficient in MuJoCo (mjMINMU), which raises a smaller one to this, and says nothing."""
+
+FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
+"""Where the MJCF is in an installed wheel, and in a checkout."""
+VARIABLE = "MJBEER_MJCF"
+"""The environment variable that names another folder."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +64,7 @@ class Setting:
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             friction=require.within("friction", self.friction, _LEAST_FRICTION, math.inf),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
-            mjcf=None if self.mjcf is None else mechanics.folder(self.mjcf),
+            mjcf=None if self.mjcf is None else mjcf_folder(self.mjcf),
         )
         if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
             raise ParameterError(
@@ -92,3 +98,25 @@ class Setting:
 def supported(scene: Scene, rolling: str) -> bool:
     """Return whether MuJoCo can model a scene with this way of rolling: it cannot move a massless body."""
     return rolling == "reduced" or scene.can.mass > 0 or scene.attachment == "frozen"
+
+
+def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
+    """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's.
+
+    Raises:
+      ParameterError: if one's own is no folder.
+      TemplateError: if there is none.
+    """
+    if own is None and (own := os.environ.get(VARIABLE)) is None:
+        return _installed(FOLDERS)
+    if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
+        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.shown(own)}")
+    return pathlib.Path(own)
+
+
+@functools.lru_cache(maxsize=4)
+def _installed(candidates: tuple[pathlib.Path, ...]) -> pathlib.Path:
+    for candidate in candidates:
+        if (candidate / "mechanics").is_dir():
+            return candidate
+    raise TemplateError(f"no MJCF: neither {candidates[0]} nor {candidates[1]} holds it; reinstall mjbeer")
