@@ -5,6 +5,7 @@ A file is read once a process. All but its parameters is stepped as it stands.
 
 import copy
 import functools
+import math
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Mapping
@@ -81,12 +82,12 @@ def differences(root: ET.Element, values: Values) -> list[str]:
     found = []
     for (name, attribute), value in values.items():
         element = find(root, name)
-        text = "" if element is None else element.get(attribute, "")
+        words = [] if element is None else element.get(attribute, "").split()
         if isinstance(value, str):
-            same = text == value
+            same = words == [value]
         else:
-            numbers = np.array(text.split(), float)
-            same = len(numbers) == len(value) and np.allclose(numbers, value, rtol=_WRITTEN, atol=0)
+            pairs = zip(words, value, strict=False)
+            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=_WRITTEN) for w, v in pairs)
         if not same:
             found.append(f"{name} {attribute}")
     return found
