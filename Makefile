@@ -18,7 +18,7 @@ help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
 	@echo "make test         installs the tools of the tests as well, then runs the tests (minutes)"
 	@echo "make quick        runs the tests that take no time"
-	@echo "make everything   runs the costly tests: real films, notebooks, a browser, windows, a wheel, a cluster (minutes)"
+	@echo "make everything   runs the costly tests: real films, a notebook, a cluster (minutes)"
 	@echo "make lint         runs ruff, the type checker, and import-linter, which is for those who change something"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
@@ -50,7 +50,7 @@ portability: $(TOOLS)
 
 renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.films renders
-	$(BIN)/python -m mjbeer.report.carry docs/figures/carry
+	$(BIN)/python docs/figures/carry.py
 
 templates: $(PACKAGE)
 	$(BIN)/python tools/templates.py mjcf

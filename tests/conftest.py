@@ -14,7 +14,6 @@ import pytest
 
 from mjbeer.drawing import opengl
 from mjbeer.model import setting
-from tests.support import screen
 
 for each in ("FORCE_COLOR", "CLICOLOR_FORCE", "COLUMNS", "PYTHONUNBUFFERED", "PYTHONDONTWRITEBYTECODE"):
     os.environ.pop(each, None)
@@ -40,10 +39,9 @@ def pytest_configure(config: pytest.Config) -> None:
     config.getini("filterwarnings").insert(0, "error")  # below the others, of which the last that fits decides
     if not hasattr(config, "workerinput"):  # and not once more in each worker
         from mjbeer.studies.benchmark.peers import absent
-        from tests.support import browser
 
         lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]
-        lacking += [reason for reason in (_no_opengl(), screen.problem(), browser.problem()) if reason]
+        lacking += [reason for reason in (_no_opengl(),) if reason]
         if lacking:
             raise pytest.UsageError("MJBEER_EVERYTHING is set, and not all is here:\n" + "\n".join(lacking))
 
@@ -55,17 +53,9 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Skip a test that draws where nothing can be drawn, one that opens windows where there is no screen, and one that
-    needs a browser where there is none."""
+    """Skip a test that draws where nothing can be drawn."""
     if item.get_closest_marker("draws") and _no_opengl():
         pytest.skip(f"no OpenGL; this brings it to Debian and Ubuntu: {opengl.INSTALL}")
-    if item.get_closest_marker("views") and (reason := screen.problem()):
-        pytest.skip(reason)
-    if item.get_closest_marker("browses"):
-        from tests.support import browser
-
-        if reason := browser.problem():
-            pytest.skip(reason)
 
 
 @pytest.fixture

@@ -1,9 +1,7 @@
-"""The folders are as `docs/architecture.md` says, and theory needs neither a simulator nor a compiler."""
+"""`import mjbeer` is light, theory needs neither a simulator nor a compiler, and the package runs as a module."""
 
-import ast
 import functools
 import pathlib
-import re
 import subprocess
 import sys
 from importlib.metadata import packages_distributions
@@ -15,8 +13,6 @@ import mjbeer
 pytestmark = pytest.mark.slow
 
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
-DOCUMENT = (pathlib.Path(__file__).parents[1] / "docs" / "architecture.md").read_text()
-FOLDERS = sorted(path.name for path in PACKAGE.iterdir() if path.is_dir() and any(path.glob("*.py")))
 THEORY = [
     ".".join(("mjbeer", *path.relative_to(PACKAGE).with_suffix("").parts))
     for folder in ("theory", "predictions")
@@ -63,64 +59,6 @@ def test_a_file_of_numbers_needs_no_plots(tmp_path: pathlib.Path) -> None:
 
 def test_the_integrators_of_mujoco_need_no_compiler() -> None:
     assert loaded("import mjbeer; mjbeer.simulate(mjbeer.sliding(), 1.0, 0.1).warnings").isdisjoint(COMPILER)
-
-
-@pytest.mark.costly
-def test_the_packages_that_theory_must_not_load_are_seen_where_they_are_loaded() -> None:
-    """Without this, a misspelt name or a blind test would pass those above."""
-    assert loaded("import mjbeer.simulation.tolerance, matplotlib, OpenGL") >= HEAVY
-
-
-def imported(folder: str) -> set[str]:
-    """The other folders and modules of mjbeer that the modules of a folder import anything from."""
-    names = set()
-    for path in (PACKAGE / folder).rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
-            if isinstance(node, ast.ImportFrom) and node.module == "mjbeer":
-                names |= {alias.name for alias in node.names}
-            elif isinstance(node, ast.ImportFrom) and (module := node.module or "").startswith("mjbeer."):
-                names.add(module.split(".")[1])
-    return names - {folder}
-
-
-def test_the_document_has_the_folders_and_what_they_import() -> None:
-    rows = re.findall(r"^\| `(\w+)/` \| .* \| (.*) \|$", DOCUMENT, re.MULTILINE)
-    assert sorted(folder for folder, _ in rows) == FOLDERS
-    for folder, named in rows:
-        documented = set(named.replace("nothing", "").replace(",", " ").split())
-        assert documented == imported(folder) - {"require", "exceptions"}, folder  # all may import these
-
-
-LAYERS = (
-    "exceptions, require, output, theory, predictions model, integrators, drawing simulation, paper, studies, "
-    "report, cli"
-)
-"""The folders and modules from below; what has no comma between it stands side by side."""
-LOADERS = {"import_module", "__import__", "find_spec", "resolve_name"}
-"""What imports a module by a text, which no linter follows."""
-
-
-def loaded_by_text(path: pathlib.Path) -> set[str]:
-    """The modules of mjbeer that a file names in a text, if it imports anything by a text."""
-    tree = ast.parse(path.read_text())
-    words = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    words |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    if not words & LOADERS:
-        return set()
-    texts = [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
-    return {text for text in texts if re.fullmatch(r"mjbeer(\.\w+)+", text)}
-
-
-def test_nothing_is_imported_upward_by_a_text() -> None:
-    """Only `mjbeer` itself, above all, loads by name what it promises."""
-    height = {name: level for level, names in enumerate(LAYERS.split(", ")) for name in names.split()}
-    assert loaded_by_text(PACKAGE / "__init__.py") >= {"mjbeer.drawing.views", "mjbeer.simulation.simulate"}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        if path.parent == PACKAGE and path.stem.startswith("__"):
-            continue
-        own = path.relative_to(PACKAGE).with_suffix("").parts[0]
-        for module in loaded_by_text(path):
-            assert height.get(module.split(".")[1], 0) <= height[own], f"{path} loads {module}"
 
 
 def test_the_names_of_the_package_are_the_public_ones() -> None:

@@ -83,7 +83,7 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
         ("Run()", RUN),
     ):
         yield from methods(name, type(instance), instance)
-    for more in (Setting, export, loop, video.frame):
+    for more in (Setting, export, loop):
         yield more.__name__, more
 
 

@@ -67,7 +67,7 @@ _LAZY = {
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep.run",
 }
-pictures[:] = [lambda: import_module("mjbeer.drawing.views")]
+pictures[:] = [lambda: import_module("mjbeer.drawing.notebook")]
 
 
 def __getattr__(name: str) -> object:

@@ -17,23 +17,16 @@ VIDEO = (*FROZEN, "--width", "320", "--height", "180")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
 
 
-@pytest.mark.parametrize(
-    ("words", "name"),
-    [
-        (("simulate", *FROZEN), "motion.csv"),
-        pytest.param(("render", *VIDEO), "film.mp4", marks=pytest.mark.draws),
-    ],
-)
-def test_a_full_disk_leaves_the_old_file(words: tuple[str, ...], name: str, tmp_path: pathlib.Path) -> None:
-    """Once before with room enough, for Numba and matplotlib write caches the first time."""
-    target = tmp_path / name
-    words = (*words, "--output", str(target))
+def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
+    """Once before with room enough, for Numba writes caches the first time."""
+    target = tmp_path / "motion.csv"
+    words = ("simulate", *FROZEN, "--output", str(target))
     assert main(words) == 0
     target.write_text("old")
     status, _, err = run_with_little_disk(words)
     assert (status, err) == (2, f"mjbeer: cannot write {target}: File too large\n")
     assert target.read_text() == "old"
-    assert os.listdir(tmp_path) == [name]
+    assert os.listdir(tmp_path) == ["motion.csv"]
 
 
 @pytest.mark.parametrize("words", [("simulate", *FROZEN), ("export", "frozen"), ("render", *VIDEO)])

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mjbeer import exact, frozen, hoop, sliding
-from mjbeer.drawing.camera import CAMERAS, Camera, Shot, View, circle, on_incline, scale
+from mjbeer.drawing.camera import CAMERAS, Camera, CameraPath, View, circle, on_incline, scale
 from mjbeer.drawing.scene import coordinates
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
@@ -63,9 +63,9 @@ MOTIONS = {
 }
 
 
-def shot(motion: Trajectory, camera: Camera) -> Shot:
+def shot(motion: Trajectory, camera: Camera) -> CameraPath:
     u, _, _, lift = coordinates(motion, TIMES).T
-    return Shot.fit(motion.scene, camera, TIMES, u, lift, PLANE, WIDE)
+    return CameraPath.fit(motion.scene, camera, TIMES, u, lift, PLANE, WIDE)
 
 
 @pytest.mark.parametrize("camera", CAMERAS)

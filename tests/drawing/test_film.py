@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, hoop, simulate, sliding
-from mjbeer.drawing import film, video
-from mjbeer.drawing.camera import CAMERAS, Camera, View, on_incline, scale
-from mjbeer.drawing.film import Stage
-from mjbeer.drawing.overlay import Look
+from mjbeer.drawing import film
+from mjbeer.drawing.camera import CAMERAS, Camera, CameraPath, View, on_incline, scale
+from mjbeer.drawing.overlay import Look, header_height
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.sheet import UNITS, Sheet
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.load import segment
 
@@ -28,20 +27,30 @@ def motion(incline: float = 0.2) -> Trajectory:
     return exact(frozen(incline), np.linspace(0, 0.5, 51), 1.0)
 
 
+def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
+    """Return the view of the film of a motion without charts and marks, below its title."""
+    plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
+    return CameraPath.fit(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels).view(0.0)
+
+
+def picture(run: Trajectory, time: float, width: int, height: int) -> np.ndarray:
+    (drawn,) = film.draw(run, Look.usual(run), 1.0, np.array([time]), width, height)
+    return drawn
+
+
 class Seen:
     """A picture of a scene at rest somewhere, and where things are in it."""
 
-    def __init__(self, pixels: np.ndarray, stage: Stage, pose: np.ndarray) -> None:
-        self.pixels, self.stage = pixels.astype(int), stage
-        scene = stage.trajectory.scene
-        self.axis = on_incline(scene, pose[0] * scale(scene), RADIUS)
+    def __init__(self, pixels: np.ndarray, view: View, top: int, axis: np.ndarray) -> None:
+        self.pixels, self.view, self.top, self.axis = pixels.astype(int), view, top, axis
 
     def at(self, x: float, z: float, tilt: float) -> np.ndarray:
         """Colour on the can's open end, at x and z in radii on axes that are turned by `tilt` [rad]."""
         turned = np.array([x * math.cos(tilt) + z * math.sin(tilt), z * math.cos(tilt) - x * math.sin(tilt)])
         place = self.axis + RADIUS * turned
-        column, row = self.stage.shot.view(0.0).pixel(np.array([place[0], self.stage.shot.plane, place[1]]))
-        return self.pixels[int(row) + self.stage.top, int(column)]
+        plane = self.view.eye[1] + self.view.distance
+        column, row = self.view.pixel(np.array([place[0], plane, place[1]]))
+        return self.pixels[int(row) + self.top, int(column)]
 
 
 def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Seen]:
@@ -62,10 +71,11 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
         lift=rest,
         lift_dot=rest,
     )
+    top = header_height(FIXED, SIZE[1] / UNITS)
+    view = still_view(still, (SIZE[0], SIZE[1] - top))
+    axes = on_incline(scene, u * scale(scene), RADIUS)
     drawn = film.draw(still, FIXED, 1.0, times, *SIZE)
-    stage = Stage.of(still, FIXED, 1.0, *SIZE)
-    poses = np.stack([u, phis, rolls], axis=1)
-    return [Seen(picture, stage, pose) for picture, pose in zip(drawn, poses, strict=True)]
+    return [Seen(each, view, top, axis) for each, axis in zip(drawn, axes, strict=True)]
 
 
 @pytest.mark.draws
@@ -113,22 +123,21 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
 def test_the_wall_fills_the_picture(camera: Camera, incline: float) -> None:
     """Behind it nothing is drawn, which would be black."""
     drawing = film.draw(motion(math.radians(incline)), Look("", (), (), camera), 1.0, np.array([0.5]), 300, 100)
-    picture = next(drawing)[25:, 40:-40]  # without title and gravity's arrow
+    seen = next(drawing)[25:, 40:-40]  # without title and gravity's arrow
     drawing.close()
-    assert not (picture.max(axis=2) < 8).any()
+    assert not (seen.max(axis=2) < 8).any()
 
 
 @pytest.mark.draws
 def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
     moved = motion()
-    stage = Stage.of(moved, PLAIN, 1.0, *SIZE)
-    assert stage.shot.still
-    scenery, pictures = Scenery(moved.scene, stage.display.model), []
+    display, view = Display.of([moved.scene]), still_view(moved, SIZE)
+    scenery, pictures = Scenery(moved.scene, display.model), []
     for still in (False, True):
-        sheet = Sheet(*stage.shot.pixels)
-        with closing(Painter(stage.display, scenery, *stage.shot.pixels, still)) as painter:
+        sheet = Sheet(*SIZE)
+        with closing(Painter(display, scenery, *SIZE, still)) as painter:
             for u in (0.0, 0.01):
-                painter.paint(sheet, stage.shot.view(0.0), np.array([[u, 0.5, 0.5, 0.002]]), 0)
+                painter.paint(sheet, view, np.array([[u, 0.5, 0.5, 0.002]]), 0)
         pictures.append(sheet.picture())
     assert np.array_equal(*pictures)
     assert np.ptp(pictures[0]) > 200
@@ -148,7 +157,7 @@ def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
     points = np.concatenate([display.outline(0, np.array([u, 0.0, 0.0, 0.0])).reshape(-1, 3) for u in (-0.2, 0.4)])
     above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0.01)
     scenery = Scenery(scene, model)
-    for view in (Stage.of(motion(scene.incline), PLAIN, 1.0, 400, 200).shot.view(0.2), above):
+    for view in (still_view(motion(scene.incline), (400, 200)), above):
         sheet = Sheet(*view.pixels)
         scenery.draw(sheet, view, 0)
         with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
@@ -174,7 +183,7 @@ def test_motion_between_samples_is_of_fourth_order() -> None:
 def test_one_sample_is_drawn() -> None:
     still = exact(frozen(), np.array([0.0]), 1.0)
     assert coordinates(still, np.array([0.0]))[0] == pytest.approx([RADIUS, 1.0, 1.0, 0.0])
-    assert video.frame(still, 0.0, 320, 180).shape == (180, 320, 3)
+    assert picture(still, 0.0, 320, 180).shape == (180, 320, 3)
 
 
 @pytest.mark.draws
@@ -187,14 +196,12 @@ def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytes
     assert closed == []
     drawing.close()
     assert len(closed) == 1
-    video.frame(motion(), 0.1, 64, 36)
-    assert len(closed) == 2
 
 
 @pytest.mark.draws
 @pytest.mark.parametrize("size", [(2, 2), (16, 16), (400, 40), (60, 400)])
 def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
-    assert video.frame(motion(), 0.2, *size).shape == (size[1], size[0], 3)
+    assert picture(motion(), 0.2, *size).shape == (size[1], size[0], 3)
 
 
 @pytest.mark.draws
@@ -211,4 +218,4 @@ def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
 )
 def test_a_motion_of_any_kind_can_be_drawn(moved: Trajectory) -> None:
     middle = float(moved.time[len(moved.time) // 2])
-    assert np.ptp(video.frame(moved, middle, 320, 180)) > 200
+    assert np.ptp(picture(moved, middle, 320, 180)) > 200

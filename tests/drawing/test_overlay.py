@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
-from mjbeer.drawing.camera import Shot, View, on_incline, scale
+from mjbeer.drawing.camera import CameraPath, View, on_incline, scale
 from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides
 from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.model.looks import WALL
@@ -29,7 +29,7 @@ ROUNDING = 1e-6
 def drawn(motion: Trajectory, kind: Mark, time: float) -> tuple[Recorder, View, np.ndarray]:
     """Draw a mark, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
-    view = Shot.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
+    view = CameraPath.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
     Marks(motion, (kind,), PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
@@ -113,7 +113,7 @@ def guided(scene: Scene) -> tuple[Recorder, Board, View]:
     motion = exact(scene, FEW, 1.0)
     display = Display.of([scene])
     board = Board.of(scene, display.model)
-    view = Shot.fit(scene, "auto", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.2)
+    view = CameraPath.fit(scene, "auto", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.2)
     sheet = Recorder(*PIXELS)
     guides(sheet, board, view, 0, UNIT)
     return sheet, board, view
@@ -152,7 +152,7 @@ def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -
     motion = exact(scene, FEW * math.sqrt(radius / 0.033), 1.0)
     display = Display.of([scene])
     board = Board.of(scene, display.model)
-    view = Shot.fit(scene, "fixed", motion.time, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    view = CameraPath.fit(scene, "fixed", motion.time, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
     sheet = Recorder(*PIXELS)
     guides(sheet, board, view, 0, UNIT)
     numbers = [float(words[:-2].replace("\N{MINUS SIGN}", "-")) for words in sheet.words if words.endswith(" m")]

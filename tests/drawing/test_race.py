@@ -1,12 +1,13 @@
 """The race: closed forms for the times, the cans where they are, and the names where no can is."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mjbeer import Can, exact, frozen, simulate, sliding
-from mjbeer.drawing.race import Course, Race, Runner
+from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.strip import wrapped
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
@@ -51,16 +52,17 @@ def test_a_race_lasts_until_the_last_can_and_hurries_when_only_that_is_left() ->
     cans = [run(sliding(INCLINE, can=METAL)), run(frozen(INCLINE, fill=1.0))]
     first, last = (can.finish(1.0) for can in cans)
     race = Race("a race", lambda: cans, length=1.0, speed=0.5, told=str, still=0.0, after=0.1, hurry=4)
-    reel = race.reel()
-    assert reel.end == pytest.approx(last + 4 * 0.1)
-    times = reel.times(10)
+    plan = race.plan()
+    assert plan.end == pytest.approx(last + 4 * 0.1)
+    times = plan.times(10)
     assert len(times) == round(10 * ((first + 0.1) / 0.5 + (last - first + 0.3) / 2))
     assert np.diff(times[times < first + 0.1]) == pytest.approx(0.05)
     assert np.diff(times[times > first + 0.1]) == pytest.approx(0.2)
-    assert Course(race, cans, 320, 180).results == [
-        f"1st: {first:.2f} s, theory {first:.2f} s",
-        f"2nd: {last:.2f} s, theory {last:.2f} s",
-    ]
+    names = [replace(can, name=name) for can, name in zip(cans, "ab", strict=True)]
+    assert race._results(names) == {
+        "a": (first, f"1st: {first:.2f} s, theory {first:.2f} s"),
+        "b": (last, f"2nd: {last:.2f} s, theory {last:.2f} s"),
+    }
 
 
 def test_a_can_that_does_not_finish_is_an_error() -> None:
@@ -68,16 +70,14 @@ def test_a_can_that_does_not_finish_is_an_error() -> None:
     assert short.finish(1.0) == short.finish_of_theory(1.0) == math.inf
     race = Race("a race", lambda: [run(sliding(INCLINE, can=METAL)), short], 1.0, 1.0, told=str, still=0.0)
     with pytest.raises(ParameterError, match=r"a can rolls 0\.0\d+ m to t = 0\.3 s, and the race is over 1 m"):
-        race.reel()
+        race.plan()
 
 
 def test_cans_side_by_side_have_charts_and_last_as_long_as_all_their_motions() -> None:
     cans = [run(sliding(INCLINE, can=METAL), 1.0, 2.0), run(frozen(INCLINE, fill=1.0), duration=1.5)]
     race = Race("a comparison", lambda: cans, 0.5, 1.0, told=str, still=0.0, strips=("phi", "ahead"))
-    assert race.reel().end == 1.5
-    course = Course(race, cans, 320, 180)
-    assert course.results == []
-    angles, _ = course.charts()
+    assert race.plan().end == 1.5
+    angles, _ = race._charts(cans)
     for line, can in zip(angles.lines, cans, strict=True):
         assert line.values == pytest.approx(wrapped(can.trajectory.phi))
         assert line.colour == can.colour
@@ -85,19 +85,15 @@ def test_cans_side_by_side_have_charts_and_last_as_long_as_all_their_motions() -
 
 @pytest.mark.draws
 @pytest.mark.slow
-def test_a_race_is_drawn_with_its_cans_at_the_lines() -> None:
-    """Each can's colour is found where it is at the start, and beyond the finish in the end."""
+def test_a_race_is_drawn_with_its_cans_moving_downhill() -> None:
+    """What differs from the first picture moves to the right, where downhill is."""
     cans = [run(frozen(INCLINE, fill=1.0, can=METAL)), run(sliding(INCLINE, can=METAL))]
     race = Race("a race", lambda: cans, length=0.5, speed=1.0, told=str, still=0.0, after=0.1)
-    reel = race.reel()
-    assert reel.end == pytest.approx(max(can.finish(0.5) for can in cans) + 0.1)
-    course = Course(race, cans, 320, 180)
-    first, last = reel.draw(np.array([0.0, reel.end]), 320, 180)
-    assert first.shape == last.shape == (180, 320, 3)
-    for time, picture, other in ((0.0, first, last), (reel.end, last, first)):
-        course.display.pose(course.positions(time))
-        for name in ("can", "1-can"):
-            column, row = course.view.pixel(course.display.data.body(name).xpos).astype(int)
-            near = slice(course.top + row - 4, course.top + row + 4), slice(column - 4, column + 4)
-            if 4 < column < 316:  # in the end the winner is out of the picture
-                assert np.abs(picture[near].astype(int) - other[near]).mean() > 20
+    plan = race.plan()
+    assert plan.end == pytest.approx(max(can.finish(0.5) for can in cans) + 0.1)
+    first, *others = (
+        picture.astype(int)[30:] for picture in plan.draw(np.array([0.0, 0.3, 0.5, plan.end]) * 0.9, 320, 180)
+    )
+    reached = [np.flatnonzero((np.abs(other - first).max(axis=2) > 60).any(axis=0)).max() for other in others]
+    assert reached == sorted(reached)
+    assert reached[-1] > reached[0] + 50

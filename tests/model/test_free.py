@@ -12,7 +12,6 @@ import pytest
 
 from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
-from mjbeer.drawing.viewer import Player
 from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import free, looks, setting
 from mjbeer.model.export import present_standing
@@ -157,13 +156,6 @@ def test_the_command_line_exports_a_standing_can(tmp_path: pathlib.Path, capsys:
     with pytest.raises(SystemExit):
         main(["export", "standing", "--help"])
     assert "--damping-ratio" in capsys.readouterr().out
-
-
-def test_the_viewer_s_model_of_a_standing_can_starts() -> None:
-    player = Player(present_standing(standing(), True, Setting()).compile())
-    player.press(32)
-    player.advance(0.01)
-    assert player.data.time > 0
 
 
 @pytest.mark.slow

@@ -127,7 +127,7 @@ def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, ca
     assert not calls
     assert "[Film]" not in (folder / "stories.md").read_text()
     assert main(["paper", "--films", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "told.mp4", "told-still.png", "stories.md"}
+    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "told.mp4", "stories.md"}
     text = (folder / "stories.md").read_text()
     assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story.", "[Film](told.mp4)"))
     assert capsys.readouterr().err.endswith(f"the stories are in {folder / 'stories.md'}\n")

@@ -1,20 +1,18 @@
-"""The film and the plot of cans that are carried."""
-
-import pathlib
+"""The film of cans that are carried."""
 
 import numpy as np
 
 from mjbeer.drawing.film import Film
-from mjbeer.report.carry import Carry, draw_plot
+from mjbeer.report.carry import Carry
 
 BEER = (250, 161, 20)
 
 
-def test_the_surface_rises_behind_an_accelerating_can(tmp_path: pathlib.Path) -> None:
+def test_the_surface_rises_behind_an_accelerating_can() -> None:
     film: Film = Carry()
-    reel = film.reel()
-    assert (reel.start, reel.end) == (0.0, 2.0)
-    first, pushed = reel.draw(np.array([0.0, 0.25]), 400, 226)
+    plan = film.plan()
+    assert (plan.start, plan.end) == (0.0, 2.0)
+    first, pushed = plan.draw(np.array([0.0, 0.25]), 400, 226)
     assert first.shape == (226, 400, 3)
     rest, tilted = (_heights(picture[:75]) for picture in (first, pushed))
     assert rest[0] == rest[1]
@@ -26,9 +24,3 @@ def _heights(picture: np.ndarray) -> tuple[int, int]:
     columns = (np.abs(picture.astype(int) - BEER).max(axis=2) < 12).sum(axis=0)
     wet = np.flatnonzero(columns > 3)
     return int(columns[wet[0] + 1]), int(columns[wet[-1] - 1])
-
-
-def test_the_plot_is_drawn(tmp_path: pathlib.Path) -> None:
-    draw_plot(tmp_path / "carry", (0.8, 1.2))
-    text = (tmp_path / "carry.svg").read_text()
-    assert "what a rigid can misses" in text

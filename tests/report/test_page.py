@@ -1,200 +1,214 @@
-"""The page: it is whole, it needs nothing from elsewhere, and it says what the audit found."""
+"""`mjbeer validate` and `mjbeer report`: exit status, streams, and one page that is whole and needs nothing else."""
 
 import base64
-import itertools
+import html.parser
+import json
+import math
+import os
 import pathlib
 import re
 import shlex
-import shutil
-from collections.abc import Generator
 
 import pytest
 
 from mjbeer import paper
-from mjbeer.cli.app import main
+from mjbeer.cli.app import main, parse
+from mjbeer.drawing import opengl
 from mjbeer.drawing.film import Take
-from mjbeer.output import files
-from mjbeer.paper import stories
-from mjbeer.paper.row import Misprint
+from mjbeer.output import terminal
+from mjbeer.paper.row import CORRECTED, Finding
 from mjbeer.report import films, formulas, page
-from mjbeer.studies.benchmark import diagrams
-from mjbeer.studies.stability import stiff_maps
-from tests.support import pages, stubs
-from tests.support.pages import Page
+from mjbeer.report.films import FILMS
+from mjbeer.studies.validation.run import Validation
+from tests.support import stubs
 
+SENTENCE = r"{} of {} checks and {} of {} rows of the audit passed, in \d+ s\n"
 SECTIONS = ["verdict", "races", "scenes", "errors", "stability", "stories", "misprints", "machine"]
-MISPRINTS = [row.misprint for row in paper.rows() if row.misprint]
+MISPRINTS = [row for row in paper.rows() if row.misprint]
+
+
+class Page(html.parser.HTMLParser):
+    """The elements of a page with their attributes; each must be closed."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str | None]]] = []
+        self.open: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+        if tag not in ("meta", "link", "img", "source", "input", "mspace", "br"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+    def values(self, attribute: str, *tags: str) -> list[str]:
+        """The values of an attribute."""
+        return [str(of[attribute]) for tag, of in self.elements if attribute in of and (tag in tags or not tags)]
+
+
+@pytest.mark.parametrize("options", [[], ["--table"], ["--json"]])
+@pytest.mark.parametrize("eye", [True, False])
+@pytest.mark.parametrize(("error", "status"), [(1e-3, 0), (2e-3, 1), (math.nan, 1)])
+def test_validate_tells_a_failure_whatever_is_asked_for(
+    options: list[str],
+    eye: bool,
+    error: float,
+    status: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    stubs.validate(monkeypatch, first=1e-5, second=error)
+    stubs.audited(monkeypatch, good=1e-6, other=error)
+    monkeypatch.setattr(terminal, "is_read_by_eye", lambda: eye)
+    assert main(["validate", *options]) == status
+    out, err = capsys.readouterr()
+    *failures, last = err.splitlines()
+    assert (
+        failures
+        == [
+            f"FAILED: second (a stub): error {error:.1e}, at most 1.0e-03 rad",
+            f"FAILED: other a stub (none): error {error:.1e}, at most 1.0e-03",
+        ][: 2 * status]
+    )
+    assert re.fullmatch(SENTENCE.format(2 - status, 2, 2 - status, 2), last + "\n")
+    if options == ["--json"]:
+        content = json.loads(out, parse_constant=pytest.fail)
+        assert content["passed"] == (status == 0)
+        assert [row["error"] for row in content["checks"]] == [1e-5, None if math.isnan(error) else error]
+    else:
+        assert ("│ first" in out, "\nfirst\t" in out) == (bool(options) and eye, bool(options) and not eye)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("quick", [True, False])
+def test_a_report_is_one_page_with_all_films(
+    quick: bool, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.validate(monkeypatch, first=1e-5, second=2e-5)
+    calls = stubs.draw(monkeypatch)
+    folder = tmp_path / "report"
+    assert main(["report", "--output", str(folder), *(["--quick"] if quick else [])]) == 0
+    assert os.listdir(folder) == ["index.html"]
+    text = (folder / "index.html").read_text()
+    names = [*films.RACES, *(name for name in FILMS if name not in films.RACES), *([] if quick else ["told"])]
+    found = [base64.b64decode(each.partition(",")[2]).decode() for each in Page(text).values("src", "source")]
+    assert found == [f"film {name}" for name in names]
+    assert ("The films were left out of this quick report." in text) == quick
+    assert "2 of 2 checks and 0 of 0 rows of the audit passed." in text
+    assert "A plot &amp; a title" in text
+    assert "<td>first</td>" in text
+    assert {call.width for call in calls} == ({640} if quick else {1152, 960})
+    err = capsys.readouterr().err
+    assert re.fullmatch(SENTENCE.format(2, 2, 0, 0), err.partition(f"the report is in {folder / 'index.html'}\n")[2])
+
+
+@pytest.mark.slow
+def test_without_opengl_a_report_has_all_but_films_and_says_so(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A failed check is in page and exit status."""
+    stubs.validate(monkeypatch, first=2e-3)
+    assert not stubs.draw(monkeypatch)
+    monkeypatch.setattr(opengl, "problem", lambda: "there is none")
+    assert main(["report", "--output", str(tmp_path)]) == 1
+    line = opengl.missing([*FILMS, "told"])
+    assert f"{line}\nthe report is in " in capsys.readouterr().err
+    text = (tmp_path / "index.html").read_text()
+    assert all(words in text for words in (line.replace("&", "&amp;"), "2.0e-03 <strong>FAIL</strong>"))
+    assert "<video" not in text
+
+
+def test_a_film_that_fails_leaves_no_page(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.validate(monkeypatch, first=1e-5)
+    stubs.draw(monkeypatch, fail_at="pendulum.mp4")
+    (tmp_path / "index.html").write_text("of an earlier report")
+    assert main(["report", "--output", str(tmp_path)]) == 2
+    assert capsys.readouterr().err.endswith("mjbeer: cannot draw pendulum.mp4\n")
+    assert os.listdir(tmp_path) == []
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Generator[pathlib.Path]:
-    """The files of a report with two stories and a race."""
-    folder = tmp_path_factory.mktemp("report")
+def text() -> str:
+    """A page with a finding for each misprint, whose errors are made up."""
+    findings = [
+        Finding(
+            row.equation, row.quantity, CORRECTED, "a witness", 0.0127 * (place + 1), right=1.7e-9 * (place + 1),
+            bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
+        )
+        for place, row in enumerate(MISPRINTS)
+    ]  # fmt: skip
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stories, "stories", pages.stories)
-        pages.fill(folder)
-        yield folder
+        stubs.draw(patch)
+        made = [order.write() for order in page.plots(pathlib.Path())]
+        story = page.stories.stories()[0]
+        story.draw(told := page.Picture(story.name))
+        plots = {plot.name: plot for plot in [*made, told] if plot}
+        return page.html(Validation([], findings), {"race": (b"film", b"still")}, plots, {}, False, "")
 
 
-@pytest.fixture(scope="module")
-def text(folder: pathlib.Path) -> str:
-    return page.html(folder, pages.validation(), quick=False, not_drawn="")
-
-
-@pytest.fixture(scope="module")
-def read(text: str) -> Page:
-    return Page.of(text)
-
-
-def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str, read: Page) -> None:
+def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str) -> None:
     """Links that a reader may follow are the only addresses; the policy forbids the rest, and all scripts."""
-    taken = [each.attributes[name] for each in read.elements for name in ("src", "poster") if name in each.attributes]
-    taken += [each.attributes["href"] for each in read.all("link", "image", "use")]
+    read = Page(text)
+    taken = read.values("src") + read.values("poster") + read.values("href", "link", "image", "use")
     assert len(taken) > 10
     assert all(each.startswith(("data:", "#")) for each in taken)
-    assert not re.search(r"url\(|@import", "".join(element.text for element in read.all("style")))
-    (policy,) = (element.attributes["content"] for element in read.all("meta") if "http-equiv" in element.attributes)
+    (policy,) = read.values("content", "meta")[:1]
     assert "default-src 'none'" in policy
     assert not re.search(r"\bhttps?:|\*|script", policy)
     assert "<script" not in text
 
 
-def test_sections_headings_and_links_are_in_order_and_everything_has_a_name_of_its_own(read: Page) -> None:
-    assert [element.attributes["id"] for element in read.all("section")] == SECTIONS
-    levels = [int(element.name[1]) for element in read.all("h1", "h2", "h3")]
-    assert levels.count(1) == 1
-    assert all(after <= before + 1 for before, after in itertools.pairwise([0, *levels]))
-    names = [element.attributes["id"] for element in read.elements if "id" in element.attributes]
+def test_links_lead_to_sections_and_everything_has_a_name_of_its_own(text: str) -> None:
+    read = Page(text)
+    assert read.values("id", "section") == SECTIONS
+    names = read.values("id")
     assert len(names) == len(set(names))
-    inside = [each.attributes["href"][1:] for each in read.all("a", "use") if each.attributes["href"][0] == "#"]
-    assert set(inside) <= set(names)
-    assert set(SECTIONS) <= set(inside)
-    assert all(element.attributes["alt"] for element in read.all("img"))
-    assert all(element.attributes["aria-label"] for element in read.all("video"))
+    inside = {each[1:] for each in read.values("href", "a", "use") if each[0] == "#"}
+    assert set(SECTIONS) <= inside <= set(names)
+    assert all(read.values("alt", "img"))
 
 
-def test_every_film_is_in_the_page_whole(folder: pathlib.Path, read: Page) -> None:
-    names = [*films.RACES, *(name for name in films.FILMS if name not in films.RACES), "paper/told"]
-    assert [base64.b64decode(each.attributes["src"].partition(",")[2]) for each in read.all("source")] == [
-        (folder / f"{name}.mp4").read_bytes() for name in names
-    ]
-
-
-def test_a_film_that_the_page_has_no_room_for_is_linked(folder: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(page, "LIMIT", 1)
-    read = Page.of(page.html(folder, pages.validation(), quick=False, not_drawn=""))
-    assert len(read.all("source")) == len(films.FILMS)
-    assert "paper/told.mp4" in [element.attributes["href"] for element in read.all("a")]
-
-
-def test_a_plot_has_its_title_as_heading_opens_large_and_its_points_tell_what_they_are(read: Page) -> None:
-    headings = [element.text for element in read.all("h3")]
-    assert {"A plot of told", "A plot of error-frozen", "A plot of stability-solref"} <= set(headings)
-    opened = [each.attributes for each in read.all("a") if each.attributes.get("class") == "plot"]
-    assert all(each["href"] == f"#{each['id']}" for each in opened)
-    assert [element.text for element in read.all("use")].count("a setting") == 4
-    shown = page.Plot(
-        "name", "title", '<svg viewBox="0 0 9 9"><g id="a"/><use href="#a" style="fill: url(#a)"/></svg>', 9
-    )
-    assert shown.inline.count("name-a") == 3
-
-
-def test_the_plots_of_a_page_are_those_that_are_drawn_for_it(
-    folder: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(diagrams, "draw", lambda study, path: files.write(path.with_name(f"{path.name}.svg"), ""))
-    monkeypatch.setattr(stiff_maps, "draw", lambda path, *_, **__: files.write(path.with_name(f"{path.name}.svg"), ""))
-    for plot in page.plots(tmp_path):
-        plot.write()
-    assert {each.name for each in tmp_path.iterdir()} == {each.name for each in (folder / "plots").iterdir()}
-
-
-def test_a_plot_is_cut_below_its_title(tmp_path: pathlib.Path) -> None:
-    (tmp_path / "told.svg").write_text(pages.PLOT.format("beer &amp; ice"))
-    plot = page.Plot.of(tmp_path / "told.svg")
-    assert (plot.title, plot.width) == ("A plot of beer & ice", 900)
-    assert 'viewBox="0 23 900 277"' in plot.svg
-
-
-def test_a_quick_page_has_no_films_of_stories_and_says_so(folder: pathlib.Path) -> None:
-    text = page.html(folder, pages.validation(), quick=True, not_drawn="")
-    assert len(Page.of(text).all("source")) == len(films.FILMS)
-    assert "The films were left out of this quick report." in text
-    assert "mjbeer report --quick" in re.sub("<[^>]*>", "", text)
-
-
-def test_the_misprints_have_their_kinds_the_paper_s_words_and_the_numbers_of_the_findings(
-    text: str, read: Page
-) -> None:
-    found = pages.validation().findings
-    numbers = [float(element.attributes["value"]) for element in read.all("data")]
-    assert numbers == [number for finding in found for number in (finding.printed, finding.right)]
-    told = [element.text for element in read.all("data")]
-    assert told[:4] == ["1.3 %", "1.7\u2009·\u200910\N{MINUS SIGN}9", "2.5 %", "3.4\u2009·\u200910\N{MINUS SIGN}9"]
-    kinds = [element.text for element in read.all("span") if element.attributes.get("class") == "kind"]
-    assert kinds == [f"{each.kind} of {each.of}" if each.of else each.kind for each in MISPRINTS]
-    assert "consequence of (39)" in kinds
-    quotes = [row.quote for row in paper.rows() if row.misprint and row.quote]
-    assert [element.text for element in read.all("blockquote")] == [f"“{quote}”" for quote in quotes]
-    (found_line,) = (each.text for each in read.all("li") if "The audit measured" in each.text)
-    assert " ".join(found_line.split()).startswith(
-        "The audit measured 25 claims of the paper and corrected 25: 18 misprints, 4 consequences of another misprint, "
-        "and 3 approximations"
-    )
-
-
-@pytest.mark.parametrize("misprint", MISPRINTS, ids=lambda misprint: misprint.about)
-def test_formulas_are_mathml_with_what_differs_marked_and_nothing_left_of_latex(misprint: Misprint) -> None:
-    assert misprint.printed != misprint.right
-    for latex in (misprint.printed, misprint.right):
-        assert not re.search("[<|>]", latex)
-        assert Page.of(formulas.mathml(latex)).all("math")
-        shown = re.sub("<[^>]*>", "", formulas.mathml(latex))
-        assert not re.search(r"[\\{}_^]", shown)
-    assert 'class="differs"' in formulas.mathml(misprint.right)
-
-
-def test_a_formula_may_be_broken_between_its_terms() -> None:
-    shown = Page.of(formulas.mathml(r"a+b\textcolor{differs}{-c}=-(d+\varphi)"))
-    assert [element.text for element in shown.all("math")] == ["a", "+b", "−c", "=−(d", "+φ)"]
-
-
-def test_letters_and_numbers_of_the_audit() -> None:
-    assert formulas.letters("phi_0^2/8, (omega h)^4, sin(theta), alphabet") == "φ₀²/8, (ω h)⁴, sin(θ), alphabet"
-    assert formulas.letters("u_ddot, phi_dot") == "u\N{COMBINING DIAERESIS}, φ\N{COMBINING DOT ABOVE}"
-    assert [page.power(value) for value in (0.0, 0.01, 1e-12)] == ["0", "0.01", "10<sup>\N{MINUS SIGN}12</sup>"]
-    assert [page.share(value) for value in (1.92, 0.0053)] == ["192 %", "0.53 %"]
-
-
-def test_the_verdict_has_its_tables_and_what_failed(text: str, read: Page) -> None:
-    (verdict,) = (element for element in read.all("p") if element.attributes.get("class", "").startswith("verdict"))
-    assert verdict.text.startswith("1 of 2 checks and 25 of 25 rows of the audit passed")
-    assert verdict.attributes["class"] == "verdict failed"
-    assert {"fine", "a <stub>", "φ₀²"} <= {element.text for element in read.all("td")}
-    assert [element.text for element in read.all("strong")] == ["FAILED:", "FAIL"]
-    assert "a <stub>" not in text
-
-
-def test_without_films_the_page_says_why(folder: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    folder = pathlib.Path(shutil.copytree(folder, tmp_path / "report", ignore=shutil.ignore_patterns("*.mp4")))
-    read = Page.of(page.html(folder, pages.validation(), quick=False, not_drawn="not drawn because of <a test>"))
-    assert not read.all("video")
-    assert "They were not drawn because of <a test>." in "".join(element.text for element in read.all("p"))
+def test_the_misprints_have_their_kinds_and_the_numbers_of_the_findings(text: str) -> None:
+    shown = re.findall(r'misses by <data value="([^"]*)">(.*?)</data>', text)
+    expected = [number * (place + 1) for place in range(len(MISPRINTS)) for number in (0.0127, 1.7e-9)]
+    assert [float(value) for value, _ in shown] == expected
+    assert [words for _, words in shown[:2]] == ["1.3 %", "1.7&thinsp;·&thinsp;10<sup>\N{MINUS SIGN}9</sup>"]
+    assert "consequence of (39)" in text
+    assert text.count("<blockquote>") == sum(bool(row.quote) for row in MISPRINTS)
 
 
 @pytest.mark.parametrize("name", films.COMMANDS)
-def test_the_command_under_a_film_draws_that_film(
-    name: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    calls = stubs.draw(monkeypatch)
-    assert main([*shlex.split(films.COMMANDS[name])[1:], "--output", str(tmp_path / "film.mp4")]) == 0
-    (call,) = calls
-    drawn, film = call["trajectory"], films.FILMS[name]
+def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
+    from mjbeer.cli.motions import trajectory_of
+
+    film = FILMS[name]
     assert isinstance(film, Take)
-    wanted = film.trajectory()
-    assert call["speed"] == film.speed
-    assert drawn.scene == wanted.scene
-    assert drawn.time[-1] == wanted.time[-1]
-    # The command has degrees to four decimals; a motion carries that difference on.
-    assert drawn.phi[0] == pytest.approx(wanted.phi[0], abs=1e-6)
-    assert abs(drawn.phi[-1] - wanted.phi[-1]) < 1e-3
+    given = parse(shlex.split(films.COMMANDS[name])[1:])
+    ours, theirs = film.trajectory(), trajectory_of(given[1] if isinstance(given, tuple) else given)
+    assert (ours.phi0, ours.phi_dot0) == pytest.approx(
+        (theirs.phi0, theirs.phi_dot0), abs=1e-6
+    )  # seven digits in degrees
+    assert (ours.scene, ours.rolling, ours.integrator) == (theirs.scene, theirs.rolling, theirs.integrator)
+
+
+@pytest.mark.parametrize("row", MISPRINTS, ids=lambda row: row.equation)
+def test_formulas_are_mathml_without_what_was_not_understood(row) -> None:
+    for latex in (row.misprint.printed, row.misprint.right):
+        shown = formulas.mathml(latex)
+        assert shown.count("<math") >= 1
+        assert "\\" not in re.sub("<[^>]*>", "", shown)
+        assert (r"\textcolor" in latex) == ('class="differs"' in shown)
+
+
+def test_letters_are_those_of_the_formulas() -> None:
+    assert formulas.letters("phi_0^2 and u_ddot") == "φ₀² and u\N{COMBINING DIAERESIS}"

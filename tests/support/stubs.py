@@ -1,32 +1,27 @@
 """Stand-ins for what takes long: made-up rows to validate, videos that are not drawn, studies that are short."""
 
-import inspect
 import pathlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import pytest
-from PIL import Image
-from rich.console import Console
 
 from mjbeer import exact, paper, sliding
-from mjbeer.drawing import opengl, studio, video, viewer
+from mjbeer.drawing import opengl, studio, video
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import RenderingError
-from mjbeer.output import files
+from mjbeer.output import files, plots
 from mjbeer.paper import stories
 from mjbeer.paper.row import Bound, Witness
 from mjbeer.paper.row import Row as Claim
 from mjbeer.paper.stories import Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark import measure, peers, sweeps
-from mjbeer.studies.benchmark.points import Curve
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark, Curve
 from mjbeer.studies.rows import Row
 from mjbeer.studies.stability import search, stiff_maps, study
 from mjbeer.studies.validation import run as validation
-from tests.support import pages
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
@@ -85,51 +80,33 @@ def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     monkeypatch.setattr(paper, "rows", lambda: rows)
 
 
-def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[dict[str, Any]]:
-    """Make videos and pictures text files, and the one of a name fail; the arguments of all calls so far.
+def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[studio.Filmed]:
+    """Make videos text files, and the one of a name fail; the films that were ordered so far.
 
-    A viewer is closed as soon as it would open.
-
-    There are OpenGL and ffmpeg then, or so it seems, and the paper has a single story, whose plot is a text file too.
+    There is OpenGL then, or so it seems, and the paper has a single story. Nothing is done in other processes.
     """
-    calls: list[dict[str, Any]] = []
+    calls: list[studio.Filmed] = []
 
-    def stub(name: str, real: Callable[..., None]) -> Callable[..., None]:
-        signature = inspect.signature(real)
-
-        def instead(*args: object, **kwargs: object) -> None:
-            call = signature.bind(*args, **kwargs).arguments
-            call["path"] = pathlib.Path(call["path"])
-            if call["path"].name == fail_at:
-                raise RenderingError(f"cannot draw {fail_at}")
-            files.write(call["path"], name)
-            calls.append({"function": name, **call})
-
-        return instead
-
-    def tell(path: pathlib.Path) -> None:
-        files.write(path.with_name(f"{path.name}.svg"), pages.PLOT)
-
-    def produce(orders: Sequence[studio.Order], _: Console) -> list[Any]:
-        return [make(order) for order in orders]
-
-    def make(order: studio.Order) -> Any:
-        if not isinstance(order, studio.Filmed):
-            return order.write()
+    def filmed(order: studio.Filmed) -> bytes:
         if order.path.name == fail_at:
             raise RenderingError(f"cannot draw {fail_at}")
-        files.write(order.path, "film")
-        Image.new("RGB", pages.SIZE[:2]).save(order.path.with_name(f"{order.path.stem}-still.png"))
-        calls.append({"function": "produce", "film": order.film, "path": order.path, "width": order.width})
-        return None
+        files.write(order.path, f"film {order.path.stem}")
+        calls.append(order)
+        return b"still"
+
+    def plot(path: pathlib.Path | plots.Picture) -> None:
+        with plots.chart(path, title="A plot & a title", subtitle="of a stub"):
+            pass
+
+    def few(folder: pathlib.Path) -> list[studio.Plotted]:
+        names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
+        return [studio.Plotted(plot, folder / name, in_memory=True) for name in (*names, *stiff_maps.FIGURES)]
 
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
-    monkeypatch.setattr(studio, "produce", produce)
+    monkeypatch.setattr(studio.Filmed, "write", filmed)
+    monkeypatch.setattr(studio, "produce", lambda orders, _: [order.write() for order in orders])
     monkeypatch.setattr(opengl, "problem", lambda: None)
-    monkeypatch.setattr(video, "problem", lambda: None)
-    monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", tell, film)])
-    monkeypatch.setattr(page, "plots", pages.plots)
-    monkeypatch.setattr(viewer, "require_window", lambda: None)
-    monkeypatch.setattr(viewer, "_play", lambda player: None)
-    monkeypatch.setattr(video, "render", stub("render", video.render))
+    monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", plot, film)])
+    monkeypatch.setattr(page, "plots", few)
+    monkeypatch.setattr(video, "render", lambda trajectory, path, *_, **__: files.write(path, "film"))
     return calls

@@ -57,7 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             return 0
         with terminal.printing():
             command, given = parse(words)
-        opengl.keep_out()
+        opengl.import_mujoco_without_gl()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
             warnings.simplefilter("ignore", AngleWarning)  # angles are in degrees here

@@ -1,7 +1,9 @@
 """The commands about one motion: simulate, render, view and export."""
 
 import math
+import os
 import pathlib
+import tempfile
 import warnings
 from argparse import Namespace
 from contextlib import nullcontext
@@ -22,7 +24,8 @@ from mjbeer.cli.arguments import (
     steps,
 )
 from mjbeer.drawing.camera import CAMERAS
-from mjbeer.exceptions import LiquidWarning, ParameterError
+from mjbeer.exceptions import LiquidWarning, ParameterError, RenderingError
+from mjbeer.model.setting import supported
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
 
@@ -110,17 +113,38 @@ def render(given: Namespace) -> int:
     return 0
 
 
-@command(*model_options(rolling=None), _SPEED, numbers=float, standing=(*STEPS, _SPEED))
+@command(*model_options(rolling=None), numbers=float, standing=STEPS)
 def view(given: Namespace) -> int:
-    """Open a scene in MuJoCo's viewer, paused at its start.
+    """Open a scene in MuJoCo's viewer, which runs it at once.
 
-    The space bar runs and pauses it, backspace goes back to the start, and F4 plots u, phi and the other sensors. The
-    reduced model of a frozen load has phi as its only coordinate, so it turns in place.
+    The space bar pauses it, - and = change its speed, and F4 plots u, phi and the other sensors. The reduced model of a
+    frozen load has phi as its only coordinate, so it turns in place.
     """
-    from mjbeer.drawing.viewer import view
+    import glfw
+    import mujoco.viewer
+
+    from mjbeer.model.build import START
+    from mjbeer.model.export import export
 
     thing, begin = _scene_and_start(given)
-    view(thing, **begin, **steps(given), speed=given.speed)
+    how = steps(given)
+    if given.scene != "standing" and given.rolling is None:
+        how["rolling"] = "equality" if supported(thing, "equality") else "reduced"
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "scene.xml"
+        export(thing, path, **begin, **how)
+        model = mujoco.MjModel.from_xml_path(str(path))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
+    glfw.ERROR_REPORTING = "ignore"
+    if not glfw.init():  # MuJoCo would end the process
+        reason: Any = glfw.get_error()[1]
+        raise RenderingError(
+            f"no window can be opened: {reason.decode()}; `mjbeer render` draws a "
+            "video without a window, and `mjbeer export` writes a file for MuJoCo's viewer elsewhere"
+        )
+    os.environ.setdefault("LP_NUM_THREADS", "0")  # see `opengl.context`
+    mujoco.viewer.launch(model, data)
     return 0
 
 

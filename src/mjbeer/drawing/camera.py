@@ -136,7 +136,7 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class CameraPath:
     """A camera's way along the drawn world, and what it shows of it."""
 
     scene: Scene
@@ -169,8 +169,8 @@ class Shot:
         plane: float,
         pixels: tuple[int, int],
         room: bool = False,
-    ) -> "Shot":
-        """Return the shot that shows a can that is at `u` and `lift` [m] at some times [s].
+    ) -> "CameraPath":
+        """Return the path that shows a can that is at `u` and `lift` [m] at some times [s].
 
         With `room`, there is some for marks below the can.
         """

@@ -10,10 +10,10 @@ from typing import Protocol
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.camera import Shot
+from mjbeer.drawing.camera import CameraPath
 from mjbeer.drawing.overlay import STRIP, Board, Look, Marks, guides, header, header_height
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import UNITS, Sheet, whole
+from mjbeer.drawing.sheet import UNITS, Sheet, require_pixels
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -28,7 +28,7 @@ _FINE = 2000
 
 
 @dataclass(frozen=True, eq=False)
-class Reel:
+class RenderPlan:
     """What is needed to draw a film: its pictures as a function of their times and size."""
 
     start: float
@@ -67,7 +67,7 @@ class Film(Protocol):
     """A film. It can be pickled, so that another process can draw it.
 
     Its caption says what is seen, in whole sentences, for the text beside the film. Its still picture shows a time [s].
-    `reel` computes the motion, and returns what is needed to draw it.
+    `plan` computes the motion, and returns what is needed to draw it.
     """
 
     @property
@@ -76,7 +76,7 @@ class Film(Protocol):
     @property
     def still(self) -> float: ...
 
-    def reel(self) -> Reel: ...
+    def plan(self) -> RenderPlan: ...
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,12 @@ class Take:
     """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""
 
-    def reel(self) -> Reel:
+    def plan(self) -> RenderPlan:
         """Compute the motion, and return what is needed to draw it."""
-        return reel(self.trajectory(), self.look, self.speed)
+        return render_plan(self.trajectory(), self.look, self.speed)
 
 
-def reel(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -> Reel:
+def render_plan(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -> RenderPlan:
     """Return what is needed to draw a trajectory; without a `look`, its usual one.
 
     Raises:
@@ -105,7 +105,7 @@ def reel(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -
     """
     require.instance("trajectory", trajectory, Trajectory)
     drawn = partial(draw, trajectory, look or Look.usual(trajectory), speed)
-    return Reel(float(trajectory.time[0]), float(trajectory.time[-1]), speed, drawn)
+    return RenderPlan(float(trajectory.time[0]), float(trajectory.time[-1]), speed, drawn)
 
 
 def draw(
@@ -121,62 +121,35 @@ def draw(
         raise ParameterError(
             f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
         )
-    return _pictures(trajectory, look, speed, times, whole("width", width), whole("height", height))
+    sheet = Sheet(require_pixels("width", width), require_pixels("height", height))
+    return _pictures(trajectory, look, speed, times, sheet)
 
 
 def _pictures(
-    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
+    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, sheet: Sheet
 ) -> Generator[np.ndarray]:
-    stage = Stage.of(trajectory, look, speed, width, height)
-    scenery = Scenery(trajectory.scene, stage.display.model)
-    with closing(Painter(stage.display, scenery, *stage.shot.pixels, stage.shot.still)) as painter:
+    scene, width, height, unit = trajectory.scene, sheet.width, sheet.height, sheet.height / UNITS
+    top = header_height(look, unit)  # row of the upper edge of the scene
+    has_room = len(trajectory.time) > 1 and width > _NARROW * unit
+    below = round(STRIP * unit) if has_room and look.strips else 0
+    fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
+    positions = coordinates(trajectory, fine)
+    plane = -scene.can.length / scene.can.radius * RADIUS / 2
+    room = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
+    pixels = width, height - top - below
+    path = CameraPath.fit(scene, look.camera, fine, positions[:, 0], positions[:, 3], plane, pixels, room)
+    display = Display.of([scene])
+    marks = Marks(trajectory, look.marks, plane, fine, positions)
+    strip = Strip(charts(trajectory, look.strips), width, below) if below else None
+    board = Board.of(scene, display.model)
+    with closing(Painter(display, Scenery(scene, display.model), *pixels, path.still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
-            stage.sheet.boxes.clear()
-            painter.paint(stage.sheet, stage.shot.view(time), now[None], stage.top)
-            stage.explain(time, now)
-            yield stage.sheet.picture()
-
-
-@dataclass(frozen=True, eq=False)
-class Stage:
-    """What the pictures of a trajectory are drawn with."""
-
-    trajectory: Trajectory
-    look: Look
-    speed: float
-    sheet: Sheet
-    shot: Shot
-    display: Display
-    marks: Marks
-    strip: Strip | None
-    top: int
-    """Row of the upper edge of the scene [pixels]."""
-    unit: float
-    """Unit of length of the sheet [pixels]."""
-
-    @classmethod
-    def of(cls, trajectory: Trajectory, look: Look, speed: float, width: int, height: int) -> "Stage":
-        """Return the stage for pictures of a trajectory of a width and a height [pixels]."""
-        scene, unit = trajectory.scene, height / UNITS
-        top = header_height(look, unit)
-        has_room = len(trajectory.time) > 1 and width > _NARROW * unit
-        below = round(STRIP * unit) if has_room and look.strips else 0
-        fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
-        positions = coordinates(trajectory, fine)
-        plane = -scene.can.length / scene.can.radius * RADIUS / 2
-        u, lift, pixels = positions[:, 0], positions[:, 3], (width, height - top - below)
-        below_board = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
-        shot = Shot.fit(scene, look.camera, fine, u, lift, plane, pixels, room=below_board)
-        display = Display.of([scene])
-        marks = Marks(trajectory, look.marks, plane, fine, positions)
-        strip = Strip(charts(trajectory, look.strips), width, below) if below else None
-        return cls(trajectory, look, speed, Sheet(width, height), shot, display, marks, strip, top, unit)
-
-    def explain(self, time: float, now: np.ndarray) -> None:
-        """Draw title, guides, marks and charts at a `time` [s], with u, phi, roll and lift `now`."""
-        view, board = self.shot.view(time), Board.of(self.trajectory.scene, self.display.model)
-        self.marks.draw(self.sheet, view, self.top, time, now)
-        guides(self.sheet, board, view, self.top, self.unit)
-        header(self.sheet, self.look, self.trajectory, time, self.speed, self.unit)
-        if self.strip is not None:
-            self.strip.draw(self.sheet, time, self.top + self.shot.pixels[1])
+            view = path.view(time)
+            sheet.boxes.clear()
+            painter.paint(sheet, view, now[None], top)
+            marks.draw(sheet, view, top, time, now)
+            guides(sheet, board, view, top, unit)
+            header(sheet, look, trajectory, time, speed, unit)
+            if strip is not None:
+                strip.draw(sheet, time, height - below)
+            yield sheet.picture()

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from mjbeer.drawing.camera import View, in_space
-from mjbeer.drawing.film import Reel
+from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, whole
+from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, require_pixels
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -33,8 +33,6 @@ _FAR = 6.0
 """Distance of the eye, in lengths of the race."""
 _LINE = 1.5
 """Height of a line on a plate, in units of the picture."""
-_PLACES = ("1st", "2nd", "3rd")
-_WHITE = (1.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,21 +114,25 @@ class Race:
         """Return what is seen."""
         return self.told()
 
-    def reel(self) -> Reel:
+    def plan(self) -> RenderPlan:
         """Compute the motions, and return what is needed to draw them.
 
         Raises:
           ParameterError: if a can of a race does not finish.
         """
         runners = self.runners()
+        if self.strips:
+            end, later = min(float(runner.trajectory.time[-1]) for runner in runners), (math.inf, self.speed)
+        else:
+            finishes = self.finishes(runners)
+            end = finishes[-1] + self.after * self.hurry
+            later = (finishes[-2] + self.after, self.speed * self.hurry) if self.hurry != 1 else (math.inf, self.speed)
 
         def pictures(times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
-            return Course(self, runners, whole("width", width), whole("height", height)).draw(times)
+            sheet = Sheet(require_pixels("width", width), require_pixels("height", height))
+            return self._pictures(runners, later, times, sheet)
 
-        if self.strips:
-            end = min(float(runner.trajectory.time[-1]) for runner in runners)
-            return Reel(0.0, end, self.speed, pictures)
-        return Reel(0.0, self.finishes(runners)[-1] + self.after * self.hurry, self.speed, pictures, self.pace(runners))
+        return RenderPlan(0.0, end, self.speed, pictures, later)
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
@@ -146,94 +148,70 @@ class Race:
                 )
         return sorted(runner.finish(self.length) for runner in runners)
 
-    def pace(self, runners: Sequence[Runner]) -> tuple[float, float]:
-        """Return the time [s] from which on the film hurries, and how fast it then is."""
-        if self.hurry == 1:
-            return math.inf, self.speed
-        return self.finishes(runners)[-2] + self.after, self.speed * self.hurry
-
-
-class Course:
-    """What the pictures of a race are drawn with: board and lanes, plates with names and times, charts."""
-
-    def __init__(self, race: Race, runners: Sequence[Runner], width: int, height: int) -> None:
-        length, self.unit = race.length, height / UNITS
-        self.race, self.runners, self.sheet = race, runners, Sheet(width, height)
-        self.top, below = round(HEIGHT * self.unit), round(STRIP * self.unit) if race.strips else 0
-        scenes, before = [runner.trajectory.scene for runner in runners], -_BEFORE * length
-        self.display = Display.of(scenes, _APART)
-        self.scenery = Scenery(scenes[0], self.display.model, (0.0,) if race.strips else (0.0, length))
-        self.display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
-        ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (before, length)]
-        outlines = [self.display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
+    def _pictures(
+        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, sheet: Sheet
+    ) -> Generator[np.ndarray]:
+        unit, scenes = sheet.height / UNITS, [runner.trajectory.scene for runner in runners]
+        top, below = round(HEIGHT * unit), round(STRIP * unit) if self.strips else 0
+        display = Display.of(scenes, _APART)
+        scenery = Scenery(scenes[0], display.model, (0.0,) if self.strips else (0.0, self.length))
+        display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
+        ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_BEFORE * self.length, self.length)]
+        outlines = [display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
         points = np.concatenate(outlines)
-        eye = points.mean(axis=0) + _FAR * length * _EYE
-        self.view = View.towards(eye, points, (width, height - self.top - below), _MARGIN)
-        self.strip = Strip(self.charts(), width, below) if race.strips else None
-        self.pace = (math.inf, race.speed) if race.strips else race.pace(runners)
-        self.finish = [] if race.strips else [runner.finish(length) for runner in runners]
-        self.results = [
-            f"{_PLACES[place] if place < len(_PLACES) else f'{place + 1}th'}: {finish:.2f} s, "
-            f"theory {runner.finish_of_theory(length):.2f} s"
-            for runner, finish in zip(runners, self.finish, strict=False)
-            for place in [sorted(self.finish).index(finish)]
-        ]
-        """What each can's plate says once it has finished."""
-
-    def charts(self) -> list[Chart]:
-        """Return the charts of some quantities, with a line for each can."""
-        drawn = []
-        for name in self.race.strips:
-            title, values, limits = QUANTITIES[name]
-            motions = [(runner, runner.trajectory, runner.trajectory.scene) for runner in self.runners]
-            lines = [Line(runner.name, run.time, values(scene, run), runner.colour) for runner, run, scene in motions]
-            drawn.append(Chart(heading(title, motions[0][2]), lines, **limits))
-        return drawn
-
-    def draw(self, times: np.ndarray) -> Generator[np.ndarray]:
-        """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
-
-        Raises:
-          RenderingError: while the first picture is drawn, if OpenGL does not work.
-        """
-        with closing(Painter(self.display, self.scenery, *self.view.pixels, still=True)) as painter:
+        eye = points.mean(axis=0) + _FAR * self.length * _EYE
+        view = View.towards(eye, points, (sheet.width, sheet.height - top - below), _MARGIN)
+        strip = Strip(self._charts(runners), sheet.width, below) if below else None
+        facts = [f"{self.length:g} m"] * (not below) + [f"incline {in_degrees(scenes[0].incline)}"]
+        words = self.title, ", ".join(facts + [self.facts] * bool(self.facts))
+        results = {} if below else self._results(runners)
+        with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
             for time in times:
-                self.sheet.boxes.clear()
-                painter.paint(self.sheet, self.view, self.positions(time), self.top)
-                self.explain(time)
-                yield self.sheet.picture()
+                sheet.boxes.clear()
+                now = np.concatenate([runner.positions(np.array([time])) for runner in runners])
+                painter.paint(sheet, view, now, top)
+                head(sheet, words, time, later[1] if time >= later[0] else self.speed, unit)
+                for runner, lane in zip(runners, display.lanes, strict=True):
+                    finish, said = results.get(runner.name, (math.inf, ""))
+                    if time < finish:
+                        said = f"now sped up {later[1]:.3g} times" if time >= later[0] else ""
+                    column, row = view.pixel(in_space(scenes[0], -1.6 * RADIUS, 0.0, lane))
+                    _plate(sheet, runner, said, column, row + top)
+                if strip is not None:
+                    strip.draw(sheet, time, top + view.pixels[1])
+                yield sheet.picture()
 
-    def positions(self, time: float) -> np.ndarray:
-        """Return u from the start [m], phi, roll [rad] and lift [m] of each can at a time [s]."""
-        return np.concatenate([runner.positions(np.array([time])) for runner in self.runners])
+    def _charts(self, runners: Sequence[Runner]) -> list[Chart]:
+        """Return the charts of the quantities, with a line for each can."""
+        charts = []
+        for title, values, limits in (QUANTITIES[name] for name in self.strips):
+            motions = [(runner, runner.trajectory, runner.trajectory.scene) for runner in runners]
+            lines = [Line(runner.name, run.time, values(scene, run), runner.colour) for runner, run, scene in motions]
+            charts.append(Chart(heading(title, motions[0][2]), lines, **limits))
+        return charts
 
-    def explain(self, time: float) -> None:
-        """Draw title, plates and charts at a `time` [s]."""
-        scene = self.display.scenes[0]
-        facts = [f"{self.race.length:g} m"] * (not self.race.strips) + [f"incline {in_degrees(scene.incline)}"]
-        facts += [self.race.facts] * bool(self.race.facts)
-        hurries = time >= self.pace[0]
-        speed = self.pace[1] if hurries else self.race.speed
-        head(self.sheet, (self.race.title, ", ".join(facts)), time, speed, self.unit)
-        for number, lane in enumerate(self.display.lanes):
-            column, row = self.view.pixel(in_space(scene, -1.6 * RADIUS, 0.0, lane))
-            self._plate(number, time, column, row + self.top)
-        if self.strip is not None:
-            self.strip.draw(self.sheet, time, self.top + self.view.pixels[1])
+    def _results(self, runners: Sequence[Runner]) -> dict[str, tuple[float, str]]:
+        """Return when each can finishes [s], and what its plate then says, by the cans' names."""
+        finishes = self.finishes(runners)
+        results = {}
+        for runner in runners:
+            place = finishes.index(finish := runner.finish(self.length))
+            ordinal = ("1st", "2nd", "3rd")[place] if place < 3 else f"{place + 1}th"
+            theory = runner.finish_of_theory(self.length)
+            results[runner.name] = finish, f"{ordinal}: {finish:.2f} s, theory {theory:.2f} s"
+        return results
 
-    def _plate(self, number: int, time: float, right: float, middle: float) -> None:
-        """Draw a plate with a can's name, its note, and its times once it has finished, at its right edge's middle."""
-        runner, sheet, unit = self.runners[number], self.sheet, self.unit
-        lines: list[tuple[str, float, Colour, bool]] = [(runner.name, 1.2 * unit, runner.colour, True)]
-        lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
-        if self.finish and time >= self.finish[number]:
-            lines.append((self.results[number], 1.05 * unit, INK, True))
-        elif time >= self.pace[0]:
-            lines.append((f"now sped up {self.pace[1]:.3g} times", 1.05 * unit, INK, True))
-        boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
-        left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
-        corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
-        sheet.area(np.array(corners), _WHITE, alpha=0.9)
-        for line, (words, size, colour, bold) in enumerate(lines):
-            row = middle + (line - (len(lines) - 1) / 2) * _LINE * unit
-            sheet.text((left + 0.6 * unit, row), words, size, colour, bold=bold)
+
+def _plate(sheet: Sheet, runner: Runner, said: str, right: float, middle: float) -> None:
+    """Draw a plate with a can's name, its note and what else is said, at the plate's right edge's middle."""
+    unit = sheet.height / UNITS
+    lines: list[tuple[str, float, Colour, bool]] = [(runner.name, 1.2 * unit, runner.colour, True)]
+    lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
+    lines += [(said, 1.05 * unit, INK, True)] * bool(said)
+    boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
+    left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
+    corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
+    sheet.area(np.array(corners), (1.0, 1.0, 1.0), alpha=0.9)
+    for line, (words, size, colour, bold) in enumerate(lines):
+        row = middle + (line - (len(lines) - 1) / 2) * _LINE * unit
+        sheet.text((left + 0.6 * unit, row), words, size, colour, bold=bold)

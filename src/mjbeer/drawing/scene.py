@@ -281,7 +281,7 @@ class Painter:
         for number, position in reversed(list(enumerate(positions))):  # the nearest at last
             left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
             if right > left and lower > upper:
-                sheet.lay(self._draw(view.crop(left, upper, right, lower), number), left, top + upper)
+                sheet.composite(self._draw(view.crop(left, upper, right, lower), number), left, top + upper)
 
     def _draw(self, view: View, number: int) -> np.ndarray:
         """Return a can in a view, shape (height, width, 4), uint8: its colour where it is, and how much it covers."""

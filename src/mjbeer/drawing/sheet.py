@@ -33,7 +33,7 @@ _HEAD = 3.2
 """Length of an arrow's head, in widths of its line."""
 
 
-def whole(name: str, pixels: float) -> int:
+def require_pixels(name: str, pixels: float) -> int:
     """Return a number of pixels as an integer.
 
     Raises:
@@ -68,7 +68,7 @@ class Sheet:
         """Return a copy of some rows of the sheet, which can be `put` there again."""
         return self._pixels[top:bottom].copy()
 
-    def lay(self, picture: np.ndarray, left: int, top: int) -> None:
+    def composite(self, picture: np.ndarray, left: int, top: int) -> None:
         """Lay a picture of shape (height, width, 4) on the sheet, whose last channel is how much it covers.
 
         Its colours are darker by that share.

@@ -1,10 +1,12 @@
 """The style that all plots share, and writing each plot as SVG."""
 
+import io
 import math
 import pathlib
 import re
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import matplotlib as mpl
@@ -61,9 +63,21 @@ _TOLD = "told "
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
+@dataclass
+class Picture:
+    """Where a plot goes that is no file: an SVG without title and subtitle, which are texts of their own."""
+
+    name: str
+    title: str = ""
+    subtitle: str = ""
+    width: float = 0.0
+    """Width [inches]."""
+    svg: str = ""
+
+
 @contextmanager
 def chart(
-    path: pathlib.Path,
+    path: pathlib.Path | Picture,
     rows: int = 1,
     columns: int = 1,
     width: float = 8,
@@ -71,7 +85,7 @@ def chart(
     title: str = "",
     subtitle: str = "",
 ) -> Generator[list[Axes]]:
-    """Yield the axes to draw into, row by row; at the end write `path` with .svg, whole or not at all.
+    """Yield the axes to draw into, row by row; at the end write `path` with .svg, whole or not at all, or a `Picture`.
 
     `width` and `height` are the size of the whole plot [inches]. The title says what is shown, and the subtitle, a
     smaller line below it, of which scene.
@@ -80,13 +94,14 @@ def chart(
       OutputError: if a file cannot be written.
     """
     with mpl.rc_context(STYLE):
+        heads = [each for each in ((title, 0.32, _TITLE), (subtitle, 0.24, _SUBTITLE)) if each[0]]
+        if isinstance(path, Picture):
+            height, heads = height - sum(line for _, line, _ in heads), []
         figure = FigureCanvasSVG(Figure(figsize=(width, height), dpi=72)).figure
         used = 0.0  # height of title and subtitle at the top left [inches]
-        for text, line, look in ((title, 0.32, _TITLE), (subtitle, 0.24, _SUBTITLE)):
-            if text:
-                place = _EDGE / width, 1 - (_EDGE / 2 + used) / height
-                figure.text(*place, text, ha="left", va="top", **look)
-                used += line
+        for text, line, look in heads:
+            figure.text(_EDGE / width, 1 - (_EDGE / 2 + used) / height, text, ha="left", va="top", **look)
+            used += line
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
         for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
@@ -94,10 +109,14 @@ def chart(
                 axis.set_major_formatter(FuncFormatter(_power))
         # Set out here and not by `savefig`, which would draw the whole plot for it first.
         ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)).execute(figure)
-        named = {"Title": title, "Description": subtitle} if title else {}
-        with files.whole(path.with_name(path.name + ".svg")) as temporary:
-            figure.savefig(temporary, facecolor="white", dpi=150, metadata={"Date": None, **named})
-            temporary.write_text(_lighter(temporary.read_text(encoding="utf-8")), encoding="utf-8")
+        named = {"Title": title, "Description": subtitle} if used else dict.fromkeys(("Creator", "Format", "Type"))
+        file = io.StringIO()
+        figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata={"Date": None, **named})
+        svg = _lighter(file.getvalue())
+        if isinstance(path, Picture):
+            path.title, path.subtitle, path.width, path.svg = title, subtitle, width, svg[svg.index("<svg") :]
+        else:
+            files.write(path.with_name(path.name + ".svg"), svg)
 
 
 def label(axes: Axes, x: str, y: str, title: str = "", **settings: Any) -> None:

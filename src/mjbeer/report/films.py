@@ -3,13 +3,15 @@
 import math
 import pathlib
 import sys
-from collections.abc import Sequence
 from functools import partial
+
+from PIL import Image
 
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Filmed
+from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry
@@ -92,19 +94,9 @@ GALLERY = 720, 405, 20
 
 
 def orders(folder: pathlib.Path, quick: bool) -> list[Filmed]:
-    """Return the films to be drawn into a folder: those of the scenes and, unless it must be quick, of the stories."""
+    """Return the films of the scenes, to be drawn into a folder."""
     sizes = {name: _SMALL if quick else _WIDE if name in RACES else stories.SIZE for name in FILMS}
-    scenes = [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
-    return scenes if quick else scenes + stories.films(folder / "paper")
-
-
-def not_drawn(names: Sequence[str]) -> str:
-    """Return the line that says why films are missing and what brings them, or "" where they can be drawn."""
-    from mjbeer.drawing import opengl, video
-
-    if opengl.problem():
-        return opengl.missing(names)
-    return video.missing(names) if video.problem() else ""
+    return [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
 
 
 def write_gallery(folder: pathlib.Path) -> None:
@@ -114,10 +106,13 @@ def write_gallery(folder: pathlib.Path) -> None:
       RenderingError: if OpenGL does not work; the message says what to do.
       OutputError: if a file cannot be written.
     """
-    from mjbeer.drawing import video
-
+    width, height, fps = GALLERY
     for name, film in FILMS.items():
-        video.write_webp(film.reel(), folder / f"{name}.webp", *GALLERY)
+        plan = film.plan()
+        first, *others = (Image.fromarray(each) for each in plan.draw(plan.times(fps), width, height))
+        settings = {"save_all": True, "append_images": others, "duration": round(1000 / fps), "loop": 0}
+        with files.whole(folder / f"{name}.webp") as temporary:
+            first.save(temporary, "WEBP", quality=60, method=4, **settings)  # letters of 13 pixels are still sharp
 
 
 if __name__ == "__main__":

@@ -1,22 +1,22 @@
 """The page of the report: everything in one file that opens from the disk, and that fetches nothing."""
 
 import base64
-import io
 import math
 import pathlib
 import re
 import statistics
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
-from PIL import Image
 
 from mjbeer import paper
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Plotted
+from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.paper.row import Finding, Row
 from mjbeer.report.films import COMMANDS, FILMS, RACES
@@ -27,56 +27,14 @@ from mjbeer.studies.rows import machine
 from mjbeer.studies.stability import stiff_maps
 from mjbeer.studies.validation.run import Validation
 
-LIMIT = 8.5e6
-"""Largest size of films and plots in the page [bytes], which with its text is below 9 MB; films of the paper that would
-exceed it stay beside it as files."""
 _SMALL = 1e-3
 """A smaller share is a power of ten and not a percentage."""
-_WIDE = 690.0
-"""Width [points] from which a plot takes the width of the page, so that its letters can be read."""
-_TITLE, _SUBTITLE = 23.0, 17.3
-"""Heights of a plot's title, which the page has as a heading, and of the line below it [points]: see `output.plots`."""
-_KINDS = {".mp4": "video/mp4", ".svg": "image/svg+xml", ".webp": "image/webp"}
+_WIDE = 9.6
+"""Width [inches] from which a plot takes the width of the page, so that its letters can be read."""
 _FAILED = re.compile(r"\*\*(.+?)\*\*")
 
-
-@dataclass(frozen=True)
-class Plot:
-    """A plot (SVG) as the page shows it: without its title, which is the heading above it."""
-
-    name: str
-    title: str
-    svg: str
-    width: float
-    """Width [points]."""
-
-    @classmethod
-    def of(cls, path: pathlib.Path, captioned: bool = False) -> "Plot":
-        """Read a plot and its title, which is its name if it has none.
-
-        The line below the title is cut off as well where the page has it as a caption.
-        """
-        svg = path.read_text(encoding="utf-8")
-        svg = re.sub(r"(?s)<metadata>.*</metadata>", "", svg[svg.index("<svg") :])
-        title = re.search(r"<title>([^<]*)</title>", svg.partition("<g")[0])
-        corner, top, width, height = map(float, re.findall(r"[-\d.]+", svg.partition('viewBox="')[2])[:4])
-        if title:
-            head = _TITLE + _SUBTITLE * captioned
-            top, height = top + head, height - head
-        size = f'viewBox="{corner:g} {top:g} {width:g} {height:g}"'
-        svg = re.sub(r'viewBox="[^"]*"', size, re.sub(r' (?:width|height)="[\d.]+pt"', "", svg, count=2), count=1)
-        return cls(path.stem, str(Markup(title[1]).unescape()) if title else path.stem, svg, width)
-
-    @property
-    def picture(self) -> str:
-        """The plot as a data: URI."""
-        return _uri(self.svg.encode(), ".svg")
-
-    @property
-    def inline(self) -> Markup:
-        """The plot as an element of the page, whose points then tell what they are; its names are its own."""
-        svg = re.sub(r'(id="|="#|url\(#)', rf"\1{self.name}-", self.svg)
-        return Markup(svg.replace("<svg ", f'<svg role="img" aria-label="{escape(self.title)}" ', 1))
+Film = tuple[bytes, bytes]
+"""A film as MP4, and a picture from the midst of it as WebP."""
 
 
 @dataclass(frozen=True)
@@ -87,13 +45,8 @@ class Shown:
     title: str
     caption: str
     command: str
-    plot: Plot | None = None
-    video: str = ""
-    """The film as a data: URI; empty if there is none."""
-    poster: str = ""
-    """A picture from the midst of the film as a data: URI; empty if the film is not in the page."""
-    beside: str = ""
-    """Where the film is, relative to the page, if it is too large for it."""
+    plot: Picture | None = None
+    film: Film | None = None
 
     @property
     def wide(self) -> bool:
@@ -102,15 +55,28 @@ class Shown:
 
 
 def plots(folder: pathlib.Path) -> list[Plotted]:
-    """Return the plots of error against run time, scene by scene, and the stability maps, to be drawn into a folder."""
+    """Return the plots of the page that are not those of the stories, by the names of files in a folder."""
     benchmark = Benchmark.load(SHIPPED)
     scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
     drawn = {f"error-{case}": partial(diagrams.draw, scene) for case, scene in scenes.items()}
-    return [Plotted(draw, folder / name) for name, draw in (drawn | stiff_maps.figures(stiff_maps.load())).items()]
+    return [
+        Plotted(draw, folder / name, in_memory=True)
+        for name, draw in (drawn | stiff_maps.figures(stiff_maps.load())).items()
+    ]
 
 
-def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: str) -> str:
-    """Return the page on the films, plots and stories in a folder; `not_drawn` says why films are missing, or is ""."""
+def html(
+    validation: Validation,
+    films: Mapping[str, Film],
+    plots: Mapping[str, Picture],
+    told: Mapping[str, Film],
+    quick: bool,
+    not_drawn: str,
+) -> str:
+    """Return the page, with films of scenes and stories and plots by their names.
+
+    `not_drawn` says why films are missing, or is "".
+    """
     environment = Environment(
         loader=PackageLoader("mjbeer.report", "web"),
         autoescape=True,
@@ -118,36 +84,42 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"mathml": mathml, "power": power, "share": share, "marked": _marked}
+    environment.filters |= {"mathml": mathml, "power": power, "share": share, "marked": _marked, "data": _data}
+    environment.filters["inline"] = _inline
     benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
-    films = {name: _film(folder, name) for name in FILMS}
-    errors = [Plot.of(folder / "plots" / f"error-{case}.svg") for case in benchmark.cases]
-    figures = [
-        Shown(plot.name, plot.title, figure.caption, maps["command"], plot)
-        for name, figure in stiff_maps.FIGURES.items()
-        for plot in [Plot.of(folder / "plots" / f"{name}.svg", captioned=True)]
-    ]
-    room = LIMIT - sum(len(film.video) + len(film.poster) for film in films.values())
-    room -= sum(len(plot.svg) for plot in errors) + sum(len(each.plot.picture) for each in figures if each.plot)
+    scenes = {name: _scene(name, films.get(name)) for name in FILMS}
     return environment.get_template("page.html").render(
-        sketch=Plot.of(folder / "paper" / "letters.svg"),
-        races=[films.pop(name) for name in RACES],
-        films=list(films.values()),
+        sketch=pathlib.Path(stories.__file__).with_name("letters.svg").read_text(encoding="utf-8"),
+        races=[scenes.pop(name) for name in RACES],
+        films=list(scenes.values()),
         not_drawn=not_drawn,
-        errors=errors,
+        errors=[plots[f"error-{case}"] for case in benchmark.cases],
         benchmark=benchmark,
         costs=[tables.others(benchmark), *(tables.cheapest(benchmark, case) for case in benchmark.cases)],
         slower=_range(benchmark, "MuJoCo RK4"),
         heyoka=_range(benchmark, "heyoka"),
         maps=maps,
-        figures=figures,
+        figures=[
+            Shown(name, plots[name].title, figure.caption, maps["command"], plots[name])
+            for name, figure in stiff_maps.FIGURES.items()
+        ],
         runs=sum(len(cells) for each in maps["maps"] for cells in each["measured"]),
         same=statistics.fmean(each["same"] for each in maps["maps"]),
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
         quoted=[row for row in paper.rows() if row.quote and not row.misprint],
         findings=len(validation.findings),
-        stories=_stories(folder, quick, room),
+        stories=[
+            Shown(
+                each.name,
+                plots[each.name].title,
+                each.caption,
+                "mjbeer paper" + " --films" * (not quick),
+                plots[each.name],
+                told.get(each.name),
+            )
+            for each in stories.stories()
+        ],
         validation=validation,
         tables=validation.tables(document=True),
         machine=machine(),
@@ -173,49 +145,24 @@ def share(value: float) -> Markup:
     return escape(f"{100 * value:.3g} %" if abs(value) >= 1 else f"{100 * value:.2g} %")
 
 
-def _film(folder: pathlib.Path, name: str) -> Shown:
-    """Return a film of the scenes with its poster, or without both if it was not drawn."""
-    film, video = FILMS[name], folder / f"{name}.mp4"
+def _scene(name: str, drawn: Film | None) -> Shown:
+    """Return a film of the scenes, or what there is of it if it was not drawn."""
+    film = FILMS[name]
     command = f"{COMMANDS[name]} --output {name}.mp4" if name in COMMANDS else "mjbeer report"
     head = film.look if isinstance(film, Take) else film
-    shown = Shown(name, head.title if head else name, film.caption, command)
-    return replace(shown, video=_data(video), poster=_poster(video)) if video.exists() else shown
+    return Shown(name, head.title if head else name, film.caption, command, film=drawn)
 
 
-def _stories(folder: pathlib.Path, quick: bool, room: float) -> list[Shown]:
-    """Return the paper's stories: each film goes into the page as long as there is `room` [bytes] for it.
-
-    A `quick` report has no films of stories; an earlier one may have left some.
-    """
-    plots = [Plot.of(folder / "paper" / f"{story.name}.svg") for story in stories.stories()]
-    room -= sum(len(plot.picture) for plot in plots)
-    shown = []
-    for story, plot in zip(stories.stories(), plots, strict=True):
-        video = folder / "paper" / f"{story.name}.mp4"
-        each = Shown(story.name, plot.title, story.caption, "mjbeer paper" + " --films" * (not quick), plot)
-        if story.film is not None and not quick and video.exists():
-            with_film = replace(each, video=_data(video), poster=_poster(video))
-            size = len(with_film.video) + len(with_film.poster)
-            each = with_film if size < room else replace(each, beside=f"paper/{story.name}.mp4")
-            room -= size if size < room else 0
-        shown.append(each)
-    return shown
+def _data(content: bytes | str, kind: str) -> str:
+    """Return a file of a kind as a data: URI."""
+    content = content if isinstance(content, bytes) else content.encode()
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 
-def _data(path: pathlib.Path) -> str:
-    return _uri(path.read_bytes(), path.suffix)
-
-
-def _poster(video: pathlib.Path) -> str:
-    """Return the still picture beside a film as a data: URI, a third as large as the file."""
-    file = io.BytesIO()
-    with Image.open(video.with_name(f"{video.stem}-still.png")) as still:
-        still.save(file, "WEBP", quality=80)
-    return _uri(file.getvalue(), ".webp")
-
-
-def _uri(content: bytes, kind: str) -> str:
-    return f"data:{_KINDS[kind]};base64,{base64.b64encode(content).decode()}"
+def _inline(plot: Picture) -> Markup:
+    """Return a plot as an element of the page, whose points then tell what they are; its names are its own."""
+    svg = re.sub(r'(id="|="#|url\(#)', rf"\1{plot.name}-", plot.svg)
+    return Markup(svg.replace("<svg ", f'<svg role="img" aria-label="{escape(plot.title)}" ', 1))
 
 
 def _range(benchmark: Benchmark, name: str) -> str:

@@ -1,11 +1,12 @@
-"""The report: the tables, a video of each scene and the paper's stories, in a folder with a page that shows it all."""
+"""The report: one page with the checks, a film of each scene and the paper's stories."""
 
 import pathlib
-from dataclasses import dataclass
+import tempfile
+from dataclasses import dataclass, replace
 
 from rich.console import Console
 
-from mjbeer.drawing import studio
+from mjbeer.drawing import opengl, studio
 from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.report import films, page
@@ -14,40 +15,40 @@ from mjbeer.studies.validation.run import Validation, validate
 
 @dataclass(frozen=True)
 class _Checks:
-    """The checks, to be made; their results go into a file."""
+    """The checks, to be made."""
 
     path: pathlib.Path
 
     def write(self) -> Validation:
-        validation = validate(None)
-        files.write(self.path, validation.json())
-        return validation
+        return validate(None)
 
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
-    """Write validation.json, a video and a picture of each scene, stories, plots and index.html into a folder.
+    """Write index.html into a folder, whole or not at all; that of an earlier report goes first.
 
-    Quickly, the videos are smaller and the stories have plots and no films. Where there is no OpenGL or no ffmpeg, all
-    is written but videos, pictures and films. What comes back is the validation, and the line that says which are
-    missing for that reason, or "".
-
-    Every file appears whole or not at all; the page comes last, and that of an earlier report goes first.
+    Quickly, the films are smaller and the stories have plots and no films. Where there is no OpenGL, there are no
+    films. What comes back is the validation, and the line that says which films are missing, or "".
 
     Raises:
       OutputError: if the folder cannot be written to.
-      RenderingError: if a video cannot be drawn for another reason.
+      RenderingError: if a film cannot be drawn for another reason.
     """
-    drawn, papers, plots = films.orders(folder, quick), folder / "paper", folder / "plots"
-    for each in (folder, plots):
-        files.make_folder(each)
-    with files.whole(folder / "index.html") as index, stories.told(papers, films=False):
+    files.make_folder(folder)
+    with files.whole(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
         (folder / "index.html").unlink(missing_ok=True)
-        if not_drawn := films.not_drawn([str(order.path.relative_to(folder)) for order in drawn]):
-            for order in drawn:  # those of an earlier report are not of this one
-                order.path.unlink(missing_ok=True)
-            drawn = []
-        # The checks take longest, and compile what the films run; plots of what is known need not. The last are quick.
-        orders = [_Checks(folder / "validation.json"), *page.plots(plots), *drawn]
-        validation, *_ = studio.produce([*orders, *reversed(stories.plots(papers))], console)
-        index.write_text(page.html(folder, validation, quick, not_drawn), encoding="utf-8")
+        path = pathlib.Path(work)
+        drawn = films.orders(path, quick)
+        told = [] if quick else stories.films(path)
+        not_drawn = opengl.missing([each.path.stem for each in drawn + told]) if opengl.problem() else ""
+        drawn, told = ([], []) if not_drawn else (drawn, told)
+        plots = [*page.plots(path), *(replace(plot, in_memory=True) for plot in stories.plots(path))]
+        # The checks take longest, and compile what the films run; plots are quick.
+        orders = [_Checks(path / "checks"), *drawn, *told, *plots]
+        validation, *made = studio.produce(orders, console)
+        still = {order.path: poster for order, poster in zip(drawn + told, made, strict=False)}
+        scenes, filmed = (
+            {each.path.stem: (each.path.read_bytes(), still[each.path]) for each in of} for of in (drawn, told)
+        )
+        pictures = {plot.name: plot for plot in made[len(drawn + told) :]}
+        index.write_text(page.html(validation, scenes, pictures, filmed, quick, not_drawn), encoding="utf-8")
     return validation, not_drawn
