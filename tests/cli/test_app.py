@@ -73,43 +73,30 @@ def test_standard_output_has_the_csv_or_the_json_alone(
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ("", "command must be one of 'simulate', 'render', 'view', 'export', 'sweep', "),
-        ("simlate sliding", "command must be one of 'simulate', 'render', 'view', 'export', 'sweep', "),
-        ("simulate", "the scene after simulate must be one of 'sliding', 'liquid', 'frozen', 'pendulum', 'hoop'; "),
-        ("simulate --fill 0.3 sliding", "the scene after simulate must be one of 'sliding', 'liquid', 'frozen', "),
-        ("sweep frozn --fill 0.1,0.2", "the scene after sweep must be one of 'sliding', 'liquid', 'frozen', "),
-        ("simulate sliding --tol 1e-6", "option must be one of '--incline', '--fill', "),
-        ("simulate pendulum --fill=0.5", "option must be one of '--incline', '--radius', "),
-        ("simulate frozen --damping 1", "option must be one of '--incline', '--fill', "),
-        (
-            "simulate standing",
-            "the scene after simulate must be one of 'sliding', 'liquid', 'frozen', 'pendulum', 'hoop'; ",
-        ),
-        ("simulate sliding -- --json", ""),
-        ("simulate sliding more", "option must be one of '--incline', '--fill', "),
+        ("", "the following arguments are required: COMMAND; see `mjbeer --help`"),
+        ("simlate sliding", "argument COMMAND: invalid choice: 'simlate' (choose from "),
+        ("simulate", "the following arguments are required: SCENE; see `mjbeer simulate --help`"),
+        ("sweep frozn --fill 0.1,0.2", "argument SCENE: invalid choice: 'frozn' (choose from "),
+        ("simulate standing", "argument SCENE: invalid choice: 'standing' (choose from "),
+        ("simulate sliding --tol 1e-6", "--tol is not understood here; see `mjbeer simulate sliding --help`"),
+        ("simulate frozen --damping 1", "--damping is not understood here; see `mjbeer simulate frozen --help`"),
+        ("simulate sliding more", "more is not understood here; see `mjbeer simulate sliding --help`"),
         ("simulate sliding --phi0 1,2", "argument --phi0: invalid float value: '1,2'"),
-        ("simulate sliding --phi0", "argument --phi0: expected one argument"),
         ("simulate sliding --rolling gears", "argument --rolling: invalid choice: 'gears' (choose from"),
-        ("export sliding --output x.xml --integrator DOP853", "argument --integrator: invalid choice: 'DOP853' ("),
         ("export sliding", "the following arguments are required: --output"),
         ("benchmark slding", "scene must be one of 'sliding', 'sliding-metal', "),
         ("stability --long --quick", "--long and --quick exclude each other"),
         ("simulate sliding --incline 100", "incline must be between -90 and 90 [degrees], got 100.0"),
         ("sweep frozen --incline 1:100:3", "incline must be between -90 and 90 [degrees], got 100.0"),
-        ("export frozen --output x.xml --incline nan", "incline must be between -90 and 90 [degrees], got nan"),
         ("simulate sliding --phi0 inf", "phi0 must be a finite number [degrees], got inf"),
         ("export frozen --output x.xml --phi-dot0 nan", "phi_dot0 must be a finite number [degrees/s], got nan"),
         ("simulate sliding --fill 0", "fill (height of the beer over the can's diameter) must be in (0, 1], got 0.0"),
         ("simulate sliding --damping -1", "damping must be 0 or greater [N m s], got -1.0"),
-        ("simulate liquid --viscosity nan", "viscosity must be a finite number [m^2/s], got nan"),
         ("simulate frozen --timestep 0", "timestep must be between 1e-07 and 10 [s], got 0.0"),
         ("simulate frozen --duration -1", "duration must be greater than 0 [s], got -1.0"),
-        ("simulate sliding --rolling equality", "a massless can with a sliding load exists only in rolling="),
         ("simulate frozen --timestep 0.5 --integrator Euler --phi0 5e5 --duration 900", "the run diverged at t ="),
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
-        ("export frozen --output x.urdf", "MJCF is written: the file's name must end in .xml, got 'x.urdf'"),
         ("simulate frozen --output .", "cannot write .: it is a folder"),
-        ("simulate frozen --output /", "cannot write /: it is a folder"),
         ("simulate frozen --json --output -", "standard output takes one of them: the JSON, or the CSV of --output -"),
         ("simulate frozen --tolerance 1e-6 --integrator Euler", "give a tolerance or an integrator: a tolerance ch"),
         ("sweep sliding --damping 0,-1", "damping[1]: damping must be 0 or greater [N m s], got -1.0"),
@@ -143,15 +130,22 @@ def test_a_tolerance_has_the_integrator_that_keeps_it(capsys: pytest.CaptureFixt
 
 
 def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["--version"]) == 0
-    assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
-    for words in ([], *([name] for name in COMMANDS)):
+    with_scenes = [name for name, command in COMMANDS.items() if command.numbers]
+    for words in (
+        [],
+        *([name] for name in COMMANDS),
+        *([name, "frozen"] for name in with_scenes),
+        ["view", "standing"],
+    ):
         with pytest.raises(SystemExit) as ended:
             main([*words, "--help"])
         assert ended.value.code == 0
         assert " ".join(["usage: mjbeer", *words]) in (told := capsys.readouterr().out)
-        named = COMMANDS if not words else SCENES if COMMANDS[words[0]].numbers else ()
-        assert all(re.search(rf"^  {each}\s", told, re.MULTILINE) for each in named)
+        named = COMMANDS if not words else SCENES if words[-1] in with_scenes else ()
+        assert all(re.search(rf"^    {each}\s", told, re.MULTILINE) for each in named)
+    with pytest.raises(SystemExit):
+        main(["--version"])
+    assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
 
 
 def test_the_console_script_passes_on_the_exit_status() -> None:

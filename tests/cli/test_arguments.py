@@ -72,7 +72,7 @@ def test_help_states_the_unit_of_every_number(
     ],
 )
 def test_a_scene_is_that_of_python(words: str, meant: Scene) -> None:
-    _, given = parse(["simulate", *words.split()])
+    given = parse(["simulate", *words.split()])
     assert scene(given) == meant
 
 
@@ -81,7 +81,7 @@ def test_the_options_of_the_run_arrive() -> None:
         "simulate frozen --phi0 -30 --phi-dot0 180 --duration 0.5 --rolling contact --integrator discrete "
         "--timestep 2e-3 --tolerance 1e-8 --friction 0.4 --output motion.csv"
     )
-    _, given = parse(words.split())
+    given = parse(words.split())
     assert start(given) == {"phi0": math.radians(-30), "phi_dot0": math.pi}
     assert steps(given) == {
         "rolling": "contact", "integrator": "discrete", "timestep": 2e-3, "tolerance": 1e-8, "friction": 0.4,
@@ -99,7 +99,7 @@ def test_the_options_of_the_run_arrive() -> None:
     ],
 )
 def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
-    _, given = parse(words.split())
+    given = parse(words.split())
     for name, parameter in inspect.signature(meant).parameters.items():
         if hasattr(given, name) and name not in ("scene", "phi0", "output"):
             # An integrator that is not given is left to Python's default, and to the tolerance.
@@ -107,7 +107,7 @@ def test_the_defaults_are_those_of_python(words: str, meant: object) -> None:
 
 
 def test_a_range_a_list_or_a_number() -> None:
-    _, given = parse(["sweep", "frozen", "--incline", "-1:1:5", "--fill", "0.1,0.2", "--phi0", "-.3e1"])
+    given = parse(["sweep", "frozen", "--incline", "-1:1:5", "--fill", "0.1,0.2", "--phi0", "-.3e1"])
     assert np.array_equal(given.incline, [-1.0, -0.5, 0.0, 0.5, 1.0])
     assert np.array_equal(given.fill, [0.1, 0.2])
     assert given.phi0 == -3.0

@@ -194,7 +194,7 @@ def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
     film = FILMS[name]
     assert isinstance(film, Take)
     given = parse(shlex.split(films.COMMANDS[name])[1:])
-    ours, theirs = film.trajectory(), trajectory_of(given[1] if isinstance(given, tuple) else given)
+    ours, theirs = film.trajectory(), trajectory_of(given)
     assert (ours.phi0, ours.phi_dot0) == pytest.approx(
         (theirs.phi0, theirs.phi_dot0), abs=1e-6
     )  # seven digits in degrees

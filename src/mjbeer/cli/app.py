@@ -1,6 +1,7 @@
 """The entry point of `mjbeer`: read the command line, run the command, and turn errors into exit statuses."""
 
 import functools
+import re
 import signal
 import sys
 import warnings
@@ -10,20 +11,16 @@ from types import FrameType
 from typing import Any, NoReturn, cast
 
 import mjbeer
-from mjbeer import require
 from mjbeer.cli import motions, studies, sweep
-from mjbeer.cli.arguments import SCENES, STANDING_OPTIONS, Command, Parser, scene_options, scenes_told
+from mjbeer.cli.arguments import STANDING, STANDING_OPTIONS, Command, Parser, scene_options, scenes_told
 from mjbeer.drawing import opengl
-from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
+from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _ERROR = 2
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
-_HELP = ("-h", "--help")
-_STANDING = "a can that stands on a floor, free in space, with a liquid that sloshes"
-
 
 COMMANDS: dict[str, Command] = {
     "simulate": motions.simulate,
@@ -45,18 +42,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     The status is 0, 1 if a check failed, 2 on an error, or 128 plus the number of the signal that interrupted it.
 
     Raises:
-      SystemExit: after --help.
+      SystemExit: after --help and --version.
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
     for signum in (signal.SIGTERM, signal.SIGHUP):
         if signal.getsignal(signum) == signal.SIG_DFL:  # a signal that is ignored, as under nohup, stays ignored
             signal.signal(signum, _interrupt)
     try:
-        if words[:1] == ["--version"]:
-            terminal.write(f"mjbeer {mjbeer.__version__}\n")
-            return 0
         with terminal.printing():
-            command, given = parse(words)
+            given = parse(words)
+        command = COMMANDS[given.command]
         opengl.import_mujoco_without_gl()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
@@ -74,40 +69,36 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 128 + signum
 
 
-def parse(words: Sequence[str]) -> tuple[Command, Namespace]:
-    """Return the command that the words of a command line ask for, and its options.
+def parse(words: Sequence[str]) -> Namespace:
+    """Return the options that the words of a command line ask for, with the `command` that takes them.
 
     Raises:
       ParameterError: if the words are not understood.
-      SystemExit: after --help.
+      SystemExit: after --help and --version.
     """
-    first, *rest = words or [""]
-    if first in _HELP:
-        parser = Parser("mjbeer", _DESCRIPTION, "COMMAND [options]")
-        told = {name: str(command.run.__doc__).split("\n\n")[0] for name, command in COMMANDS.items()}
-        parser.words("commands", told)
-        parser.parse_args([first])
-    command = COMMANDS[require.choice("command", first, COMMANDS)]
-    told = str(command.run.__doc__)
-    parser = Parser(f"mjbeer {first}", told)
-    if command.standing and rest[:1] == ["standing"]:
-        parser = Parser(f"mjbeer {first} standing", f"{told} The scene: {_STANDING}.")
-        parser.set_defaults(scene="standing")
-        parser.add((*STANDING_OPTIONS, *command.standing))
-        return command, parser.read(rest[1:])
-    if command.numbers:
-        scene, *rest = rest or [""]
-        if scene in _HELP:
-            parser, rest = Parser(f"mjbeer {first}", told, "SCENE [options]"), [scene]
-            scenes = scenes_told() | ({"standing": _STANDING} if command.standing else {})
-            parser.words(f"scenes (`mjbeer {first} SCENE --help` shows the options of each)", scenes)
+    top = Parser(_DESCRIPTION, prog="mjbeer")
+    top.add_argument("--version", action="version", version=f"mjbeer {mjbeer.__version__}")
+    parsers = top.below("commands", "COMMAND", {name: str(each.run.__doc__) for name, each in COMMANDS.items()})
+    # Only the command that is meant gets its options, which are many.
+    name = next((word for word in words if word in COMMANDS), "")
+    if name:
+        at, command = parsers[name], COMMANDS[name]
+        if command.numbers is None:
+            at.add(command.options)
         else:
-            require.choice(f"the scene after {first}", scene, [*SCENES, *(["standing"] if command.standing else [])])
-            parser = Parser(f"mjbeer {first} {scene}", f"{told} The scene: {scenes_told()[scene]}")
-            parser.set_defaults(scene=scene)
-            parser.add(scene_options(scene, command.numbers))
-    parser.add(command.options)
-    return command, parser.read(rest)
+            scenes = scenes_told() | ({"standing": STANDING} if command.standing else {})
+            for scene, below in at.below("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
+                if scene == "standing":
+                    below.add((*STANDING_OPTIONS, *command.standing))
+                else:
+                    below.add((*scene_options(scene, command.numbers), *command.options))
+    # argparse takes -1e-3 and -1:1:5 for options, unless they are joined to theirs.
+    joined = re.sub(r"\0(?=-[\d.])", "=", "\0".join(["", *words])).split("\0")[1:]
+    given, others = top.parse_known_args(joined)
+    if others:
+        place = " ".join(filter(None, ("mjbeer", given.command, getattr(given, "scene", ""))))
+        raise ParameterError(f"{others[0]} is not understood here; see `{place} --help`")
+    return given
 
 
 def _show(otherwise: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:

@@ -8,11 +8,10 @@ import functools
 import inspect
 import math
 import pathlib
-import re
 from argparse import Namespace
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple, NoReturn, Self
 
 import numpy as np
 
@@ -107,47 +106,41 @@ def command(
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line each."""
 
-    def __init__(self, name: str, told: str, usage: str = "[options]") -> None:
+    def __init__(self, told: str, **settings: Any) -> None:
         lines = functools.partial(argparse.HelpFormatter, max_help_position=28)
-        told = " ".join(told.split())
-        super().__init__(name, f"{name} {usage}", told, formatter_class=lines, allow_abbrev=False)
-        self.names: list[str] = []
+        settings = {"formatter_class": lines, "allow_abbrev": False, "description": " ".join(told.split())} | settings
+        super().__init__(**settings)
 
     def error(self, message: str) -> NoReturn:
-        raise ParameterError(message)
+        raise ParameterError(f"{message}; see `{self.prog} --help`")
 
-    def add(self, options: Iterable[Option]) -> None:
+    def below(self, title: str, name: str, told: Mapping[str, str], of: str = "") -> dict[str, Self]:
+        """Add words of which one must follow, with what they mean, and return the parser of each.
+
+        Their help begins with `of`.
+        """
+        choice = self.add_subparsers(title=title, dest=name.lower(), metavar=name, required=True)
+        made = {}
+        for word, meaning in told.items():
+            first, _, _ = meaning.partition("\n\n")
+            made[word] = choice.add_parser(word, help=" ".join(first.split()).removesuffix("."), told=of + meaning)
+        return made
+
+    def add(self, options: Sequence[Option]) -> None:
         """Add options."""
+        self.usage = "%(prog)s [options]" + " [NAME ...]" * any(isinstance(each.default, tuple) for each in options)
         metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
         for name, told, default, kind, otherwise in options:
-            if isinstance(default, tuple):
-                shown = ", ".join(default)
-                self.add_argument(name, nargs="*", metavar="NAME", help=f"{told} (default: {shown})")
-                continue
             shown = otherwise or (f"{default:g}" if isinstance(default, float) else default)
             how: dict[str, Any] = {"help": told, "action": "store_true"}
+            if isinstance(default, tuple):
+                self.add_argument(name, nargs="*", metavar="NAME", help=f"{told} (default: {', '.join(default)})")
+                continue
             if kind is not bool:
                 how = {"help": f"{told} ({shown})" if shown == REQUIRED else f"{told} (default: {shown})"}
                 how |= {"type": kind, "metavar": metavars[kind]} if callable(kind) else {"choices": kind}
                 how |= {"default": default, "required": shown == REQUIRED}
-            self.names.append("--" + name.replace("_", "-"))
-            self.add_argument(self.names[-1], **how)
-
-    def words(self, title: str, told: dict[str, str]) -> None:
-        """Add words to the help: names of commands or scenes, with what they mean."""
-        group = self.add_argument_group(title)
-        for name, text in told.items():
-            group.add_argument(name, help=text)
-
-    def read(self, words: Iterable[str]) -> Namespace:
-        """Return what the words of a command line say, by the names of the options."""
-        # argparse takes -1e-3 and -1:1:5 for options, unless they are joined to theirs.
-        joined = re.sub(r"\0(?=-[\d.])", "=", "\0".join(["", *words])).split("\0")[1:]
-        given, others = self.parse_known_intermixed_args(joined)
-        if others:
-            require.choice("option", others[0].partition("=")[0], self.names)
-            self.error(f"{others[0]} cannot stand here")
-        return given
+            self.add_argument("--" + name.replace("_", "-"), **how)
 
 
 def scenes_told() -> dict[str, str]:
@@ -172,6 +165,7 @@ def scene_options(scene: str, numbers: Callable[[str], Any]) -> Iterable[Option]
         yield Option(name, _MEANINGS[name], default, _CHOICES.get(name, numbers), "the liquid's" * (default is None))
 
 
+STANDING = "a can that stands on a floor, free in space, with a liquid that sloshes"
 STANDING_OPTIONS = (
     Option("liquid", _MEANINGS["liquid"], "beer", NAMES),
     Option("fill", "height of the liquid as a fraction of the can's length, between 0 and 1", 0.5),
