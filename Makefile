@@ -49,7 +49,7 @@ portability: $(TOOLS)
 	$(BIN)/python -m tests.support.others
 
 renders: $(PACKAGE)
-	$(BIN)/python -m mjbeer.report.films renders
+	$(BIN)/python docs/figures/renders.py renders
 	$(BIN)/python docs/figures/carry.py
 
 templates: $(PACKAGE)

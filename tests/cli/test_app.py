@@ -17,7 +17,7 @@ import pytest
 import mjbeer
 from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import COMMANDS, main
-from mjbeer.cli.figures import Figures
+from mjbeer.cli.summary import Summary
 from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.trajectory import csv
 from tests.support.processes import run
@@ -40,8 +40,8 @@ def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsy
     run = simulate(SCENES[name], 0.1, math.radians(57), math.radians(-20))
     assert target.read_text() == csv(run)
     out, err = capsys.readouterr()
-    assert out == Figures(run).text()
-    assert err == f"wrote {target}\n" + "".join(f"note: {note}\n" for note in Figures(run).notes)
+    assert out == Summary(run).text()
+    assert err == f"wrote {target}\n" + "".join(f"note: {note}\n" for note in Summary(run).notes)
     time, u, phi = np.loadtxt(target, delimiter=",", skiprows=1, usecols=(0, 1, 2)).T
     truth = exact(SCENES[name], time, math.radians(57), math.radians(-20))
     assert np.abs(phi - truth.phi).max() < RK4
@@ -54,17 +54,17 @@ def test_standard_output_has_the_csv_or_the_json_alone(
     """No can moves like that, and from 0.83 s on none could: a note, and a warning."""
     monkeypatch.chdir(tmp_path)
     words = "simulate frozen --phi0 180 --duration 1 --friction 0.6"
-    run, figures = simulate(frozen(), 1.0, math.pi), Figures(simulate(frozen(), 1.0, math.pi), 0.6)
+    run, summary = simulate(frozen(), 1.0, math.pi), Summary(simulate(frozen(), 1.0, math.pi), 0.6)
     assert main([*words.split(), "--output", "-"]) == 0
     out, err = capsys.readouterr()
     assert out == csv(run)
     assert "phi at the end" in err
-    (note,) = figures.notes
+    (note,) = summary.notes
     told = [*(f"model does not hold: {warning}" for warning in run.warnings), f"note: {note}"]
     assert err.splitlines()[-len(told) :] == told
     assert main([*words.split(), "--json"]) == 0
     out, err = capsys.readouterr()
-    assert json.loads(out, parse_constant=pytest.fail) == json.loads(figures.json())
+    assert json.loads(out, parse_constant=pytest.fail) == json.loads(summary.json())
     assert (json.loads(out)["model holds"], err.splitlines()) == (False, told)
     assert json.loads(out)["equations solved"] is True
     assert not os.listdir(tmp_path)

@@ -30,13 +30,11 @@ from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
 
 if TYPE_CHECKING:
-    from mjbeer.cli.figures import Figures
+    from mjbeer.cli.summary import Summary
     from mjbeer.theory.trajectory import Trajectory
 
 _FPS = 30
 """Pictures per second of a video."""
-_TURN = 1.0
-"""Largest turn from picture to picture [rad] that the eye can follow well: a sixth of a circle."""
 _SPEED = Option("speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0)
 _CAMERA = (
     "fixed (stands still and shows the whole motion), pan (moves along with a constant acceleration), close (goes "
@@ -66,24 +64,24 @@ def trajectory_of(given: Namespace) -> "Trajectory":
 )
 def simulate(given: Namespace) -> int:
     """Simulate a scene and print its key figures, with an estimate of the error."""
-    from mjbeer.cli.figures import Figures
+    from mjbeer.cli.summary import Summary
     from mjbeer.theory.trajectory import csv
 
     to_output = str(given.output) == "-"
     if to_output and given.json:
         raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
     with files.whole(given.output) if given.output and not to_output else nullcontext() as temporary:
-        figures = Figures(trajectory_of(given), given.friction)
+        summary = Summary(trajectory_of(given), given.friction)
         if temporary:
-            temporary.write_text(csv(figures.trajectory), encoding="utf-8")
+            temporary.write_text(csv(summary.trajectory), encoding="utf-8")
     if temporary:
         say(f"wrote {given.output}")
     if to_output:
-        terminal.write(csv(figures.trajectory))
-        say(figures.text().rstrip())
+        terminal.write(csv(summary.trajectory))
+        say(summary.text().rstrip())
     else:
-        terminal.write(figures.json() if given.json else figures.text())
-    _warn(figures)
+        terminal.write(summary.json() if given.json else summary.text())
+    _warn(summary)
     return 0
 
 
@@ -98,15 +96,16 @@ def simulate(given: Namespace) -> int:
 )
 def render(given: Namespace) -> int:
     """Simulate a scene and draw it as a video (MP4)."""
-    from mjbeer.cli.figures import Figures
+    from mjbeer.cli.summary import Summary
     from mjbeer.drawing.video import render
 
     trajectory = trajectory_of(given)
-    _warn(Figures(trajectory, given.friction))
+    _warn(Summary(trajectory, given.friction))
+    # An eye can follow a turn of 1 rad from picture to picture, a sixth of a circle.
     turn = given.speed / _FPS * max(float(np.abs(rate).max()) for rate in (trajectory.roll_dot, trajectory.phi_dot))
-    if turn > _TURN:
+    if turn > 1:
         told = f"can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture"
-        say(f"note: {told}; a --speed below {given.speed * _TURN / turn:.2g} shows it better", "yellow")
+        say(f"note: {told}; a --speed below {given.speed / turn:.2g} shows it better", "yellow")
     picture = {name: getattr(given, name) for name in ("width", "height", "speed", "camera")}
     render(trajectory, given.output, fps=_FPS, **picture)
     say(f"wrote {given.output}")
@@ -171,11 +170,11 @@ def _scene_and_start(given: Namespace) -> tuple[Any, dict[str, Any]]:
     return (standing_can(given), {}) if given.scene == "standing" else (scene(given), start(given))
 
 
-def _warn(figures: "Figures") -> None:
-    run = figures.trajectory
+def _warn(summary: "Summary") -> None:
+    run = summary.trajectory
     for warning in run.solver_warnings:
         say(f"equations not solved: {warning}", "yellow")
     for warning in (*run.rolling_warnings, *run.liquid_warnings):
         say(f"model does not hold: {warning}", "yellow")
-    for note in figures.notes:
+    for note in summary.notes:
         say(f"note: {note}", "yellow")

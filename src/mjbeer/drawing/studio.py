@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import rich.console
@@ -21,19 +21,6 @@ from mjbeer.exceptions import AngleWarning, LiquidWarning, RenderingError, Untru
 from mjbeer.output import processes
 from mjbeer.output.plots import Picture
 from mjbeer.output.terminal import progress_bar
-
-
-class Order(Protocol):
-    """Something to be made. It can be pickled, so that another process can do it."""
-
-    @property
-    def path(self) -> pathlib.Path:
-        """Its file, or one that has its name."""
-        ...
-
-    def write(self) -> Any:
-        """Write its file, whole or not at all, and return what is to be known of it besides."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -77,8 +64,10 @@ class Plotted:
         return picture
 
 
-def produce(orders: Sequence[Order], console: rich.console.Console) -> list[Any]:
-    """Write what is ordered, with a progress bar, and return what the orders return; begin with the first of them.
+def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
+    """Write what is ordered, with a progress bar, and return what the orders' `write` returns; begin with the first.
+
+    An order can be pickled, and has a `path`: its file, which it writes whole or not at all, or one of its name.
 
     Raises:
       RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
@@ -97,7 +86,7 @@ def produce(orders: Sequence[Order], console: rich.console.Console) -> list[Any]
         return [future.result() for future in futures]
 
 
-def _done(order: Order) -> Any:
+def _done(order: Any) -> Any:
     """Write what is ordered: reports show on purpose what cannot be trusted."""
     with warnings.catch_warnings():
         for kind in (UntrustedWarning, LiquidWarning, AngleWarning):
@@ -106,7 +95,7 @@ def _done(order: Order) -> Any:
 
 
 @contextlib.contextmanager
-def _swept(orders: Sequence[Order]) -> Generator[None]:
+def _swept(orders: Sequence[Any]) -> Generator[None]:
     """Remove the hidden files at the end that a process leaves which is ended while it writes."""
     try:
         yield

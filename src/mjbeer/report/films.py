@@ -2,16 +2,12 @@
 
 import math
 import pathlib
-import sys
 from functools import partial
-
-from PIL import Image
 
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.studio import Filmed
-from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry
@@ -89,31 +85,9 @@ COMMANDS = {
 """The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
 _SMALL, _WIDE = (640, 360, 25), (1152, 648, 25)
 """Width and height [pixels] and pictures per second in a quick report, and of a race, which has the page's width."""
-GALLERY = 720, 405, 20
-"""The same of an animated picture for the documents: each of the files then takes less than 1.5 MB."""
 
 
 def orders(folder: pathlib.Path, quick: bool) -> list[Filmed]:
     """Return the films of the scenes, to be drawn into a folder."""
     sizes = {name: _SMALL if quick else _WIDE if name in RACES else stories.SIZE for name in FILMS}
     return [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
-
-
-def write_gallery(folder: pathlib.Path) -> None:
-    """Write each film as an animated WebP into a folder: the small gallery that the documents show.
-
-    Raises:
-      RenderingError: if OpenGL does not work; the message says what to do.
-      OutputError: if a file cannot be written.
-    """
-    width, height, fps = GALLERY
-    for name, film in FILMS.items():
-        plan = film.plan()
-        first, *others = (Image.fromarray(each) for each in plan.draw(plan.times(fps), width, height))
-        settings = {"save_all": True, "append_images": others, "duration": round(1000 / fps), "loop": 0}
-        with files.whole(folder / f"{name}.webp") as temporary:
-            first.save(temporary, "WEBP", quality=60, method=4, **settings)  # letters of 13 pixels are still sharp
-
-
-if __name__ == "__main__":
-    write_gallery(pathlib.Path(sys.argv[1]))

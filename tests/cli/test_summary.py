@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Trajectory, exact, frozen, hoop, liquid, simulate, sliding
-from mjbeer.cli.figures import Figures
+from mjbeer.cli.summary import Summary
 from mjbeer.simulation.run import Run
 from mjbeer.theory.scene import Scene
 
@@ -18,18 +18,18 @@ START, SHORT, LONG = math.pi, 0.8, 0.9
 
 
 def lines(trajectory: Trajectory, friction: float = 1.0) -> dict[str, str]:
-    text = Figures(trajectory, friction).text()
+    text = Summary(trajectory, friction).text()
     return {line[:31].strip(): line[32:] for line in text.splitlines()}
 
 
 def content(trajectory: Trajectory, friction: float = 1.0) -> dict[str, Any]:
-    return json.loads(Figures(trajectory, friction).json(), parse_constant=pytest.fail)
+    return json.loads(Summary(trajectory, friction).json(), parse_constant=pytest.fail)
 
 
 def test_text_and_json_have_what_a_run_says_about_itself() -> None:
     run = simulate(hoop(), 0.1, 1.0, rolling="contact", friction=0.05)
     slip, lift, radius = run.slip, run.lift, run.scene.can.radius
-    until = Figures(run, 0.05).rolls_until
+    until = Summary(run, 0.05).rolls_until
     assert content(run, 0.05) == {
         "rolling": "contact",
         "integrator": "RK4",
@@ -120,15 +120,15 @@ def test_a_damped_run_without_steady_rolling_says_why(scene: Scene, reason: str)
 def test_until_when_a_can_rolls_with_a_friction(friction: float) -> None:
     """Beside the exact motion: at that time it needs the coefficient that was given. It needs 1.839 at most."""
     run = simulate(frozen(), SHORT, START, tolerance=1e-10)
-    figures = Figures(run, friction)
-    assert list(figures.rolls_until) == sorted({1.0, friction})
-    until, (note,) = figures.rolls_until[friction], figures.notes
+    summary = Summary(run, friction)
+    assert list(summary.rolls_until) == sorted({1.0, friction})
+    until, (note,) = summary.rolls_until[friction], summary.notes
     assert run.trusted  # the motion is right, if the can rolls
     if friction == 2.0:
         assert until == math.inf
-        assert "to the end with friction 2\n" in figures.text()
+        assert "to the end with friction 2\n" in summary.text()
         return
-    assert f"until t = {until:.6g} s with friction {friction:g}\n" in figures.text()
+    assert f"until t = {until:.6g} s with friction {friction:g}\n" in summary.text()
     assert f"from t = {until:.6g} s with a friction coefficient of {friction:g}" in note
     # The time is interpolated between steps on a straight line: the coefficient is off by up to 0.0013 near its top.
     assert exact(frozen(), [until], START).forces.needed[0] == pytest.approx(friction, rel=2e-3)
@@ -138,8 +138,8 @@ def test_a_can_that_needs_no_more_has_no_note_and_is_not_simulated_again(monkeyp
     run = simulate(frozen(), 0.5, 1.0)
     monkeypatch.setattr(Run, "rolls_until", lambda *_: pytest.fail("it was simulated again"))
     assert run.record.needed < 0.5
-    assert Figures(run, 0.5).rolls_until == {0.5: math.inf, 1.0: math.inf}
-    assert Figures(run, 0.5).notes == ()
+    assert Summary(run, 0.5).rolls_until == {0.5: math.inf, 1.0: math.inf}
+    assert Summary(run, 0.5).notes == ()
 
 
 def test_where_the_incline_would_have_to_pull_no_friction_is_enough() -> None:

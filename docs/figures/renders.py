@@ -1,0 +1,18 @@
+"""Writes each film as an animated WebP, less than 1.5 MB each: `python docs/figures/renders.py renders`."""
+
+import pathlib
+import sys
+
+from PIL import Image
+
+from mjbeer.output import files
+from mjbeer.report.films import FILMS
+
+WIDTH, HEIGHT, FPS = 720, 405, 20
+"""Width and height [pixels] and pictures per second."""
+
+for name, film in FILMS.items():
+    plan = film.plan()
+    first, *others = (Image.fromarray(each) for each in plan.draw(plan.times(FPS), WIDTH, HEIGHT))
+    with files.whole(pathlib.Path(sys.argv[1]) / f"{name}.webp") as temporary:  # at 60, letters of 13 pixels are sharp
+        first.save(temporary, "WEBP", save_all=True, append_images=others, duration=1000 // FPS, loop=0, quality=60)
