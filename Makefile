@@ -46,7 +46,7 @@ search: $(TOOLS)
 
 # The other tools go into build/, as docs/portability.md has it.
 portability: $(TOOLS)
-	$(BIN)/python -m tests.support.others
+	$(BIN)/python -m tools.portability
 
 renders: $(PACKAGE)
 	$(BIN)/python docs/figures/renders.py renders

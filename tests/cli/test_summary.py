@@ -11,7 +11,6 @@ import pytest
 from mjbeer import Trajectory, exact, frozen, hoop, liquid, simulate, sliding
 from mjbeer.cli.summary import Summary
 from mjbeer.simulation.run import Run
-from mjbeer.theory.scene import Scene
 
 # Let go with the beer on top, the can hops at 0.834 s; before, rolling needs ever more friction, 1.839 within 0.8 s.
 START, SHORT, LONG = math.pi, 0.8, 0.9
@@ -101,17 +100,9 @@ def test_a_damped_run_has_its_steady_rolling_and_its_modes() -> None:
     assert "terminal speed [m/s]" not in content(simulate(sliding(), 0.1, 1.0))
 
 
-@pytest.mark.parametrize(
-    ("scene", "reason"),
-    [
-        (sliding(incline=0.7, damping=1e-3, drag=1e-3), "no steady rolling at an incline of 40.11 degrees"),
-        (sliding(fill=1.0, damping=1e-3), "nothing restores the load"),
-        (sliding(gravity=0.0, drag=1e-3), "nothing restores the load"),
-    ],
-)
-def test_a_damped_run_without_steady_rolling_says_why(scene: Scene, reason: str) -> None:
-    text, data = lines(run := simulate(scene, 0.1, 1.0)), content(run)
-    assert text["terminal speed"].startswith(reason)
+def test_a_damped_run_without_steady_rolling_says_why() -> None:
+    text, data = lines(run := simulate(sliding(fill=1.0, damping=1e-3), 0.1, 1.0)), content(run)
+    assert text["terminal speed"].startswith("nothing restores the load")
     assert "modes, real and imaginary parts" not in text
     assert data["terminal speed [m/s]"] is data["modes, real and imaginary parts [1/s]"] is None
 

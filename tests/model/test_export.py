@@ -3,7 +3,7 @@
 Portable exports are loaded by MuJoCo 3.3, MJX, mujoco_warp and dm_control too. The tests with these install them in
 build/others, and run only where MJBEER_OTHERS names the tools: `MJBEER_OTHERS="MuJoCo 3.3" .venv/bin/python -m pytest
 tests/model/test_export.py` takes half a minute the first time; MJBEER_OTHERS=all downloads about 1.5 GB and takes half
-an hour. The names are those of `others.OTHERS`.
+an hour. The names are those of `tools.portability.OTHERS`.
 """
 
 import math
@@ -29,9 +29,9 @@ from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, s
 from mjbeer.studies.benchmark.measure import applied_share
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy, potential_energy
-from tests.support import others
-from tests.support.others import BY_NAME, FRICTION, START
 from tests.support.scenes import METAL, SCENES, scenes
+from tools import portability as others
+from tools.portability import BY_NAME, FRICTION, START
 
 # RK4's own error after 1 s at 1 ms, and at 0.25 ms for the hoop, which passes its bottom at 47 rad/s: 4.2e-8 rad. The
 # joint equality's softness is less. A contact's creeps, 2e-7 rad for the hoop; a portable one's impedance of 0.999

@@ -139,11 +139,11 @@ def view(given: Namespace) -> int:
     if not glfw.init():  # MuJoCo would end the process
         reason: Any = glfw.get_error()[1]
         raise RenderingError(
-            f"no window can be opened: {reason.decode()}; `mjbeer render` draws a "
-            "video without a window, and `mjbeer export` writes a file for MuJoCo's viewer elsewhere"
+            f"no window can be opened: {reason.decode()}; `mjbeer render` draws a video without a window, and "
+            "`mjbeer export` writes a file for MuJoCo's viewer elsewhere"
         )
     os.environ.setdefault("LP_NUM_THREADS", "0")  # see `opengl.context`
-    mujoco.viewer.launch(model, data)
+    mujoco.viewer.launch(model, data, show_left_ui=False, show_right_ui=False)
     return 0
 
 

@@ -1,4 +1,4 @@
-"""Other tools that load MJCF, each in a virtual environment of its own: `python -m tests.support.others` measures all.
+"""Other tools that load MJCF, each in a virtual environment of its own: `python -m tools.portability` measures all.
 
 The environments are in build/others, which git ignores, and stay there: the first run downloads about 1.5 GB.
 """
@@ -20,7 +20,7 @@ from mjbeer.model.export import export
 from mjbeer.model.setting import ROLLINGS, supported
 from tests.support.scenes import SCENES
 
-CHECKOUT = pathlib.Path(__file__).parents[2]
+CHECKOUT = pathlib.Path(__file__).parents[1]
 ENVIRONMENTS = CHECKOUT / "build" / "others"
 START = 1.0, 0.5
 """phi [rad] and its rate [rad/s] at the start, on the way through more than half a swing in a second."""
