@@ -21,7 +21,7 @@ from mjbeer import Can, Load, MjbeerError, Scene, Trajectory, build, exact, froz
 from mjbeer.drawing import film, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
-from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting, Softness
+from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting
 from mjbeer.paper.witness import loop
 from mjbeer.require import shown
 from mjbeer.theory.scene import ATTACHMENTS
@@ -42,7 +42,7 @@ VALUES: dict[str, Callable[[], object]] = {
     "array of objects": lambda: np.array([0.0, None]), "single precision": lambda: np.float32(0.3),
     "masked array": lambda: np.ma.array([0.0, 0.1], mask=[False, True]),
     "single-precision array": lambda: np.array([0.0, 0.1], np.float32),
-    "can": Can, "load": lambda: Load(0.2, 0.01, 1e-5), "scene": frozen, "softness": Softness,
+    "can": Can, "load": lambda: Load(0.2, 0.01, 1e-5), "scene": frozen,
     "path": lambda: pathlib.Path("somewhere"),
 }  # fmt: skip
 MOTION = exact(frozen(), np.linspace(0, 0.1, 11), 1.0)
@@ -80,7 +80,7 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
         ("Run()", RUN),
     ):
         yield from methods(name, type(instance), instance)
-    for more in (Setting, Softness, export, loop, video.frame):
+    for more in (Setting, export, loop, video.frame):
         yield more.__name__, more
 
 

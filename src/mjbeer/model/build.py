@@ -23,7 +23,7 @@ from mjbeer.model import check, looks, numbers, state
 from mjbeer.model import free as free_cans
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
-from mjbeer.model.setting import FRICTION, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import FRICTION, Integrator, Rolling, Setting
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
@@ -56,7 +56,6 @@ def build(
     integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
-    softness: Softness = TUNED,
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
     free: bool = True,
@@ -65,7 +64,7 @@ def build(
 
     `rolling` is "reduced" (no constraint: the coordinates allow no other motion), "equality" (a joint equality
     u = a roll) or "contact" (a cylinder on a plane, with a `friction` coefficient). Constraints are as hard as
-    `integrator` and `timestep` [s] allow, except where `softness` says otherwise.
+    `integrator` and `timestep` [s] allow; a softer one is an edit of what `specify` returns.
 
     With `visuals` the incline is tilted and gravity is upright. Without them gravity is tilted instead: x is downhill
     and z away from the incline, and `model.opt.gravity` is g (sin alpha, 0, -cos alpha). That model has no geoms but
@@ -86,11 +85,11 @@ def build(
       TemplateError: if a template is missing, lacks a part, or moves otherwise than the scene.
     """
     if isinstance(scene, Standing):
-        refuse_others(rolling=rolling, friction=friction, softness=softness, phi0=phi0, phi_dot0=phi_dot0)
+        refuse_others(rolling=rolling, friction=friction, phi0=phi0, phi_dot0=phi_dot0)
         return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep))
     refuse_held(scene, free)
     visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
-    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
+    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction)
     spec = compose(scene, setting, visuals)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec, rigid=setting.rigid)
@@ -106,7 +105,6 @@ def specify(
     integrator: Integrator = "RK4",
     timestep: float = 1e-3,
     friction: float = FRICTION,
-    softness: Softness = TUNED,
     free: bool = True,
 ) -> mujoco.MjSpec:
     """Return the specification of the model that `build` compiles, to be edited or attached to another one.
@@ -117,11 +115,11 @@ def specify(
     the parent needs.
     """
     if isinstance(scene, Standing):
-        refuse_others(rolling=rolling, friction=friction, softness=softness)
+        refuse_others(rolling=rolling, friction=friction)
         return free_cans.compose(scene, visuals, free, integrator, timestep)
     refuse_held(scene, free)
     visuals = require.boolean("visuals", visuals)
-    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction, softness=softness)
+    setting = Setting(rolling=rolling, integrator=integrator, timestep=timestep, friction=friction)
     spec = compose(scene, setting, visuals)
     if visuals:
         check.require_theory(compile_spec(spec), scene, setting)
@@ -297,13 +295,10 @@ def _add(spec: mujoco.MjSpec, made: Numbers) -> None:
 def _add_constraint(spec: mujoco.MjSpec, setting: Setting) -> None:
     """Add a joint equality, or two massless geoms that collide as a pair and with nothing else."""
     # MuJoCo's default diagonal adds the inverse inertias of slide and hinge without regard to metres and radians.
-    if setting.softness.exact_diagonal:
-        spec.option.enableflags |= int(_ENABLE.mjENBL_DIAGEXACT)
-    if not setting.softness.refsafe:
-        spec.option.disableflags |= int(_DISABLE.mjDSBL_REFSAFE)
+    spec.option.enableflags |= int(_ENABLE.mjENBL_DIAGEXACT)
+    spec.option.disableflags |= int(_DISABLE.mjDSBL_REFSAFE)
     if setting.rolling == "equality":
-        first, second = ("slide", "roll") if setting.softness.first == "slide" else ("roll", "slide")
-        spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1=first, name2=second)
+        spec.add_equality(name="rolling", type=mujoco.mjtEq.mjEQ_JOINT, name1="slide", name2="roll")
         return
     plane, cylinder = mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_CYLINDER
     surface = spec.body("incline").add_geom(spec.default, name="surface", type=plane, size=[0, 0, 1])
@@ -315,5 +310,4 @@ def _add_constraint(spec: mujoco.MjSpec, setting: Setting) -> None:
         if collision is not None:
             geom.group, geom.rgba = collision.geom.group, collision.geom.rgba
     spec.add_pair(name="rolling", geomname1="surface", geomname2="can", condim=3)
-    cones = mujoco.mjtCone
-    spec.option.cone = cones.mjCONE_ELLIPTIC if setting.softness.elliptic else cones.mjCONE_PYRAMIDAL
+    spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC

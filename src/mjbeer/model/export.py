@@ -10,7 +10,6 @@ import os
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Generator
-from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -22,7 +21,7 @@ from mjbeer.model.build import START, add_start, compile_spec, compose, refuse_h
 from mjbeer.model.engine import library
 from mjbeer.model.free import compose as compose_free
 from mjbeer.model.numbers import mass_unit
-from mjbeer.model.setting import Setting, Softness
+from mjbeer.model.setting import Setting
 from mjbeer.output import files
 from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.scene import Scene
@@ -42,9 +41,10 @@ _DIGITS = 17
 PORTABLE = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
-_PORTABLE_CONTACT = Softness(exact_diagonal=False, impedance=(0.999, 0.999), impratio=10.0)
-"""The softness of a portable contact. With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double
-precision, but in single precision, as in mujoco_warp, the solver then ends with NaN."""
+_PORTABLE_IMPEDANCE, _PORTABLE_IMPRATIO = (0.999, 0.999), 10.0
+"""The impedance of a portable contact, and how much harder its friction is. With 0.9999 and 100, as in models for
+MuJoCo 4, its error is a tenth in double precision, but in single precision, as in mujoco_warp, the solver then ends
+with NaN."""
 # What a model that was read back must have: these arrays and options and, where its joints are, places in the world.
 _WHAT = """
     body_mass body_inertia body_ipos body_iquat jnt_axis dof_armature dof_damping dof_dampingpoly tendon_armature
@@ -118,9 +118,9 @@ def export(
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
     else:
-        if portable:
-            made = replace(made, softness=_portable_softness(scene, made))
         spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
+        if portable:
+            _soften(spec, scene)
         spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
     folder = pathlib.Path(spec.modelfiledir).resolve()
     # A template with files of its own needs their folders; mjbeer's meshes are in the file.
@@ -254,8 +254,8 @@ def _numbers(model: mujoco.MjModel) -> Generator[tuple[str, np.ndarray]]:
         yield from ((name, getattr(data, name).copy()) for name in _POSES)
 
 
-def _portable_softness(scene: Scene, made: Setting) -> Softness:
-    """Return how soft the rolling constraint of a portable export is: as hard as can be without `diagexact`.
+def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
+    """Make the rolling constraint of a portable export as hard as can be without `diagexact`.
 
     Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
     angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances 1/m + a^2/I: of the two the one is taken
@@ -268,9 +268,11 @@ def _portable_softness(scene: Scene, made: Setting) -> Softness:
         raise UnsupportedError(
             "a portable export has no drag, and damping in proportion to the slip rate only: MuJoCo 3.3 knows no other"
         )
-    if made.rolling == "contact":
-        return _PORTABLE_CONTACT
-    return Softness(exact_diagonal=False, first="hinge" if scene.can.radius < 1.0 else "slide")
+    spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
+    for pair in spec.pairs:
+        pair.solimp[:2], spec.option.impratio = _PORTABLE_IMPEDANCE, _PORTABLE_IMPRATIO
+    for equality in spec.equalities if scene.can.radius < 1.0 else ():
+        equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
 
 
 def _portable(text: str) -> str:

@@ -115,10 +115,8 @@ class Numbers:
     @cached_property
     def kind(self) -> Kind:
         """Return what decides which elements and flags the model has."""
-        soft = self.setting.softness
-        constraint = self.setting.rolling, self.setting.rigid, soft.first, soft.refsafe, soft.exact_diagonal
         forces = self.force != 0, self.chord > 0, bool(self.scene.damping_law), self.scene.dissipates
-        return *constraint, soft.elliptic, *forces, *self.joints
+        return self.setting.rolling, *forces, *self.joints
 
 
 def mass_unit(scene: Scene) -> float:
@@ -261,7 +259,7 @@ def write(numbers: Numbers, made: Made) -> None:
         _write_damping(numbers, made)
     if setting.rolling == "equality":
         rolling, radius = made.equality("rolling"), scene.can.radius
-        rolling.data[:5] = [0, radius if setting.softness.first == "slide" else 1 / radius, 0, 0, 0]
+        rolling.data[:5] = [0, radius, 0, 0, 0]
         _write_softness(rolling, numbers)
     elif setting.rolling == "contact":
         _write_contact(made, option, numbers)
@@ -275,7 +273,7 @@ def _write_contact(made: Made, option: Any, numbers: Numbers) -> None:
     rolling = made.pair("rolling")
     rolling.friction = [setting.friction, setting.friction, 0.005, 1e-4, 1e-4]
     _write_softness(rolling, numbers)
-    option.impratio = setting.softness.impratio or FRICTION_HARDNESS
+    option.impratio = FRICTION_HARDNESS
     # What the weight of the load gains, over what that of all masses gains: each is a force squared over an inertia.
     light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
     option.tolerance = _TOLERANCE * min(1.0, max(light, _LIGHTEST)) * max(scene.gravity, _WEIGHTLESS) ** 2
@@ -286,10 +284,9 @@ def _write_contact(made: Made, option: Any, numbers: Numbers) -> None:
 
 def _write_softness(rolling: Any, numbers: Numbers) -> None:
     """Write the softness of the row of a joint equality, or of a contact's rows."""
-    setting, softness = numbers.setting, numbers.setting.softness
-    rolling.solimp = [*(softness.impedance or IMPEDANCE), *WIDTH]
-    fastest = stiffest(setting.integrator, numbers.timestep, contact=setting.rolling == "contact")
-    rolling.solref = softness.solref or (fastest, 1)
+    rolling.solimp = [*IMPEDANCE, *WIDTH]
+    contact = numbers.setting.rolling == "contact"
+    rolling.solref = stiffest(numbers.setting.integrator, numbers.timestep, contact), 1
 
 
 def _write_damping(numbers: Numbers, made: Made) -> None:

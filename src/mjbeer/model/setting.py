@@ -1,4 +1,4 @@
-"""Settings: how a can is made to roll, how it is stepped, and how soft the constraint is that makes it roll."""
+"""Settings: how a can is made to roll, and how it is stepped."""
 
 import math
 from dataclasses import dataclass
@@ -25,58 +25,6 @@ FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 _LEAST_FRICTION = 1e-5
 """Smallest friction coefficient in MuJoCo (mjMINMU), which raises a smaller one to this, and says nothing."""
-_IMPEDANCES = (1e-4, 0.9999)
-"""Smallest and largest impedance in MuJoCo (mjMINIMP and mjMAXIMP), which moves others there, and says nothing."""
-FirstJoint = Literal["slide", "hinge"]
-
-
-@dataclass(frozen=True)
-class Softness:
-    """How soft the rolling constraint is, in MuJoCo's terms; None means as hard as is stable under the integrator.
-
-    Raises:
-      ParameterError: if a number is none that MuJoCo would use as it is.
-    """
-
-    solref: tuple[float, float] | None = None
-    """Time constant [s] and damping ratio; or, both negated, stiffness [1/s^2] and damping [1/s]."""
-    impedance: tuple[float, float] | None = None
-    """dmin and dmax of solimp."""
-    impratio: float | None = None
-    """Hardness of a contact's friction over that of its normal force."""
-    refsafe: bool = False
-    """Whether MuJoCo raises a time constant to two timesteps."""
-    exact_diagonal: bool = True
-    """Whether softness is proportional to the exact inverse inertia of the constraint (MuJoCo's `diagexact`)."""
-    elliptic: bool = True
-    """Whether the friction cone of a contact is elliptic instead of MuJoCo's default, a pyramid."""
-    first: FirstJoint = "slide"
-    """The joint that the equality names first: MuJoCo then constrains a distance ("slide") or an angle ("hinge")."""
-
-    def __post_init__(self) -> None:
-        for name in ("solref", "impedance"):
-            if (pair := getattr(self, name)) is not None:
-                if not isinstance(pair, (list, tuple)) or len(pair) != 2:
-                    raise ParameterError(f"{name} must be two numbers, got {require.shown(pair)}")
-                numbers = (require.number(f"{name}[{place}]", each) for place, each in enumerate(pair))
-                require.store(self, **{name: tuple(numbers)})
-        for place, share in enumerate(self.impedance or ()):
-            require.within(f"impedance[{place}]", share, *_IMPEDANCES)
-        first, second = self.solref or (1, 1)
-        if not ((first > 0 and second > 0) or (first < 0 and second <= 0)):  # others MuJoCo replaces by its default
-            raise ParameterError(
-                "solref must be a time constant [s] and a damping ratio, both greater than 0, or a stiffness [1/s^2] "
-                f"and a damping [1/s], both negated, got {require.shown(self.solref)}"
-            )
-        if self.impratio is not None:
-            require.store(self, impratio=require.positive("impratio", self.impratio))
-        for name in ("refsafe", "exact_diagonal", "elliptic"):
-            require.store(self, **{name: require.boolean(name, getattr(self, name))})
-        require.choice("first", self.first, get_args(FirstJoint))
-
-
-TUNED = Softness()
-"""The default: as hard as is stable under the integrator, and a joint equality is solved exactly."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +45,6 @@ class Setting:
     """Largest error of phi and u/a [rad], relative beyond 1 rad; None for a fixed timestep."""
     friction: float = FRICTION
     """Friction coefficient of a contact."""
-    softness: Softness = TUNED
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
@@ -113,12 +60,11 @@ class Setting:
                 f"{GAUSS_JACKSON} would be unstable with a constraint: rolling must be 'reduced' with it, got "
                 f"{self.rolling!r}; {DOP853} takes any"
             )
-        require.instance("softness", self.softness, Softness)
 
     @property
     def rigid(self) -> bool:
         """Whether rolling is a joint equality that is solved exactly."""
-        return self.rolling == "equality" and self.softness == TUNED
+        return self.rolling == "equality"
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":

@@ -16,7 +16,7 @@ from mjbeer.model import check, state
 from mjbeer.model.build import Stepped
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import Kind, Numbers
-from mjbeer.model.setting import DOP853, OWN, TUNED, Setting
+from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, doubts
@@ -275,8 +275,7 @@ def second(run: Run) -> tuple[float, float]:
     """
     scene, setting, motion = run.scene, run.setting, run.spread
     prepared = Prepared(scene, setting, uneven=True)
-    exact_constraint = setting.rolling == "reduced" or (setting.rolling == "equality" and setting.softness == TUNED)
-    lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint)
+    lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint=setting.rolling != "contact")
     beside = state.START_DEPTH if setting.rolling == "contact" else _ASIDE
     aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
     try:

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
-from mjbeer.model.setting import FRICTION, OWN, TUNED, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.liquid import about_run
 from mjbeer.theory.scene import DURATION, PHI0, Scene
@@ -33,7 +33,6 @@ def simulate(
     tolerance: float | None = None,
     times: ArrayLike | None = None,
     friction: float = FRICTION,
-    softness: Softness = TUNED,
 ) -> Run:
     """Return the motion of a scene, stepped by MuJoCo in compiled code.
 
@@ -49,7 +48,6 @@ def simulate(
         then chosen. It is the error of integrating the model, which in a soft contact has one of its own.
       times: increasing times of the samples [s], for MuJoCo's integrators multiples of the timestep.
       friction: coefficient of friction of a contact.
-      softness: how soft the rolling constraint is; as hard as is stable if it is not given.
 
     A run that slips, parts from the incline, drifts in energy, or would have to be pulled at gives an
     `UntrustedWarning`, one in which a liquid is no lump any more a `LiquidWarning`, and a start beyond a whole turn an
@@ -65,9 +63,7 @@ def simulate(
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.radians(phi0)
-    setting = Setting.of(
-        integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, softness=softness
-    )
+    setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:

@@ -17,11 +17,12 @@ from mjbeer import require
 from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.model.engine import quiet
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
+from mjbeer.model.state import read, start
 from mjbeer.simulation.run import Prepared
-from mjbeer.simulation.stepping import Solution
+from mjbeer.simulation.stepping import Solution, Stepper
 from mjbeer.studies.benchmark import peers, sweeps
 from mjbeer.studies.benchmark.peers import PEERS, Peer
-from mjbeer.studies.benchmark.points import CHOSEN, COMMAND, TOLERANCE, USUAL, Benchmark, Curve, Point
+from mjbeer.studies.benchmark.points import CHOSEN, COMMAND, TOLERANCE, USUAL, Benchmark, Curve, Point, usual_model
 from mjbeer.studies.cases import INTERVAL, MEASURED, Case
 from mjbeer.studies.rows import Row, Study, run
 from mjbeer.theory.scene import Scene
@@ -86,9 +87,7 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
         found[Curve(way, CHOSEN, TOLERANCE)] = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
     if not scene.dissipates:
         found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
-    for name, setting in USUAL.items():
-        if supported(scene, setting.rolling):
-            found[Curve(name, setting.integrator)] = (setting.timestep,)
+    found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in USUAL.items() if supported(scene, rolling)}
     others = (peer for peer in PEERS.values() if peer.name not in missing)
     return found | {Curve(peer.name, "", TOLERANCE): peer.tolerances[::every] for peer in others}
 
@@ -99,8 +98,14 @@ class Rung:
     def __init__(self, case: Case, curve: Curve, value: float) -> None:
         self._case = case
         peer: Peer | None = PEERS.get(curve.way)
-        if peer is None:
+        if curve.way in USUAL:
+            self._model, self._times = usual_model(curve.way, case.scene), case.times
+            self._start = start(self._model, case.scene, case.phi0, 0.0)
+            stepper, steps = Stepper(self._model), np.rint(case.times / value).astype(np.int64)
+            self.run = lambda: Solution(stepper.run(self._start, steps))
+        elif peer is None:
             self._prepared = Prepared(case.scene, curve.setting(value))
+            self._model = self._prepared.model
             self._start = self._prepared.start(case.phi0, 0.0)
             self.run = partial(self._prepared.solve, self._start, case.times)
         else:
@@ -114,10 +119,10 @@ class Rung:
         """
         result, radius = self.run(), truth.scene.can.radius
         if isinstance(result, Solution):
-            motion = self._prepared.coordinates(result.states, truth.time)
+            motion = read(self._model, truth.scene, result.states, truth.time)
             moved = Trajectory(**vars(motion), scene=truth.scene, phi0=truth.phi0, phi_dot0=0.0)
             point.slip_max, point.energy_drift = float(np.abs(moved.slip).max()) / radius, moved.energy_drift
-            point.share = applied_share(self._prepared.model, self._start)
+            point.share = applied_share(self._model, self._start)
             result = motion.phi, motion.u
         if not np.isfinite([values[-1] for values in result]).all():  # a value that is not finite stays so
             raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")

@@ -9,10 +9,13 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
+import mujoco
 import numpy as np
 
-from mjbeer.model.setting import Setting, Softness
+from mjbeer.model.build import specify
+from mjbeer.model.setting import Rolling, Setting
 from mjbeer.studies.rows import Study
+from mjbeer.theory.scene import Scene
 
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.jsonl")
@@ -22,14 +25,26 @@ CHOSEN = "mjbeer"
 """The method of runs to a tolerance, which choose their integrator and its steps."""
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
 """The errors [rad] for which tables and plots have the fastest setting."""
-_PLAIN = Softness(solref=(0.02, 1), impedance=(0.9, 0.95), refsafe=True, exact_diagonal=False)
-USUAL = {
-    "equality, slide first": Setting("equality", "Euler", 2e-3, softness=_PLAIN),
-    "equality, hinge first": Setting("equality", "Euler", 2e-3, softness=replace(_PLAIN, first="hinge")),
-    "contact, defaults": Setting("contact", "Euler", 2e-3, softness=replace(_PLAIN, impratio=1, elliptic=False)),
+USUAL: dict[str, Rolling] = {
+    "equality, slide first": "equality",
+    "equality, hinge first": "equality",
+    "contact, defaults": "contact",
 }
-"""Settings as people usually write them, with MuJoCo's defaults wherever there are any. The order of the two joints in
-a joint equality matters: MuJoCo's default diagonal softens the two by different factors."""
+"""Models as people usually write them, by their way of rolling. The order of the two joints in an equality matters:
+MuJoCo's default diagonal softens the two by different factors."""
+
+
+def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
+    """Return a model as people usually write it, with MuJoCo's defaults wherever there are any."""
+    spec, stock = specify(scene, USUAL[name], integrator="Euler", timestep=2e-3), mujoco.MjSpec().option
+    spec.option.enableflags, spec.option.impratio, spec.option.cone = stock.enableflags, stock.impratio, stock.cone
+    spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    for constraint in (*spec.equalities, *spec.pairs):
+        constraint.solref, constraint.solimp = (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2)
+    if name == "equality, hinge first":
+        for equality in spec.equalities:
+            equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
+    return spec.compile()
 
 
 @dataclass(frozen=True, order=True)
@@ -53,8 +68,7 @@ class Curve:
         """Return the setting of mjbeer for a `value` of the knob: a timestep [s] or a tolerance [rad]."""
         if self.knob == TOLERANCE:
             return replace(Setting(), rolling=self.way, tolerance=value)
-        written = USUAL[self.way] if self.way in USUAL else replace(Setting(), rolling=self.way)
-        return replace(written, integrator=self.method, timestep=value)
+        return replace(Setting(), rolling=self.way, integrator=self.method, timestep=value)
 
 
 @dataclass

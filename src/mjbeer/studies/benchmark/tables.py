@@ -108,7 +108,7 @@ def usual(study: Benchmark) -> Table:
     rows = []
     for case in study.cases:
         for point in (each for name in USUAL for each in study.of(case) if each.way == name):
-            tuned = [each for each in study.of(case) if each.way == USUAL[point.way].rolling]
+            tuned = [each for each in study.of(case) if each.way == USUAL[point.way]]
             share = "" if point.share is None else f"{point.share:.3g}"
             gain = point.error / points.error_for(tuned, point.time)
             cells = f"{point.error:.1e}", milliseconds(point.time), share, f"{gain:.1e}"

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError, NoLibrationError, ParameterError, ToleranceError, UnsupportedError
-from mjbeer.model.setting import FRICTION, TUNED, Integrator, Rolling, Softness
+from mjbeer.model.setting import FRICTION, Integrator, Rolling
 from mjbeer.model.state import START_DEPTH
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
@@ -87,7 +87,6 @@ class Trial:
     """Number of timesteps from one sample to the next."""
     moments: tuple[float, ...] | None = None
     """The times of the samples in timesteps, if they are not regular."""
-    softness: Softness = TUNED
 
     @property
     def times(self) -> np.ndarray:

@@ -13,10 +13,10 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.build import build
+from mjbeer.model.build import build, specify
 from mjbeer.model.engine import quiet
 from mjbeer.model.numbers import stiffest
-from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting, Softness
+from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting
 from mjbeer.model.state import places
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.linear_stability import ACCURACY, GROWTH
@@ -203,15 +203,18 @@ def _model(plan: Plan, scene: Scene, value: float) -> mujoco.MjModel:
             model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_SPRING)
         return model
     damping = 2 * plan.dampratio * math.sqrt(value)
-    softness = Softness(
-        solref=(-value, -damping) if plan.family == "direct" else (value, plan.dampratio),
-        impedance=(_IMPEDANCE, _IMPEDANCE),
-        refsafe=plan.refsafe,
-        exact_diagonal=plan.written == "exact",
-        first="hinge" if plan.written == "hinge" else "slide",
-    )
-    rolling = "contact" if plan.family == "contact" else "equality"
-    return build(scene, rolling, integrator=plan.integrator, softness=softness)
+    spec = specify(scene, "contact" if plan.family == "contact" else "equality", integrator=plan.integrator)
+    for constraint in (*spec.equalities, *spec.pairs):
+        constraint.solref = (-value, -damping) if plan.family == "direct" else (value, plan.dampratio)
+        constraint.solimp[:2] = _IMPEDANCE
+    if plan.refsafe:
+        spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    if plan.written != "exact":
+        spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
+    if plan.written == "hinge":
+        for equality in spec.equalities:
+            equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
+    return spec.compile()
 
 
 @dataclass
