@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import pytest
 
 from mjbeer.cli.app import parse
-from mjbeer.studies.rows import Result, Study
+from mjbeer.studies.study import Result, Study
 from mjbeer.studies.stability import limits, search, study
 from tests.support import documents, stubs
 

@@ -12,8 +12,8 @@ import pytest
 from mjbeer import Scene, simulate
 from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
-from mjbeer.paper.row import CONFIRMED, CORRECTED, Finding
-from mjbeer.studies.rows import Result
+from mjbeer.paper.claim import CONFIRMED, CORRECTED, Finding
+from mjbeer.studies.study import Result
 from mjbeer.studies.validation.run import Validation
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import SCENES
@@ -84,5 +84,5 @@ def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:
     ]  # fmt: skip
     assert content["audit"] == [{
         "equation": "(16)", "quantity": "motion of phi", "verdict": "confirmed", "witness": "MuJoCo", "printed": 5e-15,
-        "right": None, "bound": 1e-12, "misses_by": None, "reason": "rounding", "passed": True,
+        "right": None, "bound": 1e-12, "expected_error": None, "reason": "rounding", "passed": True,
     }]  # fmt: skip

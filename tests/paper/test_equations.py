@@ -9,7 +9,7 @@ import sympy as sp
 
 from mjbeer import paper
 from mjbeer.paper import frozen, sliding
-from mjbeer.paper.row import Motion, Row, Terms
+from mjbeer.paper.claim import Motion, Row, Terms
 from mjbeer.paper.witness import metal, rolling_down, swing, wheel
 
 a, b, m, inertia, can_mass, can_inertia, g = sp.symbols("a b m I_cm m_can I_can g", positive=True)
@@ -75,7 +75,7 @@ def motion_of(row: Row) -> Any:
 INTEGRATED = {"(1)", "sec. 2.3.1", "figure of A.3"}  # rows that hold over time
 DERIVED = [
     row
-    for row in paper.rows()
+    for row in paper.claims()
     if motion_of(row) in GIVEN and row.limit is None and row.equation not in INTEGRATED and "linear" not in row.quantity
 ]
 
@@ -112,7 +112,7 @@ def test_small_oscillations() -> None:
     squared = -torque.diff(x).subs(x, 0) / (3 * a**2 / 2 - 2 * a * b * sp.cos(rest))
     assert sp.simplify(frozen.eq_55(Q, sp.cos(rest), sp.cos(alpha + rest)) - squared) == 0
     assert sp.simplify(frozen.eq_55(Q, sp.cos(rest), sp.cos(alpha + rest), 1) - squared) != 0
-    (linear,) = (row for row in paper.rows() if row.equation == "(4)" and row.misprint)
+    (linear,) = (row for row in paper.claims() if row.equation == "(4)" and row.misprint)
     for terms, right in ((linear.terms, True), (linear.printed, False)):
         assert (sp.diff(sum(terms(Q)), phi).subs(phi, 0) == 0) is right
 

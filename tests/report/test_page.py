@@ -15,7 +15,7 @@ from mjbeer.cli.app import main
 from mjbeer.drawing.film import Take
 from mjbeer.output import files
 from mjbeer.paper import stories
-from mjbeer.paper.row import Misprint
+from mjbeer.paper.claim import Misprint
 from mjbeer.report import films, formulas, page
 from mjbeer.studies.benchmark import diagrams
 from mjbeer.studies.stability import stiff_maps
@@ -23,7 +23,7 @@ from tests.support import pages, stubs
 from tests.support.pages import Page
 
 SECTIONS = ["verdict", "races", "scenes", "errors", "stability", "stories", "misprints", "machine"]
-MISPRINTS = [row.misprint for row in paper.rows() if row.misprint]
+MISPRINTS = [row.misprint for row in paper.claims() if row.misprint]
 
 
 @pytest.fixture(scope="module")
@@ -134,7 +134,7 @@ def test_the_misprints_have_their_kinds_the_paper_s_words_and_the_numbers_of_the
     kinds = [element.text for element in read.all("span") if element.attributes.get("class") == "kind"]
     assert kinds == [f"{each.kind} of {each.of}" if each.of else each.kind for each in MISPRINTS]
     assert "consequence of (39)" in kinds
-    quotes = [row.quote for row in paper.rows() if row.misprint and row.quote]
+    quotes = [row.quote for row in paper.claims() if row.misprint and row.quote]
     assert [element.text for element in read.all("blockquote")] == [f"“{quote}”" for quote in quotes]
     (found_line,) = (each.text for each in read.all("li") if "The audit measured" in each.text)
     assert " ".join(found_line.split()).startswith(

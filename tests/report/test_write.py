@@ -147,7 +147,7 @@ def test_a_check_that_cannot_be_measured_ends_the_report(
 
     stubs.validate(monkeypatch, first=1e-5)
     stubs.draw(monkeypatch)
-    monkeypatch.setattr("mjbeer.studies.rows.Row.result", lambda _: fail())
+    monkeypatch.setattr("mjbeer.studies.study.Row.result", lambda _: fail())
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: no frequency\n")
     assert os.listdir(tmp_path) == ["paper"]

@@ -15,13 +15,13 @@ import pytest
 
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.studies import rows
-from mjbeer.studies.rows import Result, Row, Study
+from mjbeer.studies.study import Result, Row, Study
 from tests.support.processes import PATIENCE, fall, interrupt, start, where
 
 ALONE = """
 import sys
 from functools import partial
-from mjbeer.studies.rows import Row, run
+from mjbeer.studies.study import Row, run
 from tests.support.processes import call_and_sleep
 run([Row("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place in range(4)], None, processes=2)
 """

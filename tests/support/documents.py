@@ -19,11 +19,11 @@ from mjbeer import LiquidWarning, liquid, paper
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
 from mjbeer.output.terminal import Table
 from mjbeer.paper import real_beer
-from mjbeer.paper.row import APPROXIMATION, CONSEQUENCE, LIMIT, MISPRINT
+from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, LIMIT, MISPRINT
 from mjbeer.predictions import linear_stability, soft_constraint
 from mjbeer.studies.benchmark import tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.rows import Study
+from mjbeer.studies.study import Study
 from mjbeer.studies.stability import limits, search, stiff_maps, study
 from mjbeer.studies.stability.judge import NEVER, VERDICTS
 from mjbeer.studies.validation.run import rows as checks
@@ -91,7 +91,7 @@ def ratios(name: str) -> str:
 
 def holds() -> str:
     """What holds, with the numbers that programs know."""
-    wrong = Counter(row.misprint.kind for row in paper.rows() if row.misprint)
+    wrong = Counter(row.misprint.kind for row in paper.claims() if row.misprint)
     maps, random = stiff_maps.load(), counts()["regions"][-1]
     cells = sum(len(line) for each in maps["maps"] for line in each["measured"])
     same = sum(each["same"] for each in maps["maps"]) / len(maps["maps"])
@@ -119,7 +119,7 @@ def holds() -> str:
             ),
             (
                 "**the paper**",
-                f"its 61 equations are audited in {len(paper.rows())} rows; {sum(wrong.values())} hold only after a "
+                f"its 61 equations are audited in {len(paper.claims())} rows; {sum(wrong.values())} hold only after a "
                 f"correction: {wrong[MISPRINT]} misprints, {wrong[CONSEQUENCE]} consequences of one, and "
                 f"{wrong[APPROXIMATION]} approximations that leave out too much ([the physics](docs/physics.md))",
             ),
@@ -130,16 +130,16 @@ def holds() -> str:
 
 def misprints() -> str:
     """What is wrong in the paper, and by how much."""
-    found = [(row.equation, row.misprint) for row in paper.rows() if row.misprint]
+    found = [(row.equation, row.misprint) for row in paper.claims() if row.misprint]
     kinds = {MISPRINT: "", CONSEQUENCE: " (follows)", APPROXIMATION: " (approximation)"}
-    lines = [(name, each.about + kinds[each.kind], f"{each.misses_by:.2g}") for name, each in found]
+    lines = [(name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found]
     return table(("equation", "what is wrong in it", "misses by"), lines, left=(0, 1))
 
 
 def validity() -> str:
     """What is true only within limits, and by how much it misses beyond them."""
-    found = [(row, row.limit) for row in paper.rows() if row.verdict == LIMIT and row.limit]
-    lines = [(row.equation, row.quantity.partition(":")[0], f"{limit.misses_by:.2g}") for row, limit in found]
+    found = [(row, row.limit) for row in paper.claims() if row.verdict == LIMIT and row.limit]
+    lines = [(row.equation, row.quantity.partition(":")[0], f"{limit.expected_error:.2g}") for row, limit in found]
     return table(("where", "claim", "beyond, misses by"), lines, left=(0, 1))
 
 

@@ -14,11 +14,11 @@ from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Plotted
 from mjbeer.output import files
 from mjbeer.paper import stories as paper_stories
-from mjbeer.paper.row import CORRECTED, Finding
+from mjbeer.paper.claim import CORRECTED, Finding
 from mjbeer.paper.stories import Story
 from mjbeer.report import films
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.rows import Result
+from mjbeer.studies.study import Result
 from mjbeer.studies.stability import stiff_maps
 from mjbeer.studies.validation.run import Validation
 
@@ -38,9 +38,9 @@ def validation(misprints: slice = slice(None)) -> Validation:
     findings = [
         Finding(
             row.equation, row.quantity, CORRECTED, "a witness", 0.0127 * (place + 1), right=1.7e-9 * (place + 1),
-            bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
+            bound=1e-6, expected_error=0.0123 * (place + 1), reason="rounding",
         )
-        for place, row in enumerate(row for row in paper.rows() if row.misprint)
+        for place, row in enumerate(row for row in paper.claims() if row.misprint)
     ]  # fmt: skip
     return Validation(checks, findings[misprints])
 

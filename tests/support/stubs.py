@@ -17,13 +17,13 @@ from mjbeer.drawing.film import Take
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files
 from mjbeer.paper import stories
-from mjbeer.paper.row import Bound, Witness
-from mjbeer.paper.row import Row as Claim
+from mjbeer.paper.claim import Bound, Witness
+from mjbeer.paper.claim import Row as Claim
 from mjbeer.paper.stories import Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark import measure, peers, sweeps
 from mjbeer.studies.benchmark.points import Curve
-from mjbeer.studies.rows import Row
+from mjbeer.studies.study import Row
 from mjbeer.studies.stability import search, stiff_maps, study
 from mjbeer.studies.validation import run as validation
 from tests.support import pages

@@ -24,9 +24,9 @@ from mjbeer.output.plots import (
     ticks,
 )
 from mjbeer.paper import oscillation, segment
+from mjbeer.paper.claim import SceneConstants
 from mjbeer.paper.oscillation import SLOW
 from mjbeer.paper.pendulum import heavy_bob, light_bob
-from mjbeer.paper.row import Letters
 from mjbeer.paper.witness import DECADE, loop
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
@@ -122,7 +122,7 @@ def least_push(rate: float) -> float:
 def draw_looping(path: pathlib.Path) -> None:
     """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
     scene = sliding()
-    c = Letters.of(scene)
+    c = SceneConstants.of(scene)
     phase = np.linspace(0, 2 * math.pi, 201)
     x = np.degrees(phase)
     title = "Beer that loops in its can does not turn evenly"
@@ -145,7 +145,7 @@ def draw_looping(path: pathlib.Path) -> None:
 def draw_ripples(path: pathlib.Path) -> None:
     """Draw both ripples of looping beer over the mean rate."""
     scene = sliding()
-    c = Letters.of(scene)
+    c = SceneConstants.of(scene)
     turns = [loop(scene, start) for start in np.geomspace(SLOW, DECADE[-1], 10)]
     rates = np.array([turn.rate for turn in turns])
     line = np.geomspace(rates[0], rates[-1], 50)

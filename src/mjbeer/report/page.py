@@ -15,17 +15,18 @@ from markupsafe import Markup, escape
 from PIL import Image
 
 from mjbeer import paper
+from mjbeer.checks import Result
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Plotted
 from mjbeer.paper import stories
-from mjbeer.paper.row import Finding, Row
+from mjbeer.paper.claim import Claim
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
 from mjbeer.studies.benchmark import diagrams, tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.rows import machine
 from mjbeer.studies.stability import stiff_maps
-from mjbeer.studies.validation.run import Validation
+from mjbeer.studies.study import machine
+from mjbeer.studies.validation.validate import Validation
 
 LIMIT = 8.5e6
 """Largest size of films and plots in the page [bytes], which with its text is below 9 MB; films of the paper that would
@@ -145,8 +146,8 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         same=statistics.fmean(each["same"] for each in maps["maps"]),
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
-        quoted=[row for row in paper.rows() if row.quote and not row.misprint],
-        findings=len(validation.findings),
+        quoted=[row for row in paper.claims() if row.quote and not row.misprint],
+        findings=len(validation.audit),
         stories=_stories(folder, quick, room),
         validation=validation,
         tables=validation.tables(document=True),
@@ -225,10 +226,10 @@ def _range(benchmark: Benchmark, name: str) -> str:
     return f"{min(ratios, key=float)} to {max(ratios, key=float)}"
 
 
-def _misprints(validation: Validation) -> list[tuple[Finding, Row]]:
+def _misprints(validation: Validation) -> list[tuple[Result, Claim]]:
     """Return the findings of what is wrong in the paper, each with its row."""
-    rows = {(row.equation, row.quantity): row for row in paper.rows() if row.misprint}
-    named = [((finding.equation, finding.quantity), finding) for finding in validation.findings]
+    rows = {(row.equation, row.quantity): row for row in paper.claims() if row.misprint}
+    named = [((result.group, result.name), result) for result in validation.audit]
     return [(finding, rows[name]) for name, finding in named if name in rows]
 
 

@@ -9,7 +9,7 @@ from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.predictions.soft_constraint import SoftRow
 from mjbeer.predictions.soft_rolling import System
-from mjbeer.studies.rows import Result, Row
+from mjbeer.studies.study import Result, Row
 from mjbeer.studies.stability import limits, stiff_runs
 from mjbeer.studies.stability.stiff_maps import AGREEMENT, measure, measure_damped
 from mjbeer.studies.stability.stiff_runs import (

@@ -16,7 +16,7 @@ import mjbeer
 from mjbeer import exact, frozen
 from mjbeer.model import setting
 from mjbeer.studies import rows
-from mjbeer.studies.rows import Result
+from mjbeer.studies.study import Result
 from mjbeer.studies.stability import search
 from mjbeer.studies.stability.judge import (
     ACCURATE,

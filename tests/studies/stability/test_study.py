@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError
-from mjbeer.studies.rows import Result, Row, Study
+from mjbeer.studies.study import Result, Row, Study
 from mjbeer.studies.stability import stiff_maps, study
 from mjbeer.studies.stability.stiff_maps import CELLS, DAMPED_CELLS, PLANS, measure, measure_damped
 from mjbeer.studies.stability.stiff_runs import SILENT

@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import Can, exact, hoop, simulate, sliding
 from mjbeer.model import looks
-from mjbeer.studies.rows import Result, Row
+from mjbeer.studies.study import Result, Row
 from mjbeer.studies.validation import motions
 from mjbeer.studies.validation.run import Validation, rows
 from mjbeer.theory import exact as theory

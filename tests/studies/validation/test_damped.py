@@ -9,7 +9,7 @@ import pytest
 
 from mjbeer import Scene, build, simulate
 from mjbeer.simulation.run import Run
-from mjbeer.studies.rows import Row
+from mjbeer.studies.study import Row
 from mjbeer.studies.validation import damped
 from mjbeer.theory.damping import Damping
 

@@ -1,4 +1,4 @@
-"""Rows of cans that are free in space: the slosh in a standing one, and a lying one that rolls."""
+"""Checks of cans that are free in space: the slosh in a standing one, and a lying one that rolls."""
 
 import math
 from collections.abc import Iterator
@@ -7,13 +7,13 @@ from functools import cache, partial
 import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
-from scipy.optimize import brentq
 
+from mjbeer.checks import Check
 from mjbeer.model.build import build
 from mjbeer.model.engine import quiet
 from mjbeer.model.free import attach, transverse_inertia
 from mjbeer.model.setting import MujocoIntegrator
-from mjbeer.studies.rows import Row
+from mjbeer.studies import attached_can
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.named import frozen, sliding
@@ -33,10 +33,10 @@ _GAIN = 0.1
 """Largest energy that a thrown can may gain over that which it had: a rigid can gains 0.05 at 5 ms."""
 
 
-def rows() -> Iterator[Row]:
-    """Yield the rows of standing and of lying cans."""
+def checks() -> Iterator[Check]:
+    """Yield the checks of standing and of lying cans."""
     for fill in _FILLS:
-        yield Row(
+        yield Check(
             "standing",
             "frequencies of 3 modes, by the eigenvalues of M and K",
             partial(_eigenvalues, water(3, fill, damping_ratio=0.0)),
@@ -45,7 +45,7 @@ def rows() -> Iterator[Row]:
             "relative",
             "rounding",
         )
-    yield Row(
+    yield Check(
         "standing",
         f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
         lambda: let_go(water(damping_ratio=0.0))[0],
@@ -54,7 +54,7 @@ def rows() -> Iterator[Row]:
         "relative",
         "RK4: (omega h)^4/120, 2.5e-9",
     )
-    yield Row(
+    yield Check(
         "standing",
         "logarithmic decrement",
         lambda: let_go(water())[1],
@@ -66,7 +66,7 @@ def rows() -> Iterator[Row]:
     for modes in (1, 2, 3, 5):
         can = water(modes)
         for place, name in ((0, "force under shaking"), (2, "moment under pitching")):
-            yield Row(
+            yield Check(
                 "standing",
                 f"{name} at 8 frequencies, 0.2 to 4 of the first, against the infinite series",
                 lambda can=can, place=place: np.abs(reaction_errors(can)[place]).max(),
@@ -75,37 +75,9 @@ def rows() -> Iterator[Row]:
                 "relative",
                 "the modes left out, whose share the bound is",
             )
-    for name, place in (("mass", 0), ("centre of mass", 1), ("inertia", 2)):
-        yield Row(
-            "standing",
-            f"{name} of can and liquid",
-            lambda place=place: _moments(water(3))[place],
-            "half full, 3 modes",
-            1e-13,
-            "relative",
-            "rounding",
-        )
-    yield Row(
-        "standing",
-        "moment of the liquid in a can tilted by 20 degrees, against rho g pi R^4/4 sin",
-        lambda: tilted(math.radians(20)),
-        "half full, 1 mode, held",
-        1e-12,
-        "relative",
-        "rounding; a true surface has tan^2/2 more, 6.6 %",
-    )
-    yield Row(
-        "standing",
-        "tilt at which the can tips over, against a true surface",
-        _tipping,
-        "half full, 1 mode",
-        2.0,
-        "degrees",
-        "a true surface has tan^2/2 more moment: 1.3 degrees",
-    )
     for timestep in (2e-3, 5e-3):
         for modes in (1, 3):
-            yield Row(
+            yield Check(
                 "standing",
                 f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy",
                 partial(thrown, water(modes), timestep),
@@ -118,16 +90,16 @@ def rows() -> Iterator[Row]:
         ("frozen", frozen(math.radians(8), can=_METAL), 2.0),
         ("sliding", sliding(math.radians(8), can=_METAL), 1.0),
     ):
-        yield Row(
+        yield Check(
             "lying",
             "phi over 2 s",
-            lambda scene=scene, phi0=phi0: np.abs(lying(scene, phi0)[0]).max(),
+            lambda scene=scene, phi0=phi0: lying(scene, phi0)[0],
             f"{name}, metal can, free in space, RK4, 0.5 ms",
             1e-6,
             "rad",
             "softness of the contact",
         )
-        yield Row(
+        yield Check(
             "lying",
             "turn about the vertical over 2 s of a can that starts askew on level ground",
             lambda scene=scene, phi0=phi0: lying(Scene(scene.can, scene.load, 0.0, scene.attachment), phi0, 0.5)[1],
@@ -239,60 +211,6 @@ def left_out(can: Standing) -> np.ndarray:
     return -np.sum(missing, axis=-1) / np.array(can.reaction(omegas[:, 0]))
 
 
-def _moments(can: Standing) -> tuple[float, float, float]:
-    """Return the relative errors of mass, centre of mass and second moment of the compiled model."""
-    model, shell = build(can), can.can
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    masses, heights = model.body_mass[1:], data.xipos[1:, 2]
-    found = masses.sum(), masses @ heights, masses @ heights**2 + model.body_inertia[1:, 0].sum()
-    zeroth, first, second = can.fixed_moments()
-    middle, half = can.height / 2, shell.length / 2
-    expected = (
-        zeroth + shell.mass,
-        first + zeroth * middle + shell.mass * half,
-        second + 2 * first * middle + zeroth * middle**2 + transverse_inertia(shell) + shell.mass * half**2,
-    )
-    mass, centre, inertia = (one / other - 1 for one, other in zip(found, expected, strict=True))
-    return float(mass), float(centre - mass), float(inertia)
-
-
-def _weight_moment(can: Standing, tilt: float, x: float, z: float) -> float:
-    """Return the moment of weight [N m] about a level line at x and z of a can that is held at a tilt, at rest."""
-    model = build(can, free=False)
-    model.body("can").quat = [math.cos(tilt / 2), 0, math.sin(tilt / 2), 0]
-    data = mujoco.MjData(model)
-    for mode in range(1, can.modes + 1):  # they hang down
-        data.joint(f"slosh{mode}").qpos = [math.cos(tilt / 2), 0, -math.sin(tilt / 2), 0]
-    mujoco.mj_kinematics(model, data)
-    line = data.body("can").xmat.reshape(3, 3) @ [x, 0, z]
-    return float(can.gravity * model.body_mass @ (data.xipos[:, 0] - line[0]))
-
-
-def tilted(tilt: float) -> float:
-    """Return the relative error of the liquid's moment about its middle, at a tilt [rad]."""
-    can = water()
-    middle, shell = can.height / 2, can.can
-    lever = shell.mass * can.gravity * (shell.length / 2 - middle) * math.sin(tilt)
-    found = _weight_moment(can, tilt, 0.0, middle) - lever
-    return found / (can.density * can.gravity * math.pi * shell.radius**4 / 4 * math.sin(tilt)) - 1
-
-
-def _tipping() -> float:
-    """Return by how many degrees the model tips later than a can with a true surface, which stays plane."""
-    can = water()
-    radius, height, shell = can.can.radius, can.height, can.can
-
-    def true_surface(tilt: float) -> float:
-        rise = math.tan(tilt)
-        x, z = radius**2 * rise / (4 * height), height / 2 + radius**2 * rise**2 / (8 * height)
-        liquid = can.mass * ((x - radius) * math.cos(tilt) + z * math.sin(tilt))
-        return liquid + shell.mass * (shell.length / 2 * math.sin(tilt) - radius * math.cos(tilt))
-
-    model = brentq(lambda tilt: _weight_moment(can, tilt, radius, 0.0), 0.1, 1.2)
-    return math.degrees(model - brentq(true_surface, 0.1, 1.2))
-
-
 def thrown(can: Standing, timestep: float, integrator: MujocoIntegrator = "implicitfast", count: int = _THROWN) -> int:
     """Return how many cans diverge or gain energy, thrown with some 1 m/s and 5 rad/s from 0.3 m for a second."""
     model = build(can, integrator=integrator, timestep=timestep)
@@ -316,36 +234,7 @@ def thrown(can: Standing, timestep: float, integrator: MujocoIntegrator = "impli
 
 
 @cache
-def lying(scene: Scene, phi0: float, yaw: float = 0.0) -> tuple[np.ndarray, float]:
-    """Return the error of phi [rad] of a free can over 2 s, shape (steps,), and its largest turn about the normal."""
-    spec, radius, tilt = mujoco.MjSpec(), scene.can.radius, scene.incline
-    spec.option.timestep = 5e-4
-    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
-    slope = spec.worldbody.add_frame(quat=[math.cos(tilt / 2), 0, math.sin(tilt / 2), 0])
-    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1]).set_frame(slope)
-    attach(spec, scene)
-    model = spec.compile()
-    data, (u, _) = mujoco.MjData(model), scene.start(phi0, 0.0)
-    down, normal = np.array([math.cos(tilt), 0, -math.sin(tilt)]), np.array([math.sin(tilt), 0, math.cos(tilt)])
-    turn = np.array([math.cos(tilt / 2), 0, math.sin(tilt / 2), 0])
-    for axis, angle in (([0, 0, 1], yaw), ([0, 1, 0], u / radius)):
-        step, both = np.zeros(4), np.zeros(4)
-        mujoco.mju_axisAngle2Quat(step, np.array(axis, float), angle)
-        mujoco.mju_mulQuat(both, turn, step)
-        turn = both
-    joint, swing = data.joint("can-free"), scene.attachment == "sliding"
-    joint.qpos = [*(radius * (1 - 1e-9) * normal + u * down), *turn]
-    if swing:
-        data.joint("can-swing").qpos = phi0 - u / radius
-    mujoco.mj_forward(model, data)
-    times, angles, drift, roll = [], [], 0.0, u / radius
-    ahead = math.cos(yaw) * down + math.sin(yaw) * np.cross(normal, down)
-    while data.time < 2.0:
-        axes = data.body("can-can").xmat.reshape(3, 3)
-        now = math.atan2(-axes[:, 0] @ normal, axes[:, 0] @ ahead)
-        roll = now + 2 * math.pi * round((roll - now) / (2 * math.pi))
-        drift = max(drift, abs(float(axes[:, 1] @ ahead)))
-        times.append(data.time)
-        angles.append(roll + (data.joint("can-swing").qpos[0] if swing else 0.0))
-        mujoco.mj_step(model, data)
-    return np.array(angles) - exact(scene, times, phi0).phi, drift
+def lying(scene: Scene, phi0: float, yaw: float = 0.0) -> tuple[float, float]:
+    """Return the largest error of phi [rad] of a free can over 2 s, and the largest turn of its axis."""
+    times, phi, drift = attached_can.roll(scene, phi0, 2.0, yaw=yaw)
+    return float(np.abs(phi - exact(scene, times, phi0).phi).max()), drift

@@ -1,6 +1,7 @@
-"""Random trials: what one has on a desk, and what nobody has. A trial depends on its number alone.
+"""Regions of random trials, as rows of data: what one has on a desk, and what nobody has.
 
-Each of the regions takes one thing or all to its extremes: it chooses scene, start, pace, setting and samples.
+Each takes one thing or all to its extremes: it chooses scene, start, pace, setting and samples. A trial depends on its
+number alone.
 """
 
 import math
@@ -11,11 +12,12 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import NoEquilibriumError, ParameterError
+from mjbeer.exceptions import NoEquilibriumError, ParameterError, liquid_notes
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
+from mjbeer.theory.liquid import NAMES, liquid
 from mjbeer.theory.load import Load
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
@@ -145,10 +147,27 @@ def _damped(pick: Pick, scene: Scene) -> Scene:
     return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
 
 
+def _liquid(pick: Pick) -> Scene:
+    """Return a can with a real liquid in it."""
+    can = pick.one(Can.massless, Can.sheet_metal)(pick.one(0.033, pick.decades(0.02, 0.1)))
+    with liquid_notes():
+        return liquid(pick.one(*NAMES), math.radians(pick.between(-15, 15)), pick.between(0.05, 0.95), can)
+
+
+def _metal(pick: Pick) -> Scene:
+    """Return a can of sheet metal, as one attaches it to a world."""
+    can = Can.sheet_metal(pick.one(0.033, pick.decades(0.02, 0.1)))
+    return pick.one(sliding, frozen)(math.radians(pick.between(-15, 15)), pick.between(0.1, 0.9), can)
+
+
 def _by_hand(pick: Pick, scene: Scene) -> Start:
     """Return a start such as one makes by hand: let go, pushed or spun."""
     phi0 = pick.one(0.0, 1.0, math.pi, pick.between(-math.pi, math.pi), pick.decades(1e-9, 1))
     return phi0, pick.one(0.0, 0.0, pick.between(-3, 3)) / slow(scene)
+
+
+def _let_go(pick: Pick, scene: Scene) -> Start:
+    return pick.between(-2.5, 2.5), 0.0
 
 
 def _spun(pick: Pick, scene: Scene) -> Start:
@@ -182,39 +201,51 @@ def _beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
     return phi0, pick.sign() * rate * (1 + beside)
 
 
-_PACES = ("usual", "swinging", "extreme", "turning", "resonant", "few", "long")
-"""The ways to choose a timestep and a number of steps; those of `_paced`."""
+def _steps(pick: Pick) -> float:
+    return pick.decades(20, 3000)
 
 
-def _paced(pick: Pick, name: str, clock: float, spin: float, frequency: float) -> tuple[float, float]:
-    """Return a timestep [s] and a number of steps, of a scene with a `clock` [s] and the rates [1/s] of its motion."""
-    turn = max(spin, 1 / clock)
-    if name == "usual":  # a thousandth to a third of the time of a fall through the radius
-        timestep = clock * pick.decades(1e-3, 0.3)
-    elif name == "swinging":  # ten to a thousand timesteps a small swing or a turn, which may be very different
-        timestep = 2 * math.pi / max(frequency, spin, 1e-3 / clock) / pick.decades(10, 1000)
-    elif name == "extreme":  # far too small timesteps, and far too large ones
-        return clock / max(1.0, spin * clock) * pick.decades(1e-4, 3), pick.decades(10, 1e4)
-    elif name == "turning":  # turns by a hundredth of a radian to a hundred radians in a step
-        timestep = pick.decades(1e-2, 1e2) / turn
-    elif name == "resonant":
-        # A whole number of turns, or nearly, in a step or a part of one: RK4 evaluates forces at half steps, and the
-        # run at half the timestep at quarters of them, all of which then see the same angle.
-        whole = 2 * math.pi * (pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3))
-        timestep = whole * (1 + pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))) / turn
-        return timestep, pick.one(pick.decades(2, 30), pick.decades(2, 500))
-    elif name == "few":  # one step to five, long or short
-        return clock * pick.decades(1e-6, 3), pick.between(1, 6)
-    else:  # 20 to 200 s in thousands of steps
-        duration, steps = pick.decades(20, 200), pick.decades(2e3, 1.5e4)
-        return duration / steps, steps
-    return timestep, pick.decades(20, 3000)
+def _resonant(pick: Pick, clock: float, spin: float, frequency: float) -> tuple[float, float]:
+    """Return a whole number of turns, or nearly, in a step or a part of one.
+
+    RK4 evaluates forces at half steps, and a run at half the timestep at quarters of them: all see the same angle.
+    """
+    whole = 2 * math.pi * (pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3))
+    timestep = whole * (1 + pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))) / max(spin, 1 / clock)
+    return timestep, pick.one(pick.decades(2, 30), pick.decades(2, 500))
+
+
+def _long(pick: Pick, clock: float, spin: float, frequency: float) -> tuple[float, float]:
+    """Return 20 to 200 s in thousands of steps."""
+    duration, steps = pick.decades(20, 200), pick.decades(2e3, 1.5e4)
+    return duration / steps, steps
+
+
+_PACES: dict[str, Callable[[Pick, float, float, float], tuple[float, float]]] = {
+    "usual": lambda pick, clock, *_: (clock * pick.decades(1e-3, 0.3), _steps(pick)),
+    "swinging": lambda pick, clock, spin, frequency: (
+        2 * math.pi / max(frequency, spin, 1e-3 / clock) / pick.decades(10, 1000),
+        _steps(pick),
+    ),
+    "extreme": lambda pick, clock, spin, _: (
+        clock / max(1.0, spin * clock) * pick.decades(1e-4, 3),
+        pick.decades(10, 1e4),
+    ),
+    "turning": lambda pick, clock, spin, _: (pick.decades(1e-2, 1e2) / max(spin, 1 / clock), _steps(pick)),
+    "resonant": _resonant,
+    "few": lambda pick, clock, *_: (clock * pick.decades(1e-6, 3), pick.between(1, 6)),
+    "long": _long,
+    "desk": lambda pick, *_: (pick.decades(1e-4, 1e-3), pick.decades(100, 2000)),
+}
+"""Timestep [s] and number of steps of a scene with a clock, the time of a fall through the radius [s], and the rates of
+its spin and its swing [rad/s]: of the clock, of a small swing or a turn, far too small or too large, by 0.01 to 100 rad
+a step, in resonance, one step to five, many seconds, or as one steps a can on a desk."""
 
 
 def _pace(pick: Pick, scene: Scene, start: Start, name: str) -> tuple[float, int]:
     """Return timestep [s] and number of steps at one of the paces, or less: as much as theory can follow."""
     spin, frequency, form = abs(start[1]), _frequency(scene, start), scene.oscillator
-    timestep, steps = _paced(pick, name, slow(scene), spin, frequency)
+    timestep, steps = _PACES[name](pick, slow(scene), spin, frequency)
     share = _DAMPED if scene.dissipates else 1.0
     push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
     if scene.dissipates:  # the load may turn with the can
@@ -256,6 +287,11 @@ def _contact(pick: Pick, scene: Scene) -> dict[str, Any]:
     """Return a contact with next to no friction, or plenty."""
     integrator = pick.one(*INTEGRATORS, "RK4", DOP853)
     return {"rolling": "contact", "integrator": integrator, "tolerance": None, "friction": pick.decades(0.01, 10)}
+
+
+def _attached(pick: Pick, scene: Scene) -> dict[str, Any]:
+    """Return a can that lies in a world of its own, which steps it accurately."""
+    return {"rolling": "contact", "integrator": "RK4", "tolerance": None, "attached": True}
 
 
 def _any_setting(pick: Pick, scene: Scene) -> dict[str, Any]:
@@ -315,7 +351,7 @@ class Region(NamedTuple):
 _ANY_SCENE = (_ordinary, _steady, _anything, _ratios, _fills, _steep, _gravity)
 _ANY_START = (_by_hand, _by_hand, _spun, _far, _beside_the_separatrix)
 _MOSTLY_ORDINARY, _MOSTLY_STEADY = (_ordinary, _ordinary, _anything), (_steady, _steady, _ordinary)
-_EITHER_PACE, _ANY_PACE = ("usual", "swinging"), _PACES
+_EITHER_PACE, _ANY_PACE = ("usual", "swinging"), tuple(_PACES)
 _ANY_SAMPLES = ("regular", "sparse", "late")
 REGIONS = (
     Region("ordinary"),
@@ -334,6 +370,8 @@ REGIONS = (
     Region("weak or strong gravity", (_gravity,)),
     Region("beside the separatrix", starts=(_beside_the_separatrix,), samples=_ANY_SAMPLES),
     Region("mixed", _ANY_SCENE, _ANY_START, _ANY_PACE, _any_setting, _ANY_SAMPLES),
+    Region("liquids", (_liquid,), paces=_EITHER_PACE),
+    Region("attached", (_metal,), (_let_go,), ("desk",), _attached),
     Region("damped", paces=_EITHER_PACE, damped=True),
     Region("damped, mixed", _ANY_SCENE, _ANY_START, _ANY_PACE, _any_setting, _ANY_SAMPLES, damped=True),
 )

@@ -7,25 +7,25 @@ from matplotlib.axes import Axes
 
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.output.plots import COLOURS, chart, name_below, tell
-from mjbeer.studies.benchmark.points import CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
-from mjbeer.studies.cases import MEASURED
+from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
 
 _DARK, _GREY, _PALE = "#333333", "#777777", "#A0A0A0"
 _LINES: dict[Curve | None, tuple[str, str, str]] = {
     Curve("reduced", DOP853): ("mjbeer's DOP853", COLOURS[0], "-o"),
-    Curve("reduced", GAUSS_JACKSON): ("mjbeer's Gauss-Jackson", COLOURS[1], "-s"),
+    Curve("reduced", GAUSS_JACKSON): ("mjbeer's Gauss-Jackson (multistep)", COLOURS[1], "-s"),
     Curve("reduced", CHOSEN, TOLERANCE): ("mjbeer to a tolerance", COLOURS[2], "-D"),
     Curve("contact", DOP853): ("mjbeer's DOP853, in contact", COLOURS[5], ":o"),
     Curve("reduced", "RK4"): ("MuJoCo's RK4", _DARK, "-^"),
     Curve("contact", "RK4"): ("MuJoCo's RK4, in contact", _DARK, ":^"),
     Curve("reduced", "Euler"): ("MuJoCo's Euler", _DARK, "-x"),
     None: ("MuJoCo as usually written, 2 ms", "black", "*"),
-    Curve("SciPy DOP853", "", TOLERANCE): ("SciPy's DOP853", _GREY, "-v"),
-    Curve("SciPy odeint", "", TOLERANCE): ("SciPy's odeint", _PALE, "-<"),
+    Curve("SciPy DOP853", "", TOLERANCE): ("SciPy's DOP853, interpreted", _GREY, "--v"),
+    Curve("SciPy odeint", "", TOLERANCE): ("SciPy's odeint, interpreted", _PALE, "--<"),
     Curve("heyoka", "", TOLERANCE): ("heyoka", _GREY, "-P"),
 }
 """The curves that are drawn, each with its name, its colour, and its line and marker: of 27, those that somebody would
-choose, and as None the models that people usually write. The tables have what the others cost."""
+choose, and as None the models that people usually write. SciPy calls interpreted Python, drawn with dashes; all other
+curves are of compiled code. The tables have what the others cost."""
 _FLOOR, _CEILING = 1e-15, 10.0
 """Smaller errors [rad] are drawn at the floor, since a logarithmic axis has no zero; larger ones are no motion."""
 
@@ -41,7 +41,7 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
     cases = study.cases
     columns = min(2, len(cases))
     rows = -(-len(cases) // columns)
-    stories = [(story := MEASURED[case].story)[0].upper() + story[1:] for case in cases]
+    stories = [(story := CASES[case].story)[0].upper() + story[1:] for case in cases]
     title, subtitle = "What accuracy costs: mjbeer, MuJoCo, SciPy and heyoka", ""
     if len(cases) == 1:
         title, _, subtitle = stories[0].partition(", ")

@@ -29,8 +29,8 @@ from mjbeer.simulation.run import integrate as simulate
 from mjbeer.theory.scene import Scene
 
 Rates = Callable[[float, Sequence[Any]], tuple[Any, ...]]
-Motion = tuple[np.ndarray, np.ndarray]
-"""phi [rad] and u [m], with one entry for each sample, or for each scene of an ensemble."""
+Motion = tuple[np.ndarray, np.ndarray, int | None]
+"""phi [rad] and u [m], with one entry for each sample, and how often accelerations were evaluated, if that is known."""
 Integrate = Callable[[], Motion]
 """A function that integrates a motion from its start at every call. It raises DivergenceError if the tool fails."""
 Function = Callable[[Any], Any]
@@ -53,47 +53,31 @@ def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math
     """
     if scene.drag or any(scene.damping_law.coefficients[1:]):
         raise UnsupportedError("the equations written by hand have linear damping alone: leave out drag and the rest")
-    if scene.attachment == "sliding":
-        damping, radius = scene.damping_law.linear, scene.can.radius
-        return _sliding(letters(scene), sin, cos, damping, radius, 1 / (scene.effective_mass * radius))
-    form, (p, q, *_) = scene.oscillator, letters(scene)
+    form, mass, radius = scene.oscillator, scene.effective_mass, scene.can.radius
+    p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
     slope, half, quarter, middle = form.slope, form.chord / 2, form.chord / 4, form.base + form.chord / 2
+    steady, share, damping = scene.drive / mass, scene.load.moment / mass, scene.damping_law.linear
 
     def frozen(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         phi, phi_dot = state
         s, c = sin(phi), cos(phi)
         return phi_dot, (slope + p * c - (q + quarter * (phi_dot * phi_dot)) * s) / (middle - half * c)
 
-    return frozen
-
-
-def letters(scene: Scene) -> tuple[float, ...]:
-    """Return p, q, base, swing, A and m b/M_e of the equations of a sliding load."""
-    form, mass = scene.oscillator, scene.effective_mass
-    p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
-    return p, q, form.base, form.swing, scene.drive / mass, scene.load.moment / mass
-
-
-def _sliding(
-    numbers: Sequence[Any], sin: Function, cos: Function, damping: float = 0, radius: float = 1, pull: float = 0
-) -> Rates:
-    p, q, base, swing, steady, share = numbers
-
-    def rates(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
+    def sliding(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         _u, phi, u_dot, phi_dot = state
         s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
-        phi_ddot = (p * c - (q + swing * square * c) * s) / (base + swing * (s * s))
+        phi_ddot = (p * c - (q + form.swing * square * c) * s) / (form.base + form.swing * (s * s))
         return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
 
     def damped(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         _u, phi, u_dot, phi_dot = state
         s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
         torque = damping * (u_dot / radius - phi_dot)
-        turned = p * c - (q + swing * square * c) * s + torque * (1 - share / radius * c)
-        phi_ddot = turned / (base + swing * (s * s))
-        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square) - pull * torque, phi_ddot
+        turned = p * c - (q + form.swing * square * c) * s + torque * (1 - share / radius * c)
+        phi_ddot = turned / (form.base + form.swing * (s * s))
+        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square) - torque / (mass * radius), phi_ddot
 
-    return damped if damping else rates
+    return frozen if scene.attachment == "frozen" else damped if damping else sliding
 
 
 def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
@@ -104,14 +88,14 @@ def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
     return u, phi0, u_dot, phi_dot0
 
 
-def coordinates(scene: Scene, states: np.ndarray) -> Motion:
+def coordinates(scene: Scene, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return phi [rad] and u [m] of states with one row for each sample."""
     if scene.attachment == "frozen":
         return states[:, 0], scene.can.radius * states[:, 0]
     return states[:, 1], states[:, 0]
 
 
-class Peer(NamedTuple):
+class OtherTool(NamedTuple):
     """A tool that computes the motion of a scene, with the ladder of its tolerances, finest last."""
 
     name: str
@@ -145,7 +129,7 @@ def _solve_ivp(
             ) from None
         if not solution.success:
             raise DivergenceError(f"SciPy {method}: {solution.message}")
-        return coordinates(scene, solution.y.T)
+        return *coordinates(scene, solution.y.T), int(solution.nfev)
 
     return integrate
 
@@ -158,8 +142,10 @@ def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, toler
 
     def integrate() -> Motion:
         with _warnings_as_errors():
-            states = odeint(lambda time, state: rates(time, state.tolist()), begin, times, **settings)
-        return coordinates(scene, states)
+            states, told = odeint(
+                lambda time, state: rates(time, state.tolist()), begin, times, full_output=True, **settings
+            )
+        return *coordinates(scene, states), int(told["nfe"][-1])
 
     return integrate
 
@@ -192,33 +178,7 @@ def _heyoka(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, toler
         outcome, _, _, _, _, states = integrator.propagate_grid(grid, max_steps=_MOST_TAYLOR_STEPS)
         if outcome != heyoka.taylor_outcome.time_limit:
             raise DivergenceError(f"heyoka: {outcome} at {integrator.time:g} s")
-        return coordinates(scene, states)
-
-    return integrate
-
-
-def ensemble(scenes: Sequence[Scene], phi0: float, duration: float, tolerance: float) -> Integrate:
-    """Compile one integrator whose parameters are the letters of undamped scenes with a sliding load.
-
-    What is returned integrates all of them from rest at `phi0` [rad], and has phi and u at their ends.
-    """
-    import heyoka
-
-    variables = heyoka.make_vars("u", "phi", "u_dot", "phi_dot")
-    numbers, starts = ([make(scene) for scene in scenes] for make in (letters, partial(start, phi0=phi0, phi_dot0=0.0)))
-    rates = _sliding([heyoka.par[place] for place in range(len(numbers[0]))], heyoka.sin, heyoka.cos)(0.0, variables)
-    integrator = heyoka.taylor_adaptive(list(zip(variables, rates, strict=True)), starts[0], tol=tolerance)
-
-    def begin(integrator: Any, index: int) -> Any:
-        integrator.time, integrator.state[:], integrator.pars[:] = 0.0, starts[index], numbers[index]
-        return integrator
-
-    def integrate() -> Motion:
-        ended = heyoka.ensemble_propagate_until(integrator, duration, len(scenes), begin)
-        if any(outcome[0] != heyoka.taylor_outcome.time_limit for _, *outcome in ended):
-            raise DivergenceError("heyoka: a motion did not reach its end")
-        states = np.array([each.state for each, *_ in ended])
-        return states[:, 1], states[:, 0]
+        return *coordinates(scene, states), None  # it has no evaluations, but Taylor series of each step
 
     return integrate
 
@@ -226,7 +186,7 @@ def ensemble(scenes: Sequence[Scene], phi0: float, duration: float, tolerance: f
 def _whole_call(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
     def integrate() -> Motion:
         run = simulate(scene, phi0, phi_dot0, Setting(tolerance=tolerance), times)
-        return run.phi, run.u
+        return run.phi, run.u, None
 
     return integrate
 
@@ -235,21 +195,21 @@ def _decades(first: int, last: int) -> tuple[float, ...]:
     return tuple(float(f"1e-{digits}") for digits in range(first, last + 1))
 
 
-PEERS = {
-    peer.name: peer
-    for peer in (
-        Peer("SciPy DOP853", _decades(3, 13), partial(_solve_ivp, "DOP853")),
-        Peer("SciPy LSODA", _decades(3, 13), partial(_solve_ivp, "LSODA")),
-        Peer("SciPy odeint", _decades(3, 13), _odeint),  # the method of LSODA, in a compiled loop
-        Peer("heyoka", _decades(3, 16), _heyoka),
-        Peer(WHOLE, _decades(3, 12), _whole_call),
+OTHER_TOOLS = {
+    tool.name: tool
+    for tool in (
+        OtherTool("SciPy DOP853", _decades(3, 13), partial(_solve_ivp, "DOP853")),
+        OtherTool("SciPy LSODA", _decades(3, 13), partial(_solve_ivp, "LSODA")),
+        OtherTool("SciPy odeint", _decades(3, 13), _odeint),  # the method of LSODA, in a compiled loop
+        OtherTool("heyoka", _decades(3, 16), _heyoka),
+        OtherTool(WHOLE, _decades(3, 12), _whole_call),
     )
 }
-"""All peers by their names, whether they can be imported here or not."""
+"""All other tools by their names, whether they can be imported here or not."""
 
 
 def absent() -> dict[str, str]:
-    """Return the names of the peers that cannot be imported here, each with the reason, on one line."""
+    """Return the names of the other tools that cannot be imported here, each with the reason, on one line."""
     try:
         importlib.import_module("heyoka")  # optional; in a checkout `pip install ".[peers]"` installs it
     except Exception as error:  # a package that lacks a library of the system may raise anything

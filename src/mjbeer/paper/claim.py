@@ -1,7 +1,7 @@
-"""A row of the audit: an equation or statement of the paper, its witness, and what is wrong with it, if anything is.
+"""A claim of the paper, an equation or a statement: its witness, and what is wrong with it, if anything is.
 
-The terms of an equation stand on one side, so that they sum to zero where it holds. The same function of the letters
-gives numbers when a row is measured, and symbols when its equation is derived.
+The terms of an equation stand on one side, so that they sum to zero where it holds. The same function of the constants
+gives numbers when a claim is measured, and symbols when its equation is derived.
 """
 
 import math
@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
+
+from mjbeer.checks import Result
 
 if TYPE_CHECKING:
     from mjbeer.theory.scene import Scene
@@ -23,12 +25,10 @@ CORRECTED = "confirmed after correction"
 LIMIT = "limit of validity"
 MISPRINT, APPROXIMATION, CONSEQUENCE = "misprint", "approximation", "consequence"
 """Kinds of what is wrong: a slip; orders left out, of which the paper does not speak; what follows from a slip."""
-_AS_STATED = 0.05
-"""Largest relative difference between the measured error of a misprint and the stated one, which has two digits."""
 
 
 @dataclass(frozen=True)
-class Letters:
+class SceneConstants:
     """Constants of a scene: numbers, or symbols where an equation is derived."""
 
     a: Any
@@ -73,8 +73,8 @@ class Letters:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion(Letters):
-    """Letters and a motion in the coordinates of Fig. 3, in SI units: each field has one entry a sample."""
+class Motion(SceneConstants):
+    """SceneConstants and a motion in the coordinates of Fig. 3, in SI units: each field has one entry a sample."""
 
     s: Any
     s_dot: Any
@@ -127,7 +127,7 @@ class Bound:
 class Misprint:
     """What the paper prints in place of what is right."""
 
-    misses_by: float
+    expected_error: float
     """Error that it must have."""
     terms: Callable[[Any], Terms]
     about: str
@@ -153,44 +153,14 @@ class Misprint:
 class Limit:
     """Where a row that holds only in a limit no longer does."""
 
-    misses_by: float
+    expected_error: float
     """Error that it must have there."""
     see: Callable[[], Any]
     """Computes what the terms are functions of, beyond the limit."""
 
 
 @dataclass(frozen=True)
-class Finding:
-    """The result of measuring a row.
-
-    An error is the largest sum of the equation's terms at any sample, divided by the largest single term.
-    """
-
-    equation: str
-    quantity: str
-    verdict: str
-    witness: str
-    printed: float
-    """Error of the printed form; for a limit of validity, its error beyond the limit."""
-    right: float | None
-    """Error of the corrected form, or of the printed one within its limit; None where the paper is right."""
-    bound: float
-    """Largest error that what is right may have."""
-    misses_by: float | None
-    """Error that the misprint, or the claim beyond its limit, must have; None where the paper is right."""
-    reason: str
-    """What causes the remaining error, and therefore sets the bound."""
-
-    @property
-    def passed(self) -> bool:
-        """Whether what is right has an error within the bound, and a misprint has the error that is stated for it."""
-        if self.right is None or self.misses_by is None:
-            return self.printed <= self.bound
-        return self.right <= self.bound and abs(self.printed / self.misses_by - 1) <= _AS_STATED
-
-
-@dataclass(frozen=True)
-class Row:
+class Claim:
     """An equation or statement of the paper that is measured."""
 
     equation: str
@@ -219,22 +189,26 @@ class Row:
         return (self.misprint or self).terms
 
     @property
-    def misses_by(self) -> float | None:
+    def expected_error(self) -> float | None:
         """Error of what is printed, or of what is beyond the limit; None where the paper is right."""
         other = self.misprint or self.limit
-        return other.misses_by if other else None
+        return other.expected_error if other else None
 
-    def measure(self) -> Finding:
-        """Compute the errors of the printed and of the right form, and return both beside the bound."""
+    def measure(self) -> Result:
+        """Compute the errors of what is right and of what is printed, or of what is beyond the limit.
+
+        An error is the largest sum of the terms at any sample, divided by the largest single term.
+        """
         seen = self.witness.see()
-        error, right = miss(self.terms(seen)), None
+        error, values = relative_residual(self.terms(seen)), {"verdict": self.verdict}
         if self.misprint or self.limit:
-            error, right = miss(self.printed(self.limit.see() if self.limit else seen)), error
-        given = self.equation, self.quantity, self.verdict, self.witness.name
-        return Finding(*given, error, right, self.bound.error, self.misses_by, self.bound.reason)
+            printed = relative_residual(self.printed(self.limit.see() if self.limit else seen))
+            values |= {"printed": printed, "expected_error": self.expected_error}
+        given = self.equation, self.quantity, self.witness.name, self.bound.error, "", self.bound.reason
+        return Result(*given, error, values)
 
 
-def miss(terms: Terms) -> float:
+def relative_residual(terms: Terms) -> float:
     """Return the largest sum of the terms at any sample, divided by the largest term; NaN if all are zero."""
     columns = [np.asarray(term, dtype=float) for term in terms]
     largest = max(float(np.abs(column).max()) for column in columns)

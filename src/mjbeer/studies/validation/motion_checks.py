@@ -1,4 +1,4 @@
-"""Rows of undamped motions against exact theory, of models, of laws towards extremes, and of drift."""
+"""Checks of undamped motions against exact theory, of models, of laws towards extremes, and of drift."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -9,6 +9,7 @@ import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from mjbeer.checks import Check, observed_order
 from mjbeer.model import looks
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, supported
@@ -16,11 +17,10 @@ from mjbeer.model.state import start
 from mjbeer.paper.frozen import equilibrium_53, frequency_55
 from mjbeer.paper.sliding import frequency_10
 from mjbeer.paper.witness import TOP, fall_from_top
-from mjbeer.predictions.semi_implicit_euler import energy_per_swing, euler_motion
 from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.simulate import simulate
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.studies.rows import Row
+from mjbeer.studies.predictions.semi_implicit_euler import energy_per_swing, euler_motion
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.exact import exact, phi_error
 from mjbeer.theory.load import BEER, Load
@@ -47,13 +47,8 @@ _GRIP = 1e6
 """Friction coefficient so large that the hoop never slips."""
 
 
-def observed_order(steps: np.ndarray, errors: np.ndarray) -> float:
-    """Return the observed order of convergence: the slope of log(error) over log(step)."""
-    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
-
-
-def rows() -> Iterator[Row]:
-    """Yield the rows of motions near an equilibrium or about a second long."""
+def checks() -> Iterator[Check]:
+    """Yield the checks of motions near an equilibrium or about a second long."""
     yield from _oscillations()
     torques = "rounding of the torques, over 5 s of rest"
     rests: dict[Rolling, tuple[float, str]] = {
@@ -64,7 +59,7 @@ def rows() -> Iterator[Row]:
     for name, scene in (("eq. (53)", frozen()), ("eq. (53), metal can", frozen(can=_METAL))):
         for rolling, (bound, reason) in rests.items():
             quantity, by = f"equilibrium, {name}, 5 s at rest", f"frozen, {rolling}, RK4, 1 ms"
-            yield Row("rest", quantity, partial(_creep, scene, rolling), by, bound, "rad", reason)
+            yield Check("rest", quantity, partial(_creep, scene, rolling), by, bound, "rad", reason)
     scenes = {"sliding": sliding(), "sliding, metal can": sliding(can=_METAL), "frozen": frozen()}
     scenes |= {"frozen, metal can": frozen(can=_METAL), "pendulum": pendulum()}
     errors: tuple[tuple[Rolling, float, str], ...] = (("reduced", 1e-7, "RK4"), ("equality", 1e-7, "RK4"))
@@ -72,7 +67,7 @@ def rows() -> Iterator[Row]:
         for name, scene in scenes.items():
             if supported(scene, rolling):
                 by, measure = f"{name}, {rolling}, RK4, 1 ms", partial(_error, scene, rolling)
-                yield Row("trajectories", "phi over 2 s from 1 rad", measure, by, bound, "rad", reason)
+                yield Check("trajectories", "phi over 2 s from 1 rad", measure, by, bound, "rad", reason)
     for name, scene, phi0, phi_dot0 in (
         ("sliding", sliding(), 1.0, 0.0),
         ("sliding, metal can, looping", sliding(can=_METAL), 0.0, 45.0),
@@ -81,11 +76,11 @@ def rows() -> Iterator[Row]:
         ("pendulum", pendulum(), 1.0, 0.0),
     ):
         by, measure = f"{name}, reduced, DOP853", partial(_error_to_tolerance, scene, phi0, phi_dot0)
-        yield Row("tolerances", "phi over 2 s, tolerance 1e-10", measure, by, 1e-10, "rad", "the tolerance")
+        yield Check("tolerances", "phi over 2 s, tolerance 1e-10", measure, by, 1e-10, "rad", "the tolerance")
 
 
-def _oscillations() -> Iterator[Row]:
-    relative = partial(Row, "oscillations", unit="relative")
+def _oscillations() -> Iterator[Check]:
+    relative = partial(Check, "oscillations", unit="relative")
     beer, ice, small, usual = sliding(), frozen(), "amplitude 1e-3 rad", "reduced, RK4, 1 ms"
     quantity, by, reason = f"frequency, eq. (10), {small}", f"sliding, {usual}", "the amplitude itself: 2e-7"
     yield relative(quantity, lambda: _frequency(beer) / frequency_10(beer) - 1, by, 3e-7, reason=reason)
@@ -110,40 +105,40 @@ def _oscillations() -> Iterator[Row]:
         yield relative(f"steady acceleration, {name}", partial(_acceleration_error, scene), by, 1e-10, reason=reason)
 
 
-def models() -> Iterator[Row]:
-    """Yield the rows of models."""
-    row = partial(Row, "models")
+def models() -> Iterator[Check]:
+    """Yield the checks of models."""
+    check = partial(Check, "models")
     for integrator, (expected, margin) in ORDERS.items():
         measure, by = partial(_order_error, frozen(), integrator), f"frozen, reduced, {integrator}"
-        yield row(f"observed order less {expected}", measure, by, margin, "", "higher orders' terms")
+        yield check(f"observed order less {expected}", measure, by, margin, "", "higher orders' terms")
     by, measure = "hoop, contact, RK4, 20 us", partial(_lift_off_error, hoop(hoop_mass=2e-4))
     quantity, reason = "lift-off angle at M/m = 1e-3 (Littlewood: 90 degrees)", "penetration of the contact"
-    yield row(quantity, measure, by, 0.5, "degrees", f"{reason}, which unloads late")
+    yield check(quantity, measure, by, 0.5, "degrees", f"{reason}, which unloads late")
     by, light, heavy = "hoop, contact, RK4, 0.1 ms", hoop(hoop_mass=0.2 / 20), hoop(hoop_mass=0.2 / 10)
-    yield row("hops missing at M/m = 1/20", lambda: not _hops(light), by, 0, "", "it hops or not")
-    yield row("hops too many at M/m = 1/10 (above 1/13)", lambda: _hops(heavy), by, 0, "", "it hops or not")
+    yield check("hops missing at M/m = 1/20", lambda: not _hops(light), by, 0, "", "it hops or not")
+    yield check("hops too many at M/m = 1/10 (above 1/13)", lambda: _hops(heavy), by, 0, "", "it hops or not")
     quantity, by = "values that differ between two runs", "every scene, rolling and integrator"
-    yield row(quantity, _count_differences, by, 0, "", "bit for bit")
+    yield check(quantity, _count_differences, by, 0, "", "bit for bit")
     reason = "the polygon: falls as 1/resolution^2"
     for index, name in enumerate(("mass", "centre of mass", "inertia")):
         quantity, by = f"{name} of the beer's mesh, eqs. (33)-(37)", "fills 0.05 to 0.95"
-        yield row(quantity, partial(_mesh_error, index), by, 1e-3, "relative", reason)
+        yield check(quantity, partial(_mesh_error, index), by, 1e-3, "relative", reason)
 
 
-def extremes() -> Iterator[Row]:
-    """Yield the rows of laws that motions obey towards an extreme, and over very many swings."""
-    row = partial(Row, "extremes")
+def extremes() -> Iterator[Check]:
+    """Yield the checks of laws that motions obey towards an extreme, and over very many swings."""
+    check = partial(Check, "extremes")
     quantity, by = "frequency over distance from the fold: exponent less 1/4", "frozen, reduced, DOP853"
     reason = "the next term of the expansion: the root of the largest distance, 1e-6"
-    yield row(quantity, lambda: _fold_exponent() - 0.25, by, 1e-3, "", reason)
+    yield check(quantity, lambda: _fold_exponent() - 0.25, by, 1e-3, "", reason)
     quantity = "fall from beside the separatrix over the logarithm of the distance: slope"
     reason = "rounding by 4e-16 rad, against a distance of 1e-10 rad"
     for name, scene in (("sliding, metal can", sliding(can=_METAL)), ("frozen", frozen()), ("pendulum", pendulum())):
-        yield row(quantity, partial(_slope_error, scene), f"{name}, reduced, DOP853", 1e-5, "relative", reason)
+        yield check(quantity, partial(_slope_error, scene), f"{name}, reduced, DOP853", 1e-5, "relative", reason)
     for integrator, duration in (("Euler", 8.0), ("implicit", 2.4)):
         quantity = f"rolling down for {duration} s, by how much the timestep falsifies the turn"
         by, measure = f"frozen, equality, {integrator}, 1 ms", partial(_timestep_error_ratio, integrator, duration)
-        yield row(quantity, measure, by, 1e-3, "relative", "second order in the timestep")
+        yield check(quantity, measure, by, 1e-3, "relative", "second order in the timestep")
     alike = "similarity: phi over t sqrt(g/a), cans of 0.2 mm to 25 m, 1e-3 to 1e3 m/s^2"
     full, reason = "full can, let go at 1 rad: how far it comes in 10 s", "b = 0, so that the torque is 0 as well"
     sizes = "rounding of the scaled scene's sizes and masses"
@@ -151,21 +146,23 @@ def extremes() -> Iterator[Row]:
         (sliding, "sliding", sliding(fill=1.0), "sliding"),
         (frozen, "frozen", frozen(0.0, fill=1.0), "frozen, on the level"),
     ):
-        yield row(alike, partial(_unlike, make), f"{name}, metal can, reduced, DOP853", 1e-10, "rad", sizes)
-        yield row(full, partial(_creep, scene, "reduced", 10, 1.0), f"{place}, reduced, RK4, 1 ms", 0.0, "rad", reason)
+        yield check(alike, partial(_unlike, make), f"{name}, metal can, reduced, DOP853", 1e-10, "rad", sizes)
+        yield check(
+            full, partial(_creep, scene, "reduced", 10, 1.0), f"{place}, reduced, RK4, 1 ms", 0.0, "rad", reason
+        )
     yield from _drifts()
 
 
-def _drifts() -> Iterator[Row]:
-    row, free, light = partial(Row, "drift"), sliding(0.0, can=Can.hoop(mass=1e5)), sliding(0.0)
+def _drifts() -> Iterator[Check]:
+    check, free, light = partial(Check, "drift"), sliding(0.0, can=Can.hoop(mass=1e5)), sliding(0.0)
     width = "growth of the energy's largest deviation within a swing, over 1000 swings"
     apart = "samples that do not fall on whole swings"
     falling = "samples fall differently: a period is not quite 32 steps; the method is symplectic"
     for integrator in ("Euler", "implicit", "implicitfast", "discrete"):
         by = f"can too heavy to move, {integrator}, T/32"
-        yield row(width, partial(_growth, free, integrator), by, 0.05, "relative", falling)
+        yield check(width, partial(_growth, free, integrator), by, 0.05, "relative", falling)
         quantity, by = "energy that a swing of 1 rad gains", f"massless can, {integrator}, T/20000"
-        yield row(quantity, partial(_gain_error, light, integrator), by, 5e-3, "relative", apart)
+        yield check(quantity, partial(_gain_error, light, integrator), by, 5e-3, "relative", apart)
     quantity = "energy lost over 1000 swings: exponent of their number, less 1"
     reason = "a swing that has lost a fourteenth is another one"
     heavy = "can too heavy to move"
@@ -175,7 +172,7 @@ def _drifts() -> Iterator[Row]:
         (heavy, free, DOP853, 10),
     ):
         measure = partial(_drift_exponent, scene, integrator, steps)
-        yield row(quantity, measure, f"{name}, {integrator}, T/{steps}", 0.02, "", reason)
+        yield check(quantity, measure, f"{name}, {integrator}, T/{steps}", 0.02, "", reason)
 
 
 def _frequency(scene: Scene) -> float:

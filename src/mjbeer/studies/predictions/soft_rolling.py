@@ -17,8 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification
-from mjbeer.predictions.soft_constraint import SoftRow
+from mjbeer.studies.predictions.linear_stability import RUNGE_KUTTA, amplification
+from mjbeer.studies.predictions.soft_constraint import SoftRow
 from mjbeer.theory.scene import Scene
 
 

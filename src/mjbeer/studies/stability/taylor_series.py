@@ -52,7 +52,7 @@ class LongMotionError(Exception):
     """A motion takes more than `MOST_STEPS` steps; the message says so."""
 
 
-def reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
+def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
     """Return the motion at increasing `times` [s] that starts at `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
 
     A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. Units of mass, length and time are powers of
@@ -62,7 +62,7 @@ def reference(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.
       DissipationError: if the scene has damping or drag.
       LongMotionError: if the motion is too long.
     """
-    require_no_dissipation(scene, "no reference")
+    require_no_dissipation(scene, "no series")
     can, load, time = scene.can, scene.load, np.asarray(times, dtype=float)
     mass, length = _unit(load.mass), _unit(can.radius)
     pace = abs(phi_dot0) + math.sqrt(scene.gravity / can.radius)
