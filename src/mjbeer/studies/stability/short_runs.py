@@ -58,7 +58,7 @@ class Plan:
     """Everything that defines the runs of a map except timestep and stiffness."""
 
     family: str
-    """What makes the motion stiff: an equality whose solref has a time constant ("equality") or a stiffness ("direct"),
+    """What makes the motion stiff: an equality whose solref has a time constant ("solref") or a stiffness ("direct"),
     "gravity" without a constraint, or the "damping" between can and load."""
     integrator: Integrator
     rolling: Rolling = "reduced"

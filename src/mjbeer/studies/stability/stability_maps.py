@@ -31,7 +31,7 @@ CELLS, QUICK_CELLS = {"damping": (13, 16)}, {"damping": (4, 6)}
 """Number of timesteps and of dampings in a map; the second are those of a sample. Other families have 20 and 20, or 8
 and 8."""
 AXES = {
-    "equality": ((1e-4, 1.0), (1e-4, 1e-1), "time constant of solref [s]"),
+    "solref": ((1e-4, 1.0), (1e-4, 1e-1), "time constant of solref [s]"),
     "direct": ((1e-5, 1.0), (1e2, 1e10), "stiffness K of solref [1/s²]"),
     "gravity": ((1e-3, 10.0), (1e-3, 1e3), "gravity [m/s²]"),
     "damping": ((2.5e-4, 1.6e-2), (1e-4, 1e1), "damping [N m s]"),
@@ -46,14 +46,14 @@ _RESOLUTION = 1.01
 """Bisection ends when the two timesteps that enclose a border have this ratio."""
 _ALL: tuple[Integrator, ...] = (*INTEGRATORS, DOP853)
 PLANS = (
-    *(Plan("equality", name) for name in _ALL),
+    *(Plan("solref", name) for name in _ALL),
     *(Plan("direct", name) for name in ("Euler", "implicitfast", "discrete", "RK4")),
     *(Plan("gravity", name) for name in _ALL),
     *(Plan("damping", name, rolling) for rolling in ROLLINGS for name in _ALL),
 )
 """All maps."""
 _SAMPLE = (
-    "equality, Euler; equality, RK4; equality, discrete; direct, Euler; gravity, Euler; gravity, RK4; "
+    "solref, Euler; solref, RK4; solref, discrete; direct, Euler; gravity, Euler; gravity, RK4; "
     "damping, reduced, Euler; damping, reduced, RK4; damping, contact, RK4"
 )
 """Names of the maps that are made, and coarsely, unless all are asked for."""
@@ -74,7 +74,7 @@ class Figure(NamedTuple):
 
 
 FIGURES = {
-    "equality": Figure(
+    "solref": Figure(
         3,
         "How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
         "A joint equality with refsafe off: timestep against the time constant of solref.",
