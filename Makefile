@@ -51,7 +51,7 @@ renders: $(PACKAGE)
 	$(BIN)/python -m mjbeer.report.carry docs/figures/carry
 
 tables: $(TOOLS)
-	$(BIN)/python -m tests.support.documents
+	$(BIN)/python tools/documents.py
 
 # Names that mjbeer loads when they are first used are loaded, for pdoc to find them.
 api: $(TOOLS)

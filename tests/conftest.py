@@ -33,7 +33,7 @@ def pytest_configure(config: pytest.Config) -> None:
       UsageError: in that case.
     """
     if os.environ.get("MJBEER_EVERYTHING") and not hasattr(config, "workerinput"):  # and not once more in each worker
-        from mjbeer.studies.benchmark.peers import absent
+        from mjbeer.studies.benchmark.other_tools import absent
         from tests.support import browser
 
         lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]

@@ -1,4 +1,7 @@
-"""Real liquids, which neither slide freely nor are frozen: what footnote 4 of the paper leaves open."""
+"""Draws real liquids, which neither slide freely nor are frozen, beside this file: `python docs/figures/real_beer.py`.
+
+This is what footnote 4 of the paper leaves open; `docs/real_beer.md` explains it.
+"""
 
 import functools
 import math
@@ -190,3 +193,7 @@ _BEYOND, _TOO_FAST = "#A8A8A8", "beyond the model: too fast for the liquid to st
 """Colour and name of motions in which the wall's centrifugal acceleration exceeds gravity's part across the incline."""
 _PAINTS = (GREY, COLOURS[0], COLOURS[4], COLOURS[2], COLOURS[1], COLOURS[3], COLOURS[5])
 """Colours of no friction, of the liquids from thin to thick, and of ice."""
+
+if __name__ == "__main__":
+    draw_first_metre(pathlib.Path(__file__).with_name("real-beer"))
+    draw_liquids(pathlib.Path(__file__).with_name("liquids"))

@@ -50,7 +50,7 @@ class Result:
         """Return the result in a line, such as one that failed."""
         by = f" ({self.by})" if self.by else ""
         error = "-" if self.error is None else f"{self.error:.1e}"
-        line = f"{self.group} {self.name}{by}: error {error}, at most {self.bound:.1e} {self.unit}".strip()
+        line = f"{self.group}: {self.name}{by}: error {error}, at most {self.bound:.1e} {self.unit}".strip()
         if "expected_error" in self.values:
             line += f"; as printed {self.values['printed']:.2g}, expected {self.values['expected_error']:.2g}"
         return line

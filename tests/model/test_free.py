@@ -32,7 +32,7 @@ from mjbeer.exceptions import MjbeerError, ParameterError, TemplateError, Unsupp
 from mjbeer.model import free, looks
 from mjbeer.model.export import present_standing
 from mjbeer.model.setting import Setting
-from mjbeer.studies.validation import standing as measured
+from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
 
 PLANE = mujoco.mjtGeom.mjGEOM_PLANE

@@ -9,7 +9,7 @@ import sympy as sp
 
 from mjbeer import paper
 from mjbeer.paper import frozen, sliding
-from mjbeer.paper.claim import Motion, Row, Terms
+from mjbeer.paper.claim import Claim, Motion, Terms
 from mjbeer.paper.witness import metal, rolling_down, swing, wheel
 
 a, b, m, inertia, can_mass, can_inertia, g = sp.symbols("a b m I_cm m_can I_can g", positive=True)
@@ -68,7 +68,7 @@ def vanishes(terms: Terms, motion: Callable[..., Motion]) -> bool:
     return sp.rem(sp.rem(top, S**2 + C**2 - 1, S), A**2 + B**2 - 1, A) == 0
 
 
-def motion_of(row: Row) -> Any:
+def motion_of(row: Claim) -> Any:
     return getattr(row.witness.see, "func", row.witness.see)
 
 
@@ -88,7 +88,7 @@ def test_every_equation_of_a_motion_is_derived() -> None:
 
 @pytest.mark.costly
 @pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
-def test_derived(row: Row) -> None:
+def test_derived(row: Claim) -> None:
     """No term of it vanishes by itself, so that none could be left out; and a misprint does not follow."""
     motion, terms = motion_of(row), row.terms(Q)
     assert vanishes(terms, motion)

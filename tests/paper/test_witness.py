@@ -7,7 +7,7 @@ import pytest
 
 from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.paper.claim import SceneConstants
-from mjbeer.paper.witness import cosines, measure_motion, loop, sines, simulate_motion
+from mjbeer.paper.witness import cosines, loop, measure_motion, simulate_motion, sines
 from mjbeer.theory.equations import accelerations, rolling_forces
 
 # MuJoCo takes the drift of its joint equality back: 3e-9 of the accelerations.

@@ -8,12 +8,12 @@ import pytest
 from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
-from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.studies.benchmark.measure import applied_share
-from mjbeer.studies.benchmark.points import usual_model
-from mjbeer.studies.cases import CASES
+from mjbeer.studies.benchmark.points import CASES
+from mjbeer.studies.benchmark.timing import usual_model
+from mjbeer.studies.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.theory.exact import phi_error
+from tests.support.constraints import applied_share
 
 pytestmark = pytest.mark.slow
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, pendulum, simulate, sliding
+from mjbeer.checks import observed_order
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
@@ -18,7 +19,6 @@ from mjbeer.simulation import tolerance
 from mjbeer.simulation.gauss_jackson import GaussJackson
 from mjbeer.simulation.kernels import SmoothRecorder
 from mjbeer.simulation.multistep import BLOCK, COUNT, LAG, form, weights
-from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
 from tests.support.scenes import METAL

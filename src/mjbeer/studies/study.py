@@ -116,7 +116,12 @@ def measured(checks: Sequence[Check], begin: Callable[[str], None]) -> Generator
     Raises:
       OSError: if the system ends one of the processes.
     """
-    with pool(max(1, min(os.cpu_count() or 1, len(checks)))) as executor:
+    if (processes := min(os.cpu_count() or 1, len(checks))) <= 1:
+        for check in checks:
+            begin(check.name)
+            yield check.result()
+        return
+    with pool(processes) as executor:
         try:
             for done in as_completed([executor.submit(_in_silence, check) for check in checks]):
                 result = done.result()

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Scene, frozen, hoop, pendulum, sliding
-from mjbeer.studies.stability import reference as module
-from mjbeer.studies.stability.reference import LongMotionError, reference
+from mjbeer.studies.stability import taylor_series as module
+from mjbeer.studies.stability.taylor_series import LongMotionError, series
 from mjbeer.theory.equations import kinetic_energy, potential_energy
 from mjbeer.theory.load import Load
 from tests.support import taylor
@@ -44,7 +44,7 @@ def test_it_solves_lagranges_equations(name: str) -> None:
     scene, duration, phi0, phi_dot0, bound = CASES[name]
     times = np.array([0.0, 0.37, 1.0]) * duration
     turned, u, *_ = taylor.motion(scene, times[1:], phi0, phi_dot0).astype(float).T
-    found = reference(scene, times, phi0, phi_dot0)
+    found = series(scene, times, phi0, phi_dot0)
     assert np.abs(found.phi[1:] - phi0 - turned).max() <= bound
     assert np.abs(found.u[1:] - u).max() / scene.can.radius <= bound
 
@@ -52,19 +52,19 @@ def test_it_solves_lagranges_equations(name: str) -> None:
 def test_energy_is_kept_over_a_hundred_swings() -> None:
     """Its rounding: that of twenty steps a swing, which add up like a random walk."""
     scene = sliding(incline=0.0, can=METAL)
-    found = reference(scene, np.linspace(0, 100 * scene.period(1.0), 1001), 1.0)
+    found = series(scene, np.linspace(0, 100 * scene.period(1.0), 1001), 1.0)
     total, depth = kinetic_energy(scene, found) + potential_energy(scene, found), scene.oscillator.depth
     assert np.abs(total - total[0]).max() / depth < 2e-14
 
 
 def test_a_balanced_load_turns_evenly() -> None:
     scene = Scene(Can(0.033, 0.1), Load(0.1, 0.0, 1e-5), 0.0, "frozen")
-    found = reference(scene, np.array([0.0, 1.0, 1e3]), 1.0, 2.0)
+    found = series(scene, np.array([0.0, 1.0, 1e3]), 1.0, 2.0)
     assert found.phi.tolist() == [1.0, 3.0, 2001.0]
 
 
 def test_without_gravity_and_rate_nothing_moves() -> None:
-    found = reference(sliding(gravity=0.0), np.array([0.0, 1e6]), 1.0)
+    found = series(sliding(gravity=0.0), np.array([0.0, 1e6]), 1.0)
     assert found.phi.tolist() == [1.0, 1.0]
     assert found.u.tolist() == [sliding().load.offset * math.sin(1.0)] * 2
 
@@ -72,4 +72,4 @@ def test_without_gravity_and_rate_nothing_moves() -> None:
 def test_a_motion_that_is_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_STEPS", 100)
     with pytest.raises(LongMotionError, match="more than 100 steps"):
-        reference(sliding(), np.array([100.0]), 1.0)
+        series(sliding(), np.array([100.0]), 1.0)

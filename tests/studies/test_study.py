@@ -1,9 +1,10 @@
-"""Rows: judged by their bounds, kept one by one, gone on with after an interruption, measured by several processes."""
+"""Checks: judged by their bounds, kept one by one, resumed after an interruption, measured by several processes."""
 
 import contextlib
 import json
 import math
 import multiprocessing
+import os
 import pathlib
 import signal
 import socket
@@ -13,17 +14,21 @@ from typing import Any
 
 import pytest
 
+from mjbeer.checks import Check, Result
 from mjbeer.exceptions import OutputError, ParameterError
-from mjbeer.studies import rows
-from mjbeer.studies.study import Result, Row, Study
+from mjbeer.studies import study as studies
+from mjbeer.studies.study import Study
 from tests.support.processes import PATIENCE, fall, interrupt, start, where
 
 ALONE = """
 import sys
 from functools import partial
-from mjbeer.studies.study import Row, run
+import pathlib
+from mjbeer.checks import Check
+from mjbeer.studies.study import run
 from tests.support.processes import call_and_sleep
-run([Row("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place in range(4)], None, processes=2)
+checks = [Check("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place in range(4)]
+run(checks, None, pathlib.Path(sys.argv[2]), "mjbeer test", {})
 """
 
 
@@ -34,17 +39,17 @@ run([Row("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place i
 def test_a_result_passes_within_its_bound(error: float | None, bound: float, passed: bool) -> None:
     result = Result("g", "n", bound=bound, error=error)
     assert result.passed is passed
-    assert Result(**json.loads(result.line())).passed is passed
+    assert Result(**json.loads(json.dumps(result.known()))).passed is passed
 
 
 def test_a_deviation_has_a_sign_and_an_error_none() -> None:
-    assert Row("g", "n", lambda: -2.0).result().error == 2.0
-    found = Row("g", "n", lambda: {"error": -2, "of": 3}).result()
+    assert Check("g", "n", lambda: -2.0).result().error == 2.0
+    found = Check("g", "n", lambda: {"error": -2, "of": 3}).result()
     assert (found.error, found.values) == (2.0, {"of": 3})
-    assert Row("g", "n", dict).result().error is None
+    assert Check("g", "n", dict).result().error is None
 
 
-def counting(done: list[str], names: str = "abc") -> list[Row]:
+def counting(done: list[str], names: str = "abc") -> list[Check]:
     """Rows of which the second is interrupted the first time."""
 
     def measure(name: str) -> dict[str, Any]:
@@ -53,22 +58,23 @@ def counting(done: list[str], names: str = "abc") -> list[Row]:
             raise KeyboardInterrupt
         return {"error": 0.5, "of": name}
 
-    return [Row("g", name, partial(measure, name), "by", 1.0, "rad", "why") for name in names]
+    return [Check("g", name, partial(measure, name), "by", 1.0, "rad", "why") for name in names]
 
 
 @pytest.mark.parametrize("torn", ["", '{"group": "g", "na'])
-def test_an_interrupted_study_goes_on(torn: str, tmp_path: pathlib.Path) -> None:
+def test_an_interrupted_study_goes_on(torn: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
     done: list[str] = []
     study, path = counting(done), tmp_path / "study.jsonl"
     with pytest.raises(KeyboardInterrupt):
-        rows.run(study, None, path, "mjbeer test", {"quick": True})
+        studies.run(study, None, path, "mjbeer test", {"quick": True})
     assert [result.name for result in Study.load(path, "mjbeer test").results] == ["a"]
     path.write_text(path.read_text() + torn)
-    found = rows.run(study, None, path, "mjbeer test", {"quick": True})
+    found = studies.run(study, None, path, "mjbeer test", {"quick": True})
     assert done == ["a", "b", "b", "c"]
     assert Study.load(path, "mjbeer test") == found
     assert [(result.name, result.values["of"]) for result in found.results] == [(name, name) for name in "abc"]
-    rows.run(study, None, path, "mjbeer test", {"quick": False})
+    studies.run(study, None, path, "mjbeer test", {"quick": False})
     assert done == ["a", "b", "b", "c", "a", "b", "c"]
 
 
@@ -77,7 +83,7 @@ def test_what_is_no_study_is_refused_and_stays(text: str, tmp_path: pathlib.Path
     path = tmp_path / "study.jsonl"
     path.write_text(text)
     with pytest.raises(ParameterError, match=r"study\.jsonl was not written by `mjbeer test`"):
-        rows.run([], None, path, "mjbeer test")
+        studies.run([], None, path, "mjbeer test", {})
     assert path.read_text() == text
 
 
@@ -90,27 +96,29 @@ def test_a_result_that_cannot_be_kept_is_an_error(tmp_path: pathlib.Path) -> Non
         return 0.0
 
     with pytest.raises(OutputError, match=r"cannot write .*study\.jsonl: Is a directory"):
-        rows.run([Row("g", "a", replace_by_folder)], None, path)
+        studies.run([Check("g", "a", replace_by_folder)], None, path, "mjbeer test", {})
 
 
-def places(count: int, measure: Callable[[], dict[str, Any]] = where) -> list[Row]:
-    return [Row("g", str(place), measure) for place in range(count)]
+def places(count: int, measure: Callable[[], dict[str, Any]] = where) -> list[Check]:
+    return [Check("g", str(place), measure) for place in range(count)]
 
 
 @pytest.mark.slow
-def test_processes_measure_elsewhere_and_the_order_stays() -> None:
-    alone = rows.run(places(3), None)
-    together = rows.run(places(3), None, processes=2)
-    assert {result.values["process"] for result in alone.results} == {where()["process"]}
+def test_processes_measure_elsewhere_and_the_order_stays(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
+    together = studies.run(places(3), None, tmp_path / "study.jsonl", "mjbeer test", {})
     assert where()["process"] not in {result.values["process"] for result in together.results}
     assert [result.name for result in together.results] == ["0", "1", "2"]
     assert not multiprocessing.active_children()
 
 
 @pytest.mark.slow
-def test_a_process_that_is_killed_is_an_error() -> None:
+def test_a_process_that_is_killed_is_an_error(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(OSError, match="ended from outside"):
-        rows.run(places(2, fall), None, processes=2)
+        studies.run(places(2, fall), None, tmp_path / "study.jsonl", "mjbeer test", {})
     assert not multiprocessing.active_children()
 
 
@@ -118,14 +126,19 @@ def test_a_process_that_is_killed_is_an_error() -> None:
 @pytest.mark.parametrize(
     ("number", "everybody"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGKILL, False)]
 )
-def test_no_process_outlives_the_one_that_started_it(number: signal.Signals, everybody: bool) -> None:
+def test_no_process_outlives_the_one_that_started_it(
+    number: signal.Signals, everybody: bool, tmp_path: pathlib.Path
+) -> None:
     """Ctrl-C reaches all of them, and the others are told by the first; of its being killed they hear as well.
 
     Each of the two calls this process when it is at work, and the system hangs up for it when it has ended.
     """
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.settimeout(PATIENCE)
-        with start([str(server.getsockname()[1])], ALONE) as process, contextlib.ExitStack() as lines:
+        with (
+            start([str(server.getsockname()[1]), str(tmp_path / "study.jsonl")], ALONE) as process,
+            contextlib.ExitStack() as lines,
+        ):
             calls = [lines.enter_context(server.accept()[0]) for _ in range(2)]
             _, err = interrupt(process, number, everybody=everybody)
             assert err.count("Traceback") <= 1  # its own

@@ -1,7 +1,7 @@
 """Writes what a program can write in the documents anew: `make tables`.
 
 It stands between `<!-- made: NAME -->` and `<!-- end -->`, and `MADE` has what makes it. `docs/stability.json` has the
-counts of a long stability study; `python -m tests.support.documents FOLDER/stability.jsonl` takes them from a new one.
+counts of a stability study: it is the totals.json that `mjbeer stability` writes.
 """
 
 import json
@@ -18,19 +18,22 @@ from typing import Any
 from mjbeer import LiquidWarning, liquid, paper
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
 from mjbeer.output.terminal import Table
-from mjbeer.paper import real_beer
 from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, LIMIT, MISPRINT
-from mjbeer.predictions import linear_stability, soft_constraint
-from mjbeer.studies.benchmark import tables
+from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.study import Study
-from mjbeer.studies.stability import limits, search, stiff_maps, study
-from mjbeer.studies.stability.judge import NEVER, VERDICTS
-from mjbeer.studies.validation.run import rows as checks
+from mjbeer.studies.predictions import linear_stability, soft_constraint
+from mjbeer.studies.stability import search, stability_maps
+from mjbeer.studies.stability.judge import NOBODY, SERIES, SILENT, THEORY, VERDICTS
+from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
-from tests.support import rows
+from mjbeer.theory.named import frozen
 
-CHECKOUT = pathlib.Path(__file__).parents[2]
+CHECKOUT = pathlib.Path(__file__).parents[1]
+sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "docs" / "figures")]
+import real_beer  # noqa: E402 - beside the figures that it draws
+
+from tests.support import soft_rows as rows  # noqa: E402
+
 DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
 COUNTS = CHECKOUT / "docs" / "stability.json"
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -40,31 +43,6 @@ GENTLE, USUAL = math.radians(2), math.radians(10)
 def anew(text: str) -> str:
     """Return the text of a document with everything between its marks made anew."""
     return MARKED.sub(lambda found: f"{found[1]}{MADE[found['name']]().strip()}\n{found[3]}", text)
-
-
-def counts_of(path: pathlib.Path) -> dict[str, Any]:
-    """Return what the documents say of a stability study: how its runs ended, and how good its limits are."""
-    found = Study.load(path, study.COMMAND)
-    shown = {table.title: table for table in search.tables(found.results)}
-    swings = [result.values for result in found.of(limits.GROUP)]
-    batches = [result.values for result in found.of(search.RANDOM)]
-    kept = [run for values in batches for run in values["overconfident"]]
-    return {
-        "made by": f"{found.command} --{found.settings['extent']}",
-        "limits": {
-            "cases": len(swings),
-            "stable": max(
-                abs(of["stable"] / of["stable_predicted"] - 1) for of in swings if not of.get("lost_a_stage")
-            ),
-            "accurate": max(abs(of["accurate"] / of["accurate_predicted"] - 1) for of in swings if "accurate" in of),
-        },
-        "known": [dict(zip(("kind", *VERDICTS), row, strict=True)) for row in shown["How runs ended"].rows],
-        "regions": [
-            dict(zip(shown["Random runs, by region"].columns, row, strict=True))
-            for row in shown["Random runs, by region"].rows
-        ],
-        "overconfident": {"runs": len(kept), "by": max((run["error"] - run["admitted"] for run in kept), default=0.0)},
-    }
 
 
 def counts() -> dict[str, Any]:
@@ -84,18 +62,20 @@ def prose(text: str) -> str:
 
 def ratios(name: str) -> str:
     """Return the range of the run times of another tool over mjbeer's, at equal error; the page has the same."""
-    shown = tables.others(Benchmark.load(SHIPPED))
-    cells = [cell for row in shown.rows if (cell := row[shown.columns.index(name)]) != "-"]
-    return f"{min(cells, key=float)} to {max(cells, key=float)}"
+    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(Benchmark.load(SHIPPED), name)))
+
+
+def of_maps(*families: str) -> tuple[int, int, float]:
+    """Return the number of maps and of their runs, and the share [%] of runs that end as theory says."""
+    found = [of for name, of in stability_maps.summary(stability_maps.load()).items() if name.startswith(families)]
+    runs = sum(of["runs"] for of in found)
+    return round(sum(of["maps"] for of in found)), round(runs), 100 * sum(of["as predicted"] for of in found) / runs
 
 
 def holds() -> str:
     """What holds, with the numbers that programs know."""
     wrong = Counter(row.misprint.kind for row in paper.claims() if row.misprint)
-    maps, random = stiff_maps.load(), counts()["regions"][-1]
-    cells = sum(len(line) for each in maps["maps"] for line in each["measured"])
-    same = sum(each["same"] for each in maps["maps"]) / len(maps["maps"])
-    never = sum(int(random[VERDICTS[verdict]]) for verdict in NEVER)
+    (maps, runs, same), random = of_maps(""), counts()["kinds"]["all"]
     return table(
         ("", ""),
         [
@@ -113,9 +93,9 @@ def holds() -> str:
             ),
             (
                 "**stability**",
-                f"of {cells:,} short runs in {len(maps['maps'])} maps, {100 * same:.4g} % end as linear theory allows; "
-                f"of {int(random['runs']):,} random runs, {never} were wrong without a warning, missed their tolerance "
-                "or made two theories disagree ([stability](docs/stability.md))",
+                f"of {runs:,} short runs in {maps} maps, {same:.4g} % end as linear theory allows; of "
+                f"{ended(random):,} random runs, {random.get(SILENT, 0)} were wrong without saying so "
+                "([stability](docs/stability.md))",
             ),
             (
                 "**the paper**",
@@ -159,28 +139,19 @@ def causes() -> str:
 
 def cheapest() -> str:
     """The cheapest settings for frozen beer."""
-    return tables.cheapest(Benchmark.load(SHIPPED), "frozen").markdown(title=False)
+    return benchmark_tables.cheapest(Benchmark.load(SHIPPED), "frozen").markdown(title=False)
 
 
 def others() -> str:
     """Run times of other tools at one error; the page has all."""
-    shown = tables.others(Benchmark.load(SHIPPED))
-    lines = [row for row in shown.rows if "1e-09" in row[0]]
-    return table(shown.columns, lines)
+    shown = benchmark_tables.others(Benchmark.load(SHIPPED))
+    return table(shown.columns, shown.rows)
 
 
-def tolerances() -> str:
-    """Run times to one tolerance; the page has all."""
-    shown = tables.tolerances(Benchmark.load(SHIPPED))
-    return table(shown.columns, [row for row in shown.rows if row[0].endswith("1e-9")])
-
-
-def swept() -> str:
-    """Times of many scenes, if the study that comes with mjbeer has them."""
-    found = Benchmark.load(SHIPPED)
-    if not found.sweeps:
-        return "The study that comes with mjbeer has no sweeps in it yet."
-    return tables.sweeps(found).markdown(title=False)
+def whole_calls() -> str:
+    """Times of whole calls."""
+    shown = benchmark_tables.whole_calls(Benchmark.load(SHIPPED))
+    return table(shown.columns, shown.rows)
 
 
 def ranges() -> str:
@@ -217,28 +188,30 @@ def steps() -> str:
 
 
 def agreement() -> str:
-    """How well theory predicts the limits, and how the maps came out."""
-    maps, swings = stiff_maps.load(), counts()["limits"]
-    cells = sum(len(line) for each in maps["maps"] for line in each["measured"])
-    same = sum(each["same"] for each in maps["maps"]) / len(maps["maps"])
+    """How the maps came out, and how near their borders in gravity are to the limit of a swing."""
+    maps, runs, same = of_maps("solref", "direct", "gravity")
+    worst = 0.0
+    for each in stability_maps.load()["maps"]:
+        for value, (border, _) in zip(each["values"], each["boundaries"], strict=True):
+            # At the shortest timestep there is no border to measure: all runs explode.
+            if each["family"] == "gravity" and border and border > each["timesteps"][0]:
+                limit = linear_stability.stable_limit(each["integrator"])
+                worst = max(worst, abs(border * frozen(0.0, gravity=value).frequency() / limit - 1))
     return prose(
-        f"The longest stable timestep of a small swing was measured for {swings['cases']} combinations of scene, way "
-        "of rolling and integrator, and differs from the prediction by "
-        f"{100 * swings['stable']:.2g} % at most; the largest accurate timestep differs by "
-        f"{100 * swings['accurate']:.2g} %. Besides, there are {len(maps['maps'])} maps of timestep and stiffness with "
-        f"{cells:,} short runs, of which {100 * same:.4g} % end as theory allows."
+        f"{maps} maps of timestep and stiffness have {runs:,} short runs, of which {same:.4g} % end as theory says. In "
+        f"gravity the measured borders are within {100 * worst:.2g} % of the limit of ωh."
     )
 
 
 def damped() -> str:
     """How damped runs of a millisecond a step end, by damping."""
-    maps = {each["name"]: each for each in stiff_maps.load()["damped"]}
-    words = ("explodes", "inaccurate", "accurate", "accurate", "WRONG AND SILENT")
+    maps = {each["name"]: each for each in stability_maps.load()["maps"]}
+    words = ("explodes", "inaccurate", "accurate")
     lines = []
     for name in (*INTEGRATORS, DOP853):
         cells = []
         for rolling in ROLLINGS:
-            of = maps[f"{rolling}, {name}"]
+            of = maps[f"damping, {rolling}, {name}"]
             step = min(range(len(of["timesteps"])), key=lambda at: abs(math.log(of["timesteps"][at] / 1e-3)))
             ended = []
             for damping in (0.01, 0.1, 1.0):
@@ -251,40 +224,47 @@ def damped() -> str:
 
 def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
-    maps = stiff_maps.load()["damped"]
-    ended = Counter("".join("".join(each["measured"]) for each in maps))
-    exploded, inaccurate, warned, trusted, silent = (ended[str(code)] for code in range(5))
-    worst = max(each["worst"] for each in maps if not each["name"].startswith("contact"))
-    contact = max(each["worst"] for each in maps if each["name"].startswith("contact"))
+    maps = [each for each in stability_maps.load()["maps"] if each["family"] == "damping"]
+    count = Counter("".join("".join(each["measured"]) for each in maps))
+    found = stability_maps.summary({"maps": maps})
+    contact = found.pop("damping, contact")["worst"]
+    worst = max(of["worst"] for of in found.values())
     return prose(
-        f"Of {ended.total():,} runs in these maps {exploded:,} explode, and {inaccurate:,} are inaccurate and say so; "
-        f"{silent} are wrong and silent. Of {warned + trusted:,} accurate runs {warned:,} warn all the same. "
-        f"Measured and predicted borders agree within {100 * worst:.2g} %, in contact within {100 * contact:.2g} %."
+        f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are inaccurate and "
+        f"{count['2']:,} accurate. Measured and predicted borders agree within {100 * worst:.2g} %, in contact within "
+        f"{100 * contact:.2g} %."
     )
 
 
-def known() -> str:
-    """How the runs of the known cases ended."""
-    lines = [tuple(of.values()) for of in counts()["known"]]
-    return table(("cases", *VERDICTS.values()), lines)
+def ended(count: dict[str, int]) -> int:
+    """Return the number of runs."""
+    return sum(count.get(verdict, 0) for verdict in VERDICTS)
+
+
+def kinds() -> str:
+    """How the random runs ended, by kind of model, and what judged them."""
+    shown = next(each for each in search.tables(counts()) if "by model" in each.title)
+    return table(shown.columns, shown.rows)
 
 
 def regions() -> str:
-    """How many random runs of each region were accurate, and how many of those had a false alarm."""
-    columns = ("region", "accurate", "false alarms")
-    return table(columns, [tuple(of[name] for name in columns) for of in counts()["regions"]])
+    """How the random runs ended, by region."""
+    shown = next(each for each in search.tables(counts()) if "by region" in each.title)
+    return table(shown.columns, shown.rows)
 
 
 def honesty() -> str:
-    """How often a run said too little of its error, and how often too much."""
-    found = counts()
-    random, over = found["regions"][-1], found["overconfident"]
-    silent, missed, theories = (random[VERDICTS[verdict]] for verdict in NEVER)
+    """How many runs were silent, and what that allows; how often a run said too little of its error."""
+    found, known = counts()["kinds"]["all"], counts()["known"]
+    share = search.bound(found)
+    allows = "" if share is None else f", so that with 95 % confidence fewer than {100 * share:.1g} % are"
+    alone = sum(found.get(judge, 0) for judge in (THEORY, SERIES))
+    silent, above, twice = (found.get(name, 0) for name in (SILENT, search.ABOVE, search.TWICE))
     return prose(
-        f"Of {int(random['runs']):,} random runs {silent} were wrong without a warning and {missed} missed their "
-        f"tolerance; the two theories disagreed on {theories}. Of {int(random['accurate']):,} accurate runs "
-        f"{over['runs']} were trusted with an error above their estimate, by {over['by']:.0e} rad at most, and "
-        f"{random['false alarms']} had a false alarm."
+        f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone:,} of them were judged by "
+        f"one theory alone, and {found.get(NOBODY, 0)} by none. {above} trusted runs had a larger error than they admit, "
+        f"and {twice} one of more than twice that. Of {ended(known):,} runs of known cases {known.get(SILENT, 0)} were "
+        "silent."
     )
 
 
@@ -345,14 +325,13 @@ MADE: dict[str, Callable[[], str]] = {
     "causes": causes,
     "cheapest": cheapest,
     "others": others,
-    "tolerances": tolerances,
-    "swept": swept,
+    "whole-calls": whole_calls,
     "ranges": ranges,
     "steps": steps,
     "agreement": agreement,
     "damped": damped,
     "damped-runs": damped_runs,
-    "known": known,
+    "kinds": kinds,
     "regions": regions,
     "honesty": honesty,
     "speeds": speeds,
@@ -360,8 +339,5 @@ MADE: dict[str, Callable[[], str]] = {
 }
 
 if __name__ == "__main__":
-    if len(sys.argv) > 1:
-        taken = [f"{json.dumps(name)}: {json.dumps(of)}" for name, of in counts_of(pathlib.Path(sys.argv[1])).items()]
-        COUNTS.write_text("{\n" + ",\n".join(taken) + "\n}\n", encoding="utf-8")
     for document in DOCUMENTS:
         document.write_text(anew(document.read_text(encoding="utf-8")), encoding="utf-8")

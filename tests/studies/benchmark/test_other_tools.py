@@ -1,4 +1,4 @@
-"""The equations written by hand against the theory's, and every peer that is there against exact theory."""
+"""The equations written by hand against the theory's, and every other tool that is there against exact theory."""
 
 import importlib
 import math
@@ -10,9 +10,9 @@ import pytest
 
 from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.exceptions import DivergenceError, UnsupportedError
-from mjbeer.studies.benchmark import peers
-from mjbeer.studies.benchmark.peers import PEERS, WHOLE, Peer
-from mjbeer.studies.cases import STIFF, Case
+from mjbeer.studies.benchmark import other_tools
+from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, WHOLE, OtherTool
+from mjbeer.studies.benchmark.points import CASES, Case
 from mjbeer.theory.damping import Damping
 from tests.support.scenes import METAL
 
@@ -39,23 +39,23 @@ EPS = float(np.finfo(float).eps)
 @pytest.mark.parametrize("scene", [sliding(drag=0.1), sliding(damping=Damping(0.1, 0.2))])
 def test_other_losses_are_refused(scene: Scene) -> None:
     with pytest.raises(UnsupportedError, match="linear damping alone"):
-        peers.right_hand_side(scene)
+        other_tools.right_hand_side(scene)
 
 
 def params(names: Iterable[str]) -> list[Any]:
-    """Parameters of a test of peers; for those that are absent it is skipped, with the reason."""
-    absent = peers.absent()
+    """Parameters of a test of tools; for those that are absent it is skipped, with the reason."""
+    absent = other_tools.absent()
     marks = {name: [pytest.mark.skip(f"{name} is absent: {reason}")] for name, reason in absent.items()}
-    return [pytest.param(PEERS[name], id=name, marks=marks.get(name, ())) for name in names]
+    return [pytest.param(OTHER_TOOLS[name], id=name, marks=marks.get(name, ())) for name in names]
 
 
-BARE = params([name for name in PEERS if name != WHOLE])
+BARE = params([name for name in OTHER_TOOLS if name != WHOLE])
 
 
-def error(peer: Peer, scene: Scene, phi0: float, phi_dot0: float, tolerance: float) -> float:
+def error(tool: OtherTool, scene: Scene, phi0: float, phi_dot0: float, tolerance: float) -> float:
     """The larger of the errors of phi and u/a, against exact theory, in the second of two runs."""
-    run = peer.set_up(scene, phi0, phi_dot0, TIMES, tolerance)
-    (first, _), (phi, u) = run(), run()
+    run = tool.set_up(scene, phi0, phi_dot0, TIMES, tolerance)
+    (first, *_), (phi, u, _) = run(), run()
     assert first is not phi
     assert (first == phi).all()
     truth = exact(scene, TIMES, phi0, phi_dot0)
@@ -63,31 +63,22 @@ def error(peer: Peer, scene: Scene, phi0: float, phi_dot0: float, tolerance: flo
 
 
 @pytest.mark.parametrize("start", STARTS.values(), ids=STARTS.keys())
-@pytest.mark.parametrize("peer", BARE)
-def test_tolerances_lead_to_exact_theory(peer: Peer, start: tuple[Scene, float, float]) -> None:
+@pytest.mark.parametrize("tool", BARE)
+def test_tolerances_lead_to_exact_theory(tool: OtherTool, start: tuple[Scene, float, float]) -> None:
     coarse, fine = 1e-4, 1e-10
-    first, last = error(peer, *start, coarse), error(peer, *start, fine)
+    first, last = error(tool, *start, coarse), error(tool, *start, fine)
     assert last <= GLOBAL * fine
     assert math.log(first / last) / math.log(coarse / fine) == pytest.approx(1, abs=SLOPE)
 
 
-@pytest.mark.parametrize("peer", params(["SciPy LSODA", "SciPy odeint", "heyoka"]))
-@pytest.mark.parametrize("case", STIFF.values(), ids=STIFF.keys())
-def test_stiff_cases_lead_to_exact_theory(peer: Peer, case: Case) -> None:
-    assert error(peer, case.scene, case.phi0, 0.0, 1e-7) <= STIFF_GLOBAL * 1e-7
-
-
-@pytest.mark.parametrize("peer", params(["heyoka"]))
-def test_an_ensemble_has_the_ends_of_its_scenes(peer: Peer) -> None:
-    made = [sliding(0.1, 0.3), sliding(0.3, 0.9, can=METAL)]
-    phi, u = peers.ensemble(made, 1.0, 2.0, 1e-13)()
-    for place, scene in enumerate(made):
-        truth = exact(scene, [2.0], 1.0)
-        assert (phi[place], u[place]) == (pytest.approx(truth.phi[0], abs=1e-11), pytest.approx(truth.u[0], abs=1e-11))
+@pytest.mark.parametrize("tool", params(["SciPy LSODA", "SciPy odeint", "heyoka"]))
+@pytest.mark.parametrize("case", [CASES["stiff"], CASES["stiffer"]], ids=["stiff", "stiffer"])
+def test_stiff_cases_lead_to_exact_theory(tool: OtherTool, case: Case) -> None:
+    assert error(tool, case.scene, case.phi0, 0.0, 1e-7) <= STIFF_GLOBAL * 1e-7
 
 
 def test_a_whole_call_is_that_of_simulate() -> None:
-    phi, u = PEERS[WHOLE].set_up(sliding(), 1.0, 0.0, TIMES, 1e-9)()
+    phi, u, _ = OTHER_TOOLS[WHOLE].set_up(sliding(), 1.0, 0.0, TIMES, 1e-9)()
     run = simulate(sliding(), float(TIMES[-1]), 1.0, tolerance=1e-9, times=TIMES)
     assert (phi == run.phi).all()
     assert (u == run.u).all()
@@ -102,14 +93,16 @@ FAILURES = {
 }
 
 
-@pytest.mark.parametrize("peer", BARE)
-def test_a_failure_is_raised(peer: Peer, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("tool", BARE)
+def test_a_failure_is_raised(
+    tool: OtherTool, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     blow_up = lambda _, state: (state[0] * state[0], 0 * state[0])  # noqa: E731
-    monkeypatch.setattr(peers, "right_hand_side", lambda *_: blow_up)
-    monkeypatch.setattr(peers, "_MOST_EVALUATIONS", 10_000)
-    run = peer.set_up(frozen(), 1.0, 0.0, TIMES, 1e-6)
+    monkeypatch.setattr(other_tools, "right_hand_side", lambda *_: blow_up)
+    monkeypatch.setattr(other_tools, "_MOST_EVALUATIONS", 10_000)
+    run = tool.set_up(frozen(), 1.0, 0.0, TIMES, 1e-6)
     for _ in range(2):
-        with pytest.raises(DivergenceError, match=FAILURES[peer.name]):
+        with pytest.raises(DivergenceError, match=FAILURES[tool.name]):
             run()
     assert capfd.readouterr() == ("", "")
 
@@ -120,4 +113,4 @@ def test_what_cannot_be_imported_is_absent_and_says_why(broken: Exception, monke
         raise broken
 
     monkeypatch.setattr(importlib, "import_module", fail)
-    assert peers.absent() == {"heyoka": str(broken)}
+    assert other_tools.absent() == {"heyoka": str(broken)}

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
-from mjbeer.predictions.soft_constraint import SoftRow, reached_share, spring
+from mjbeer.studies.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
+from mjbeer.studies.predictions.soft_constraint import SoftRow, reached_share, spring
 
 BOUNDED = 1 + 1e-9
 """Largest spectral radius that counts as bounded."""
