@@ -261,10 +261,10 @@ def honesty() -> str:
     alone = sum(found.get(judge, 0) for judge in (THEORY, SERIES))
     silent, above, twice = (found.get(name, 0) for name in (SILENT, search.ABOVE, search.TWICE))
     return prose(
-        f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone:,} of them were judged by "
-        f"one theory alone, and {found.get(NOBODY, 0)} by none. {above} trusted runs had a larger error than they admit, "
-        f"and {twice} one of more than twice that. Of {ended(known):,} runs of known cases {known.get(SILENT, 0)} were "
-        "silent."
+        f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone:,} of them were judged "
+        f"by one theory alone, and {found.get(NOBODY, 0)} by none. {above} trusted runs had a larger error than they "
+        f"admit, and {twice} one of more than twice that. Of {ended(known):,} runs of known cases "
+        f"{known.get(SILENT, 0)} were silent."
     )
 
 

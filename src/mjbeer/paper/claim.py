@@ -200,7 +200,8 @@ class Claim:
         An error is the largest sum of the terms at any sample, divided by the largest single term.
         """
         seen = self.witness.see()
-        error, values = relative_residual(self.terms(seen)), {"verdict": self.verdict}
+        error = relative_residual(self.terms(seen))
+        values: dict[str, Any] = {"verdict": self.verdict}
         if self.misprint or self.limit:
             printed = relative_residual(self.printed(self.limit.see() if self.limit else seen))
             values |= {"printed": printed, "expected_error": self.expected_error}

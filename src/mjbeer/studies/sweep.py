@@ -353,7 +353,7 @@ def _checked(work: Work, grid: Grid) -> list[str]:
             for index, of_value in enumerate(np.moveaxis(numbers, dimension, 0))
         )
     for place, group in groups:
-        if (first := problem(group[0])) and all(problem(number) for number in group):
+        if (first := problem(int(group[0]))) and all(problem(int(number)) for number in group):
             raise ParameterError(f"{place}: {first}".removeprefix(": ")) from first
     return list(notes.values())
 

@@ -84,7 +84,7 @@ class Swings:
 
     def __init__(self, plan: Plan, value: float) -> None:
         self._plan, self._value = plan, value
-        self._scene = frozen(incline=0.0, **({"gravity": value} if plan.family == "gravity" else {}))
+        self._scene = frozen(0.0, gravity=value) if plan.family == "gravity" else frozen(0.0)
         self._frequency, radius = self._scene.frequency(), self._scene.can.radius
         if plan.family == "gravity":
             self._model = build(self._scene, "reduced", integrator=plan.integrator)
