@@ -61,7 +61,7 @@ def test_every_point_is_whole(measured: Benchmark) -> None:
         assert len(point.times) == 2
         assert point.time > 0
         assert point.setup is not None
-        known = point.knob == "timestep" or point.way.startswith("SciPy")
+        known = point.parameter == "timestep" or point.model.startswith("SciPy")
         assert (point.evaluations is not None) == known
     steps = [round(CASES["frozen"].times[-1] / each) for each in stubs.STEPS]
     assert [each.evaluations for each in on(measured, "reduced", "RK4")] == [4 * count for count in steps]
@@ -100,7 +100,7 @@ def test_a_tool_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytes
 def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert "heyoka" not in {curve.way for curve in ladders(CASES["frozen"].scene, missing=["heyoka"])}
+    assert "heyoka" not in {curve.model for curve in ladders(CASES["frozen"].scene, missing=["heyoka"])}
     stubs.benchmark(monkeypatch, stubs.FEW)
     reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
     monkeypatch.setattr(work_precision, "draw", lambda study, path: None)
@@ -114,8 +114,8 @@ def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:
         conduct(["bottle"], True, None)
     for name, case in CASES.items():
         found = ladders(case.scene)
-        assert {each.way for each in found} >= {"reduced", *other_tools.OTHER_TOOLS}
-        assert ("equality" in {each.way for each in found}) == (name not in ("sliding", "stiff", "stiffer"))
+        assert {each.model for each in found} >= {"reduced", *other_tools.OTHER_TOOLS}
+        assert ("equality" in {each.model for each in found}) == (name not in ("sliding", "stiff", "stiffer"))
         steps = found[Curve("reduced", "RK4")]
         assert (steps[0], steps[-1]) == (16e-3, 16e-3 / 2**9)
         assert all(a == 2 * b for a, b in itertools.pairwise(steps))
@@ -128,7 +128,7 @@ def test_the_command_writes_everything(
     stubs.benchmark(monkeypatch)
     assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
     names = {each.name for each in (tmp_path / "new").iterdir()}
-    assert names == {"study.json", "points.csv", "summary.md", ".lock", "work_precision.svg"}
+    assert names == {"study.json", "summary.md", ".lock", "work_precision.svg"}
     summary = (tmp_path / "new" / "summary.md").read_text()
     for text in ("cheapest setting for an error", "SciPy odeint", "Whole calls"):
         assert text in summary

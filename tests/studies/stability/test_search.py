@@ -16,7 +16,7 @@ from mjbeer.checks import Result
 from mjbeer.studies import study
 from mjbeer.studies.stability import search
 from mjbeer.studies.stability.judge import BOTH, DOUBTED, REFUSED, RIGHT, SILENT, THEORY, Outcome, Trial
-from mjbeer.studies.stability.known_cases import Case, Try, cases
+from mjbeer.studies.stability.known_cases import Case, Variant, cases
 from mjbeer.studies.stability.regions import REGIONS, random_trial
 from mjbeer.studies.stability.search import RANDOM, RUNS, SIZE, batch, tables, totals, try_case
 from mjbeer.studies.stability.taylor_series import series
@@ -30,7 +30,7 @@ FIXED = 2 * len(REGIONS)
 """How many runs `make test` makes: two a region."""
 CASES = cases()
 SAMPLE = [case for case in CASES if "1 - 1e" not in case.name][::6]
-SAMPLE += [case for case in CASES if len(case.tries) == 1 and case not in SAMPLE]
+SAMPLE += [case for case in CASES if len(case.variants) == 1 and case not in SAMPLE]
 """A nearly full can takes ten seconds to swing, and as many to simulate."""
 
 
@@ -60,20 +60,20 @@ def test_what_must_be_is_what_is_compared() -> None:
     """A wrong run where an accurate one is wanted, and one that is not refused where it must be, both stand out."""
     good = Trial(mjbeer.frozen(), 1.0, steps=300)
     bad = Trial(mjbeer.frozen(), 1.0, integrator="Euler", timestep=8e-3, steps=250)
-    tried = (Try("a", good, refused=True), Try("b", good, 1e-2), Try("c", bad), Try("d", good, 1e-20))
-    found = try_case(Case("name", "why", (*tried, Try("e", bad, 1e-2, sample=False))))
+    tried = (Variant("a", good, refused=True), Variant("b", good, 1e-2), Variant("c", bad), Variant("d", good, 1e-20))
+    found = try_case(Case("name", "why", (*tried, Variant("e", bad, 1e-2, sample=False))))
     assert [run["as it must"] for run in found["runs"]] == [False, True, True, False, False]
     assert (found["error"], found["why"]) == (3, "why")
-    assert len(try_case(Case("name", "why", (*tried, Try("e", bad, sample=False))), quick=True)["runs"]) == 4
+    assert len(try_case(Case("name", "why", (*tried, Variant("e", bad, sample=False))), quick=True)["runs"]) == 4
 
 
 def test_known_cases_are_told_apart() -> None:
     names = [case.name for case in CASES]
     assert len(set(names)) == len(names)
     for case in CASES:
-        settings = [each.setting for each in case.tries]
+        settings = [each.setting for each in case.variants]
         assert len(set(settings)) == len(settings)
-        assert any(each.sample for each in case.tries)
+        assert any(each.sample for each in case.variants)
 
 
 def test_a_number_makes_the_same_run_every_time() -> None:

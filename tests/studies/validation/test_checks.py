@@ -9,7 +9,6 @@ import pytest
 
 from mjbeer import Can, exact, hoop, simulate, sliding
 from mjbeer.checks import Check, Result
-from mjbeer.model import looks
 from mjbeer.studies.validation import motion_checks as motions
 from mjbeer.studies.validation.validate import Validation, checks
 from mjbeer.theory import exact as theory
@@ -70,9 +69,3 @@ def test_energy_that_obeys_the_other_law_is_found_out() -> None:
     free = sliding(0.0, can=Can.hoop(mass=1e5))
     assert (motions._drift(free, "RK4", 10)[1] - 1).max() > 0.05
     assert abs(motions._drift_exponent(free, "Euler", 32)) > 0.02
-
-
-def test_a_mesh_of_another_fill_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = looks.beer
-    monkeypatch.setattr(looks, "beer", lambda fill, *rest: right(fill * 1.01, *rest))
-    assert min(motions.mesh_errors(0.5)) > 1e-3

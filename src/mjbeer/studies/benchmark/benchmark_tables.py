@@ -1,4 +1,4 @@
-"""The tables of a benchmark, and the folder that it writes: the study, points as CSV, a diagram, and a summary."""
+"""The tables of a benchmark, and the folder that it writes: the study, a diagram, and a summary."""
 
 import math
 import pathlib
@@ -17,7 +17,7 @@ OTHERS = ("MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka")
 _NOTES = """
 The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
 least of the rounds. What is done once, to build and compile a model or to compile equations, is not in it; whole calls
-and points.csv have it. SciPy calls equations in interpreted Python; all else is compiled. Errors are against exact
+and study.json have it. SciPy calls equations in interpreted Python; all else is compiled. Errors are against exact
 theory.
 
 ![Work-precision diagram](work_precision.svg)
@@ -25,14 +25,13 @@ theory.
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
-    """Write study.json, points.csv, the diagram work_precision.svg and, as the last, summary.md.
+    """Write study.json, the diagram work_precision.svg and, as the last, summary.md.
 
     Raises:
       OutputError: if a file cannot be written.
     """
     (folder / "summary.md").unlink(missing_ok=True)  # an earlier one would not match the study
     files.write(folder / "study.json", study.json())
-    files.write(folder / "points.csv", study.csv())
     work_precision.draw(study, folder / "work_precision")
     machine = study.machine
     versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
@@ -55,10 +54,10 @@ def tables(study: Benchmark) -> list[Table]:
 def cheapest(study: Benchmark, case: str) -> Table:
     """Return the fastest setting of a case for each error and way of rolling, with its run time and evaluations."""
     found = study.of(case)
-    ways = [way for way in ROLLINGS if any(point.way == way for point in found)]
+    ways = [way for way in ROLLINGS if any(point.model == way for point in found)]
     rows = []
     for level in points.LEVELS:
-        best = [points.cheapest([point for point in found if point.way == way], level) for way in ways]
+        best = [points.cheapest([point for point in found if point.model == way], level) for way in ways]
         cells = ["not reached" if each is None else f"{each.setting}: {milliseconds(each.time)}" for each in best]
         rows.append((f"{level:.0e} rad", *cells))
     return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
@@ -67,7 +66,7 @@ def cheapest(study: Benchmark, case: str) -> Table:
 def _by(study: Benchmark, case: str, name: str) -> list[Point]:
     """Return the points of a case on the curve of one of `OTHERS`."""
     curve = ("reduced", "RK4") if name == "MuJoCo RK4" else (name, "")
-    return [point for point in study.of(case) if (point.way, point.method) == curve]
+    return [point for point in study.of(case) if (point.model, point.method) == curve]
 
 
 def ratio(study: Benchmark, case: str, name: str, error: float) -> float | None:
@@ -75,7 +74,7 @@ def ratio(study: Benchmark, case: str, name: str, error: float) -> float | None:
 
     It is None if one of the two does not reach the error.
     """
-    best = points.time_for((point for point in study.of(case) if point.way == "reduced"), error)
+    best = points.time_for((point for point in study.of(case) if point.model == "reduced"), error)
     found = points.time_for(_by(study, case, name), error) / best
     return found if 0 < found < math.inf else None
 
@@ -94,7 +93,7 @@ def others(study: Benchmark) -> Table:
     """
     rows = []
     for case in study.cases:
-        reduced = [point for point in study.of(case) if point.way == "reduced"]
+        reduced = [point for point in study.of(case) if point.model == "reduced"]
         for level in COMPARED:
             cells = [milliseconds(points.time_for(reduced, level)) + _evaluations(reduced, level)]
             for name in OTHERS:
@@ -114,7 +113,7 @@ def whole_calls(study: Benchmark) -> Table:
     rows = []
     for case in study.cases:
         for error in COMPARED[:3]:
-            whole = [point for point in study.of(case) if point.way == WHOLE and math.isclose(point.value, error)]
+            whole = [point for point in study.of(case) if point.model == WHOLE and math.isclose(point.value, error)]
             if not whole:
                 continue
             cells = [milliseconds(whole[0].time), f"{whole[0].error:.1e}"]
@@ -124,7 +123,7 @@ def whole_calls(study: Benchmark) -> Table:
                 ["-", "-"]
                 if best is None
                 else [
-                    f"{milliseconds(best.time)} ({best.way.removeprefix('SciPy ')})",
+                    f"{milliseconds(best.time)} ({best.model.removeprefix('SciPy ')})",
                     two_digits(best.time / whole[0].time),
                 ]
             )

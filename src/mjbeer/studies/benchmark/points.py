@@ -1,13 +1,10 @@
 """What a benchmark measures: cases, points on curves, and the front of those that none beats."""
 
-import csv
-import io
 import json
 import math
 import pathlib
-import statistics
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -83,24 +80,24 @@ MuJoCo's default diagonal softens the two by different factors."""
 class Curve:
     """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
 
-    way: str
+    model: str
     """A way of rolling, the name of a setting as people usually write it (USUAL), or the name of another tool."""
     method: str
     """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
-    knob: str = TIMESTEP
+    parameter: str = TIMESTEP
     """What is varied along the curve: "timestep" [s] or "tolerance"."""
 
     @property
     def label(self) -> str:
         """The name of the curve, unlike that of any other."""
-        method = f"{self.method} to a tolerance" if self.method and self.knob == TOLERANCE else self.method
-        return ", ".join(part for part in (self.way, method) if part)
+        method = f"{self.method} to a tolerance" if self.method and self.parameter == TOLERANCE else self.method
+        return ", ".join(part for part in (self.model, method) if part)
 
     def setting(self, value: float) -> Setting:
-        """Return the setting of mjbeer for a `value` of the knob: a timestep [s] or a tolerance [rad]."""
-        if self.knob == TOLERANCE:
-            return replace(Setting(), rolling=self.way, tolerance=value)
-        return replace(Setting(), rolling=self.way, integrator=self.method, timestep=value)
+        """Return the setting of mjbeer for a `value` of the parameter: a timestep [s] or a tolerance [rad]."""
+        if self.parameter == TOLERANCE:
+            return replace(Setting(), rolling=self.model, tolerance=value)
+        return replace(Setting(), rolling=self.model, integrator=self.method, timestep=value)
 
 
 @dataclass
@@ -108,9 +105,9 @@ class Point:
     """A setting of a case with what was measured with it; errors are against exact theory."""
 
     case: str
-    way: str
+    model: str
     method: str
-    knob: str
+    parameter: str
     value: float
     """Timestep [s] or tolerance."""
     phi_max: float = math.inf
@@ -128,7 +125,7 @@ class Point:
     @property
     def curve(self) -> Curve:
         """The curve that the point is on."""
-        return Curve(self.way, self.method, self.knob)
+        return Curve(self.model, self.method, self.parameter)
 
     @property
     def error(self) -> float:
@@ -143,8 +140,8 @@ class Point:
     @property
     def setting(self) -> str:
         """The setting in a few words: its method, and its timestep [ms] or its tolerance."""
-        knob = f"{self.value:g}" if self.knob == TOLERANCE else milliseconds(self.value)
-        return f"{self.method} {'to ' if self.knob == TOLERANCE else ''}{knob}".strip()
+        knob = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
+        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{knob}".strip()
 
 
 def milliseconds(time: float) -> str:
@@ -192,22 +189,8 @@ class Benchmark:
         """The cases of the points, in their order."""
         return list(dict.fromkeys(point.case for point in self.points))
 
-    def csv(self) -> str:
-        """Return CSV with a line for each point: setting, errors, least and median run time; empty where unknown."""
-        names = [column.name for column in fields(Point) if column.name != "times"]
-        text = io.StringIO()
-        writer = csv.DictWriter(text, [*names, "error", "time_min", "time_median", "repeats"], lineterminator="\n")
-        writer.writeheader()
-        for point in self.points:
-            known = {name: value for name, value in finite(asdict(point)).items() if name != "times"}
-            known["repeats"] = len(point.times)
-            if point.times:
-                known |= {"error": point.error, "time_min": point.time, "time_median": statistics.median(point.times)}
-            writer.writerow(known)
-        return text.getvalue()
 
-
-def front(points: Iterable[Point]) -> list[Point]:
+def pareto_front(points: Iterable[Point]) -> list[Point]:
     """Return the points than which no other has both less error and less run time, fastest first."""
     best: list[Point] = []
     for point in sorted(points, key=lambda point: (point.time, point.error)):
@@ -223,7 +206,7 @@ def cheapest(points: Iterable[Point], error: float) -> Point | None:
 
 def time_for(points: Iterable[Point], error: float) -> float:
     """Return the run time [s] for an `error` [rad], interpolated on the front as a power law, or infinity."""
-    best = front(points)
+    best = pareto_front(points)
     if not best or best[-1].error > error:
         return math.inf
     errors, times = [-math.log(point.error) for point in best], [math.log(point.time) for point in best]

@@ -115,11 +115,11 @@ class Rung:
 
     def __init__(self, case: Case, point: Point) -> None:
         self.point, value = point, point.value
-        if point.way in OTHER_TOOLS:
-            self.run = OTHER_TOOLS[point.way].set_up(case.scene, case.phi0, 0.0, case.times, value)
+        if point.model in OTHER_TOOLS:
+            self.run = OTHER_TOOLS[point.model].set_up(case.scene, case.phi0, 0.0, case.times, value)
             return
-        if point.way in USUAL:
-            model = usual_model(point.way, case.scene)
+        if point.model in USUAL:
+            model = usual_model(point.model, case.scene)
             stepper, steps = Stepper(model), np.rint(case.times / value).astype(np.int64)
             begin = start(model, case.scene, case.phi0, 0.0)
             solve = lambda: stepper.run(begin, steps)  # noqa: E731
@@ -147,7 +147,7 @@ class Rung:
             raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
         point.phi_max = float(np.abs(phi - truth.phi).max())
         point.u_max = float(np.abs(u - truth.u).max()) / truth.scene.can.radius
-        point.evaluations = evaluations if point.way in OTHER_TOOLS else self._count()
+        point.evaluations = evaluations if point.model in OTHER_TOOLS else self._count()
 
     def seconds(self) -> float:
         """Return the run time [s] of one run with warm caches."""
@@ -163,7 +163,7 @@ class Rung:
 
 def _evaluations(point: Point, case: Case, model: mujoco.MjModel, begin: np.ndarray) -> int | None:
     """Return how often a run evaluates accelerations; None where a tolerance chooses the steps."""
-    if point.knob == TOLERANCE:
+    if point.parameter == TOLERANCE:
         return None
     if point.method in INTEGRATORS:
         return round(float(case.times[-1]) / point.value) * (4 if point.method == "RK4" else 1)
@@ -183,7 +183,7 @@ def climb(case: Case, curve: Curve, values: Sequence[float]) -> list[tuple[Point
     truth, failures = case.truth(), 0
     climbed: list[tuple[Point, Rung | None]] = []
     for value in values:
-        point, rung = Point(case.name, curve.way, curve.method, curve.knob, value), None
+        point, rung = Point(case.name, curve.model, curve.method, curve.parameter, value), None
         try:
             begin = time.perf_counter()
             rung = Rung(case, point)
@@ -194,7 +194,7 @@ def climb(case: Case, curve: Curve, values: Sequence[float]) -> list[tuple[Point
             failures += any(other for _, other in climbed)
         climbed.append((point, rung))
         # Not for tolerances: the error may stay the same over some decades where the timesteps are finer than needed.
-        if failures > 1 or (curve.knob != TOLERANCE and _floored([each for each, _ in climbed])):
+        if failures > 1 or (curve.parameter != TOLERANCE and _floored([each for each, _ in climbed])):
             break
     return climbed
 

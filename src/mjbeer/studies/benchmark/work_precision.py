@@ -60,7 +60,7 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
 def _draw(axes: Axes, found: Sequence[Point]) -> None:
     """Draw the curves of a scene that have points, and let each point tell what it is."""
     for curve, (name, colour, line) in _LINES.items():
-        of_it = [each for each in found if (each.curve == curve if curve else each.way in USUAL)]
+        of_it = [each for each in found if (each.curve == curve if curve else each.model in USUAL)]
         if shown := [point for point in of_it if point.error < _CEILING]:
             times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
             size = 5 if curve else 10
@@ -70,8 +70,10 @@ def _draw(axes: Axes, found: Sequence[Point]) -> None:
 
 def _told(point: Point, name: str) -> str:
     """Return what a point is: its curve, timestep or tolerance, error and run time."""
-    if point.way in USUAL:
-        setting = point.way
+    if point.model in USUAL:
+        setting = point.model
     else:
-        setting = f"tolerance {point.value:g}" if point.knob == TOLERANCE else f"timestep {milliseconds(point.value)}"
+        setting = (
+            f"tolerance {point.value:g}" if point.parameter == TOLERANCE else f"timestep {milliseconds(point.value)}"
+        )
     return f"{name}, {setting}: error {point.error:.1e} rad, run time {milliseconds(point.time)}"

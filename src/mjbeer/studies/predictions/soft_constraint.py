@@ -15,7 +15,6 @@ h/tau and zeta alone. It does not drop out where MuJoCo overestimates the row's 
 s < d, and the row is softer, and stable for longer timesteps, than its solref suggests.
 """
 
-import math
 from dataclasses import dataclass
 
 MAX_IMPEDANCE = 0.9999
@@ -63,19 +62,3 @@ def spring(timeconst: float, dampratio: float, impedance: float) -> SoftRow:
 def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
     """Return the row of solref = (-stiffness [1/s^2], -damping [1/s])."""
     return SoftRow(stiffness / impedance, damping / impedance, impedance)
-
-
-def refsafe_timeconst(timeconst: float, timestep: float) -> float:
-    """Return the time constant [s] that MuJoCo's refsafe uses instead of `timeconst` [s]: at least two timesteps.
-
-    Under semi-implicit Euler a damping ratio below 0.354 is unstable even so. A direct solref is not changed.
-    """
-    return max(timeconst, 2 * timestep)
-
-
-def discrete_refsafe_timeconst(timeconst: float, dampratio: float, impedance: float, timestep: float) -> float:
-    """Return the time constant [s] that refsafe uses for a contact under "discrete": at least h/(zeta sqrt(d)).
-
-    At that limit k h^2 = 1: one step corrects all of the residual. MuJoCo's manual leaves out the impedance.
-    """
-    return max(timeconst, timestep / (dampratio * math.sqrt(impedance)))

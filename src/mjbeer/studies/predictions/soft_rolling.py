@@ -97,18 +97,6 @@ def by_equality(scene: Scene, excess: float = 1.0, angle: float = 0.0) -> System
     return System(coordinates=joints, mass=mass, gravity=gravity, damping=damping, rows=(row,), excess=excess)
 
 
-def diagonal_excess(scene: Scene) -> float:
-    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
-
-    MuJoCo adds the inverse inertias 1/m_u and 1/I of the two joints, which are the diagonal of M^-1, without regard to
-    metres and radians. If the joints are not coupled, the factor is (1/m_u + 1/I)/(1/m_u + a^2/I). A frozen load
-    couples them by -m b; the true diagonal is J M^-1 J^T with J = (1, -a).
-    """
-    _, mass, _, _ = _matrices(scene, 0.0)
-    inverse, row = np.linalg.inv(mass)[:2, :2], np.array([1.0, -scene.can.radius])
-    return float(np.trace(inverse) / (row @ inverse @ row))
-
-
 def by_contact(scene: Scene, depth: float, points: int, impratio: float, angle: float = 0.0) -> System:
     """Return the system of a load in a cylinder on a plane, which touches at several `points`, about an `angle`.
 

@@ -137,13 +137,13 @@ def judge(trial: Trial) -> Outcome:
             run = simulate(duration=trial.timestep * trial.steps, times=trial.times, **given)
     except REFUSALS as error:
         return Outcome(REFUSED, says=str(error))
-    judges, motions, apart = truth(trial.scene, run.time, trial.phi0, trial.phi_dot0)
+    judges, motions, theory_distance = truth(trial.scene, run.time, trial.phi0, trial.phi_dot0)
     radius = trial.scene.can.radius
     # Where rounding decides, each motion is that of a start which doubles cannot tell from this one.
     error = min((motion.off(run.phi, run.u / radius) for motion in motions), default=math.inf)
     admitted = run.error_estimate + (run.record.slip + run.record.lift) / radius
-    allowed = ERROR if trial.tolerance is None else min(ERROR, trial.tolerance + apart)
-    if math.isinf(apart):
+    allowed = ERROR if trial.tolerance is None else min(ERROR, trial.tolerance + theory_distance)
+    if math.isinf(theory_distance):
         return Outcome(SILENT, judges, error, admitted, "two theories differ by more than rounding explains")
     right = "" if judges == NOBODY else RIGHT if error <= allowed else SILENT
     return Outcome(right if run.trusted else DOUBTED, judges, error, admitted, "; ".join(run.warnings))
@@ -175,12 +175,12 @@ def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tupl
         return (NOBODY, [], 0.0) if first is None else (THEORY, [first], 0.0)
     if first is None:
         return SERIES, [second, *_beside(scene, times, phi0, phi_dot0)], 0.0
-    apart = second.off(first.phi, first.roll)
-    if apart <= _FLOOR + _LAST_DIGITS * _ROUNDING * max(float(np.abs(second.phi).max()), abs(phi0)):
-        return BOTH, [first, second], apart
+    theory_distance = second.off(first.phi, first.roll)
+    if theory_distance <= _FLOOR + _LAST_DIGITS * _ROUNDING * max(float(np.abs(second.phi).max()), abs(phi0)):
+        return BOTH, [first, second], theory_distance
     beside = list(_beside(scene, times, phi0, phi_dot0))
     effect = sum(second.off(motion.phi, motion.roll) for motion in beside)
-    return BOTH, [first, second, *beside], apart if apart <= _NUDGES * effect else math.inf
+    return BOTH, [first, second, *beside], theory_distance if theory_distance <= _NUDGES * effect else math.inf
 
 
 def _by_series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Angles | None:

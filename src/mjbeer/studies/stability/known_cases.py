@@ -27,7 +27,7 @@ _SURE, _ADAPTED = ("reduced", "equality", "tolerance"), ("tolerance",)
 """The ways that must be accurate: with RK4 or DOP853 in reduced models, with RK4 by an equality, and to a tolerance."""
 
 
-class Try(NamedTuple):
+class Variant(NamedTuple):
     """One way to simulate a case."""
 
     setting: str
@@ -42,11 +42,11 @@ class Try(NamedTuple):
 
 
 class Case(NamedTuple):
-    """A case: its name, why it is one, and the ways in which it is tried."""
+    """A case: its name, why it is one, and its variants."""
 
     name: str
     why: str
-    tries: tuple[Try, ...]
+    variants: tuple[Variant, ...]
 
 
 class Motion(NamedTuple):
@@ -65,7 +65,7 @@ class Motion(NamedTuple):
 
 def cases() -> list[Case]:
     """Return all cases."""
-    motions = [Case(each.name, each.why, tries(each)) for each in (*_stiff(), *_extreme())]
+    motions = [Case(each.name, each.why, variants(each)) for each in (*_stiff(), *_extreme())]
     return [*motions, *_frictions(), *_found()]
 
 
@@ -82,8 +82,8 @@ def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
     return min(turn, fall) if math.isfinite(min(turn, fall)) else 1.0
 
 
-def tries(motion: Motion) -> tuple[Try, ...]:
-    """Return tries of a motion in every way of rolling, with every integrator, at timesteps that suit the scene."""
+def variants(motion: Motion) -> tuple[Variant, ...]:
+    """Return variants of a motion in every way of rolling, with every integrator, at timesteps that suit the scene."""
     scene, period, made = motion.scene, natural_period(motion.scene, motion.phi_dot0), []
 
     def lasting(duration: float, timestep: float, **setting: Any) -> Trial:
@@ -97,13 +97,13 @@ def tries(motion: Motion) -> tuple[Try, ...]:
             trial = lasting(motion.swings * period, period / steps, rolling=rolling, integrator=integrator)
             sure = rolling in motion.sure and (integrator == "RK4" or (integrator == DOP853 and rolling == "reduced"))
             name = f"{rolling}, {integrator}, T/{steps}"
-            made.append(Try(name, trial, ERROR if sure else math.inf, not possible, integrator == "RK4"))
+            made.append(Variant(name, trial, ERROR if sure else math.inf, not possible, integrator == "RK4"))
         if rolling != "contact":
             trial = lasting(motion.swings * period, period / _STEPS, rolling=rolling, tolerance=TOLERANCE)
             within = TOLERANCE if "tolerance" in motion.sure else math.inf
-            made.append(Try(f"{rolling}, to a tolerance of {TOLERANCE:g}", trial, within, not possible))
+            made.append(Variant(f"{rolling}, to a tolerance of {TOLERANCE:g}", trial, within, not possible))
     desk = min(max(motion.swings * period, _DESK[0]), _DESK[1])
-    return (*made, Try("reduced, RK4, 1 ms", lasting(desk, 1e-3)))
+    return (*made, Variant("reduced, RK4, 1 ms", lasting(desk, 1e-3)))
 
 
 def _frictions() -> Iterator[Case]:
@@ -114,7 +114,7 @@ def _frictions() -> Iterator[Case]:
             trial = Trial(frozen(), 0.0, rolling="contact", integrator=name, friction=friction)
             sure = friction >= 1 and name in ("RK4", DOP853)
             made.append(
-                Try(f"contact, {name}, 1 ms", trial, ERROR if sure else math.inf, sample=name in ("Euler", "RK4"))
+                Variant(f"contact, {name}, 1 ms", trial, ERROR if sure else math.inf, sample=name in ("Euler", "RK4"))
             )
         yield Case(
             f"friction {friction:g}", "rocking from phi = 0 needs a coefficient of 0.22; a can hops", tuple(made)
@@ -195,7 +195,7 @@ def _found() -> Iterator[Case]:
     """Yield the cases in which the random search found errors."""
 
     def case(name: str, why: str, setting: str, trial: Trial, within: float = math.inf) -> Case:
-        return Case(name, why, (Try(setting, trial, within),))
+        return Case(name, why, (Variant(setting, trial, within),))
 
     contact: dict[str, Any] = {"rolling": "contact", "integrator": DOP853}
     why = "MuJoCo's solver stops once its cost falls by less than 1e-8 m^2/s^4: its tolerance has to scale with g^2"

@@ -29,7 +29,7 @@ _NINE_IN_TEN = 3.0
 
 
 def checks(extent: str, number: int = 0) -> list[Check]:
-    """Return all known cases and the random ones from a `number` on; but for a "long" study, cases have fewer tries."""
+    """Return all known cases and the random ones from a `number` on; but for "long", cases have fewer variants."""
     why = "each ends as it must"
     found = [
         Check(KNOWN, each.name, partial(try_case, each, extent != "long"), bound=0, unit="runs", reason=why)
@@ -42,9 +42,9 @@ def checks(extent: str, number: int = 0) -> list[Check]:
 
 
 def try_case(case: Case, quick: bool = False) -> dict[str, Any]:
-    """Return how the tries of a known case ended, or those of a sample; "error" counts those that should not end so."""
+    """Return how the variants of a known case ended, or those of a sample; "error" counts the wrong ends."""
     runs = []
-    for each in case.tries:
+    for each in case.variants:
         if each.sample or not quick:
             outcome = judge(each.trial)
             wanted = outcome.verdict == REFUSED if each.refused else outcome.verdict != SILENT

@@ -5,12 +5,10 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 
-import mujoco
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.checks import Check, observed_order
-from mjbeer.model import looks
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, supported
 from mjbeer.model.state import start
@@ -21,9 +19,8 @@ from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.simulate import simulate
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.predictions.semi_implicit_euler import energy_per_swing, euler_motion
-from mjbeer.theory.can import LENGTH, RADIUS, Can
+from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
-from mjbeer.theory.load import BEER, Load
 from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import mean_acceleration
@@ -41,8 +38,6 @@ _ALIKE = ((2e-4, 9.81), (1e-3, 9.81), (25.0, 9.81), (0.033, 1e-3), (0.033, 1e3))
 ORDERS: dict[Integrator, tuple[int, float]] = {"RK4": (4, 0.2), DOP853: (8, 0.5)}
 """Order of each integrator, and the largest difference of the observed order from it."""
 ORDERS |= {name: (1, 0.1) for name in INTEGRATORS if name != "RK4"}
-FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
-"""Fills at which the mesh of the beer is checked."""
 _GRIP = 1e6
 """Friction coefficient so large that the hoop never slips."""
 
@@ -119,10 +114,6 @@ def models() -> Iterator[Check]:
     yield check("hops too many at M/m = 1/10 (above 1/13)", lambda: _hops(heavy), by, 0, "", "it hops or not")
     quantity, by = "values that differ between two runs", "every scene, rolling and integrator"
     yield check(quantity, _count_differences, by, 0, "", "bit for bit")
-    reason = "the polygon: falls as 1/resolution^2"
-    for index, name in enumerate(("mass", "centre of mass", "inertia")):
-        quantity, by = f"{name} of the beer's mesh, eqs. (33)-(37)", "fills 0.05 to 0.95"
-        yield check(quantity, partial(_mesh_error, index), by, 1e-3, "relative", reason)
 
 
 def extremes() -> Iterator[Check]:
@@ -344,25 +335,3 @@ def _count_differences() -> int:
             count += int(np.count_nonzero(once != again))
     once, again = (simulate(frozen(), 2, math.pi, tolerance=1e-9).phi for _ in range(2))
     return count + int(np.count_nonzero(once != again))
-
-
-def _mesh_error(index: int) -> float:
-    return max(mesh_errors(fill)[index] for fill in FILLS)
-
-
-def mesh_errors(fill: float, resolution: int = looks.EDGES) -> tuple[float, ...]:
-    """Return the relative errors of mass, centre of mass and axial inertia of the beer's mesh as MuJoCo compiles it."""
-    vertices, faces = looks.beer(fill, RADIUS, LENGTH, resolution)
-    spec = mujoco.MjSpec()
-    method = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
-    spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=method)
-    spec.worldbody.add_body(name="beer").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=BEER)
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    load, body = Load.segment(fill=fill), model.body("beer")
-    axes = data.body("beer").ximat.reshape(3, 3)
-    inertia = (axes @ np.diag(body.inertia) @ axes.T)[1, 1]
-    pairs = (body.mass[0], load.mass), (-data.body("beer").xipos[2], load.offset), (inertia, load.inertia)
-    return tuple(abs(compiled / exact_value - 1) for compiled, exact_value in pairs)
