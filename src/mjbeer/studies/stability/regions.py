@@ -1,12 +1,12 @@
 """Regions of random trials, as rows of data: what one has on a desk, and what nobody has.
 
-Each takes one thing or all to its extremes: it chooses scene, start, pace, setting and samples. A trial depends on its
-number alone.
+A quantity is a number, a pair (low, high) between which its logarithm is even, an `Even` range, or a list of which one
+is taken. Each region takes one thing or all to its extremes. A trial depends on its number alone.
 """
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -23,8 +23,6 @@ from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
 
 T = TypeVar("T")
-Start = tuple[float, float]
-"""phi [rad] and phi_dot [rad/s]."""
 _SWINGS, _TURNED = 400.0, 3e3
 """Longest motion, in swings, and in angle [rad], which theory can follow."""
 _DAMPED = 0.05
@@ -33,103 +31,131 @@ _MANY = 200
 """Largest number of regular samples after the start, so that repeating a run takes few of them."""
 
 
+class Even(NamedTuple):
+    """An even distribution between two numbers."""
+
+    low: float
+    high: float
+
+
+class Signed(NamedTuple):
+    """A quantity to either side of 0."""
+
+    of: Any
+
+
+class Beside(NamedTuple):
+    """A number less a quantity."""
+
+    number: float
+    by: Any
+
+
 class Pick:
     """Makes random choices; the same seed makes the same ones."""
 
     def __init__(self, seed: int) -> None:
         self._generator = np.random.default_rng(seed)
 
-    def between(self, low: float, high: float) -> float:
-        """Return a number between two others, from an even distribution."""
-        return float(self._generator.uniform(low, high))
-
-    def decades(self, low: float, high: float) -> float:
-        """Return a number between two positive others whose logarithm is evenly distributed."""
-        return 10 ** self.between(math.log10(low), math.log10(high))
+    def __call__(self, quantity: Any) -> float:
+        """Return a value of a quantity."""
+        match quantity:
+            case Even(low, high):
+                return float(self._generator.uniform(low, high))
+            case Signed(of):
+                return self.one(1, -1) * self(of)
+            case Beside(number, by):
+                return number - self(by)
+            case (low, high) if isinstance(quantity, tuple):
+                return 10 ** self(Even(math.log10(low), math.log10(high)))
+            case [*options]:
+                return self(self.one(*options))
+        return float(quantity)
 
     def one(self, *options: T) -> T:
-        """Return one of the options; all are equally likely, and a single one takes no choice."""
+        """Return one of the options; all are equally likely."""
         return options[int(self._generator.integers(len(options)))] if len(options) > 1 else options[0]
 
-    def sign(self) -> int:
-        """Return 1 or -1."""
-        return self.one(1, -1)
 
-    def chance(self, probability: float) -> bool:
-        return bool(self._generator.random() < probability)
+@dataclass(frozen=True)
+class Parts:
+    """A scene put together: masses in kg and over each other, lengths over the radius, inertias over m a^2."""
+
+    radius: Any
+    load: Any
+    can: Any
+    """The can's mass over that of the load."""
+    rim: Any
+    """The can's inertia."""
+    offset: Any
+    own: Any
+    """The load's own inertia."""
+    incline: Any
+    """[degrees]"""
+    gravity: Any = GRAVITY
+
+    def __call__(self, pick: Pick) -> Scene:
+        """Return a scene."""
+        radius, load = pick(self.radius), pick(self.load)
+        mass = load * pick(self.can)
+        can = Can(radius, 3 * radius, mass, mass * radius**2 * pick(self.rim))
+        beer = Load(load, radius * pick(self.offset), load * radius**2 * pick(self.own))
+        return Scene(can, beer, math.radians(pick(self.incline)), pick.one(*ATTACHMENTS), pick(self.gravity))
 
 
-def slow(scene: Scene) -> float:
-    """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
-    return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
+_STEADY = Parts([(0.01, 0.3)], 0.1, (1, 1e7), [0.5, 1.0], [1.0, (1e-3, 1)], [0.0, 0.1], [0.0, Even(-20, 20)])
+"""A can so heavy that the inertia hardly depends on the angle."""
+_RATIOS = Parts(
+    [0.033, (1e-3, 10)], [0.1, (1e-6, 1e3)], (1e-6, 1e6), [0.5, 1.0, (1e-12, 1)],
+    [1.0, Even(0, 1), Beside(1, (1e-15, 1)), (1e-12, 1)], [0.0, 0.3, (1e-12, 1)], Even(-20, 20),
+)  # fmt: skip
+_ANYTHING = Parts(
+    (1e-4, 33), (1e-9, 1e6), [0.0, (1e-6, 1e6)], [0.0, 0.5, 1.0, Even(0, 1)], [0.0, 1.0, (1e-9, 1), Even(0, 1)],
+    [0.0, (1e-12, 1), Even(0, 1)], [0.0, 1e-8, 10.0, 89.9, Even(-30, 30), Even(-89.9, 89.9)],
+    [GRAVITY, GRAVITY, GRAVITY, 0.0, (1e-3, 1e3)],
+)  # fmt: skip
+"""Sizes, masses and gravities over their decades, with special cases about as often as others."""
 
 
 def _ordinary(pick: Pick) -> Scene:
     """Return a scene of the paper, on a moderate incline, with a can of any size that one can carry."""
-    incline = math.radians(pick.one(0.0, 10.0, pick.between(-20, 20)))
-    radius = pick.one(0.033, pick.decades(0.01, 0.3))
+    incline, radius = math.radians(pick([0.0, 10.0, Even(-20, 20)])), pick([0.033, (0.01, 0.3)])
     kind = pick.one("beer", "beer", "beer", "pendulum", "hoop")
     if kind == "pendulum":
-        offset = radius * pick.between(0.2, 1)
-        return pendulum(incline, pick.decades(0.02, 2), pick.decades(0.01, 1), offset, radius, 3 * radius)
+        return pendulum(incline, pick((0.02, 2)), pick((0.01, 1)), radius * pick(Even(0.2, 1)), radius, 3 * radius)
     if kind == "hoop":
-        return hoop(incline, pick.decades(2e-3, 0.2), 0.2, radius, 3 * radius)
-    make, can = pick.one(sliding, frozen), pick.one(Can.massless, Can.sheet_metal)
-    return make(incline, pick.one(0.5, pick.between(0.05, 1)), can(radius, 3.6 * radius))
-
-
-def _steady(pick: Pick) -> Scene:
-    """Return a scene whose inertia hardly depends on the angle, as the can is much heavier than its load."""
-    radius, mass = pick.decades(0.01, 0.3), pick.decades(0.1, 1e6)
-    load = Load(0.1, radius * pick.one(1.0, pick.decades(1e-3, 1)), 0.1 * radius**2 * pick.one(0.0, 0.1))
-    can = Can(radius, 3 * radius, mass, mass * radius**2 * pick.one(0.5, 1.0))
-    return Scene(can, load, math.radians(pick.one(0.0, pick.between(-20, 20))), pick.one(*ATTACHMENTS))
+        return hoop(incline, pick((2e-3, 0.2)), 0.2, radius, 3 * radius)
+    can = pick.one(Can.massless, Can.sheet_metal)(radius, 3.6 * radius)
+    return pick.one(sliding, frozen)(incline, pick([0.5, Even(0.05, 1)]), can)
 
 
 def _fills(pick: Pick) -> Scene:
     """Return a scene with a film of beer, or with a can that is nearly full."""
-    fill = pick.one(pick.decades(1e-5, 0.1), 1 - pick.decades(1e-9, 0.1))
-    can = pick.one(Can.massless, Can.sheet_metal)
-    return pick.one(sliding, frozen)(math.radians(pick.between(-20, 20)), fill, can())
+    fill, can = pick([(1e-5, 0.1), Beside(1, (1e-9, 0.1))]), pick.one(Can.massless, Can.sheet_metal)()
+    return pick.one(sliding, frozen)(math.radians(pick(Even(-20, 20))), fill, can)
 
 
 def _steep(pick: Pick) -> Scene:
-    """Return a scene on a steep incline, to either side."""
-    scene, side = _ordinary(pick), pick.sign()
-    return replace(scene, incline=side * math.radians(pick.one(pick.between(30, 89.9), 90 - pick.decades(1e-6, 1))))
+    incline = math.radians(pick(Signed([Even(30, 89.9), Beside(90, (1e-6, 1))])))
+    return replace(_ordinary(pick), incline=incline)
 
 
 def _gravity(pick: Pick) -> Scene:
     """Return a scene in no gravity, on an asteroid, or on a star."""
-    return replace(_ordinary(pick), gravity=pick.one(0.0, pick.decades(1e-3, 1), pick.decades(20, 1e3)))
+    return replace(_ordinary(pick), gravity=pick([0.0, (1e-3, 1), (20, 1e3)]))
 
 
-def _ratios(pick: Pick) -> Scene:
-    """Return a scene of a can and a load with very different masses and moments of inertia."""
-    radius, load_mass = pick.one(0.033, pick.decades(1e-3, 10)), pick.one(0.1, pick.decades(1e-6, 1e3))
-    mass = load_mass * pick.decades(1e-6, 1e6)
-    can = Can(radius, 3 * radius, mass, mass * radius**2 * pick.one(0.5, 1.0, pick.decades(1e-12, 1)))
-    offset = radius * pick.one(1.0, pick.between(0, 1), 1 - pick.decades(1e-15, 1), pick.decades(1e-12, 1))
-    load = Load(load_mass, offset, load_mass * radius**2 * pick.one(0.0, 0.3, pick.decades(1e-12, 1)))
-    return Scene(can, load, math.radians(pick.between(-20, 20)), pick.one(*ATTACHMENTS))
+def _liquid(pick: Pick) -> Scene:
+    """Return a can with a real liquid in it."""
+    can = pick.one(Can.massless, Can.sheet_metal)(pick([0.033, (0.02, 0.1)]))
+    with liquid_notes():
+        return liquid(pick.one(*NAMES), math.radians(pick(Even(-15, 15))), pick(Even(0.05, 0.95)), can)
 
 
-def _anything(pick: Pick) -> Scene:
-    """Return a scene from anywhere: sizes, masses and gravities are spread over their decades.
-
-    Special cases (an empty can, a full can, a point load, no gravity, no incline) are about as frequent as others.
-    """
-    radius, load_mass = pick.decades(1e-4, 33), pick.decades(1e-9, 1e6)
-    mass = pick.one(0.0, load_mass * pick.decades(1e-6, 1e6))
-    can = Can(radius, 3 * radius, mass, mass * radius**2 * pick.one(0.0, 0.5, 1.0, pick.between(0, 1)))
-    fill = pick.one(1e-6, 1 - 1e-6, 1.0, 0.5, pick.between(1e-6, 1))
-    segment = Load.segment(radius, 3 * radius, fill, load_mass / (3 * math.pi * radius**3))
-    offset = radius * pick.one(0.0, 1.0, pick.decades(1e-9, 1), pick.between(0, 1))
-    inertia = load_mass * radius**2 * pick.one(0.0, pick.decades(1e-12, 1), pick.between(0, 1))
-    load = pick.one(segment, Load(load_mass, offset, inertia))
-    incline = pick.one(0.0, 1e-8, 10.0, 89.9, pick.between(-30, 30), pick.between(-89.9, 89.9))
-    weight = pick.one(GRAVITY, GRAVITY, GRAVITY, 0.0, pick.decades(1e-3, 1e3))
-    return Scene(can, load, math.radians(incline), pick.one(*ATTACHMENTS), weight)
+def _metal(pick: Pick) -> Scene:
+    """Return a can of sheet metal, as one attaches it to a world."""
+    can = Can.sheet_metal(pick([0.033, (0.02, 0.1)]))
+    return pick.one(sliding, frozen)(math.radians(pick(Even(-15, 15))), pick(Even(0.1, 0.9)), can)
 
 
 def _damped(pick: Pick, scene: Scene) -> Scene:
@@ -138,114 +164,70 @@ def _damped(pick: Pick, scene: Scene) -> Scene:
     The unit of damping is M a^2 over the time of a fall through the radius, and that of drag is M/a; the torque may
     grow with several powers of the slip rate.
     """
-    radius, mass, clock = scene.can.radius, scene.effective_mass, slow(scene)
-    linear = mass * radius**2 / clock * pick.decades(1e-6, 1e6)
-    squared = Damping(linear, linear * clock * pick.decades(1e-6, 1e2))
-    cubed = Damping(pick.one(0.0, linear), *(linear * clock**power * pick.decades(1e-6, 1e2) for power in (1, 2)))
+    radius, mass, clock = scene.can.radius, scene.effective_mass, _clock(scene)
+    linear = mass * radius**2 / clock * pick((1e-6, 1e6))
+    squared = Damping(linear, linear * clock * pick((1e-6, 1e2)))
+    cubed = Damping(pick([0.0, linear]), *(linear * clock**power * pick((1e-6, 1e2)) for power in (1, 2)))
     law = pick.one(linear, linear, squared, cubed, 0.0)
-    drag = mass / radius * pick.decades(1e-6, 1e2)
+    drag = mass / radius * pick((1e-6, 1e2))
     return replace(scene, attachment="sliding", damping=law, drag=pick.one(drag, drag if law == 0 else 0.0))
 
 
-def _liquid(pick: Pick) -> Scene:
-    """Return a can with a real liquid in it."""
-    can = pick.one(Can.massless, Can.sheet_metal)(pick.one(0.033, pick.decades(0.02, 0.1)))
-    with liquid_notes():
-        return liquid(pick.one(*NAMES), math.radians(pick.between(-15, 15)), pick.between(0.05, 0.95), can)
+def _clock(scene: Scene) -> float:
+    """Return the time of a fall through the radius [s], or a second without gravity: the pace of a scene."""
+    return math.sqrt(scene.can.radius / scene.gravity) if scene.gravity > 0 else 1.0
 
 
-def _metal(pick: Pick) -> Scene:
-    """Return a can of sheet metal, as one attaches it to a world."""
-    can = Can.sheet_metal(pick.one(0.033, pick.decades(0.02, 0.1)))
-    return pick.one(sliding, frozen)(math.radians(pick.between(-15, 15)), pick.between(0.1, 0.9), can)
-
-
-def _by_hand(pick: Pick, scene: Scene) -> Start:
-    """Return a start such as one makes by hand: let go, pushed or spun."""
-    phi0 = pick.one(0.0, 1.0, math.pi, pick.between(-math.pi, math.pi), pick.decades(1e-9, 1))
-    return phi0, pick.one(0.0, 0.0, pick.between(-3, 3)) / slow(scene)
-
-
-def _let_go(pick: Pick, scene: Scene) -> Start:
-    return pick.between(-2.5, 2.5), 0.0
-
-
-def _spun(pick: Pick, scene: Scene) -> Start:
-    """Return a start with a spin much faster than any swing."""
-    spin = pick.one(pick.decades(2, 500), pick.decades(2, 500), pick.decades(1e2, 1e6))
-    return pick.between(-4, 4), pick.sign() * spin / slow(scene)
-
-
-def _far(pick: Pick, scene: Scene) -> Start:
-    """Return a start many turns away, at rest, slow, or so fast that seconds take it many turns away."""
-    phi0 = pick.sign() * pick.decades(1e2, 1e4)
-    return phi0, pick.one(0.0, pick.between(-3, 3) / slow(scene), pick.sign() * pick.decades(1e2, 1e6))
-
-
-def _beside_the_separatrix(pick: Pick, scene: Scene) -> Start:
-    """Return a start at rest beside a barrier's top, or anywhere with nearly the energy of that top.
-
-    The top is that of the scene without damping and drag.
-    """
-    form = scene.oscillator
-    try:
-        low, high = replace(scene, damping=0.0, drag=0.0).separatrix()
-    except NoEquilibriumError:
-        return _by_hand(pick, scene)
-    beside = pick.sign() * pick.decades(1e-15, 0.1)
-    if pick.chance(0.5):
-        return pick.one(low, high) + beside, 0.0
-    phi0 = pick.between(low, high)
-    missing = max(0.0, float(form.drop(phi0, high)))
-    rate = math.sqrt(2 * missing / float(form.inertia(phi0)))
-    return phi0, pick.sign() * rate * (1 + beside)
-
-
-def _steps(pick: Pick) -> float:
-    return pick.decades(20, 3000)
-
-
-def _resonant(pick: Pick, clock: float, spin: float, frequency: float) -> tuple[float, float]:
-    """Return a whole number of turns, or nearly, in a step or a part of one.
-
-    RK4 evaluates forces at half steps, and a run at half the timestep at quarters of them: all see the same angle.
-    """
-    whole = 2 * math.pi * (pick.one(0.25, 0.5, 1.0, 2.0, 4.0, 8.0) * pick.one(1, 1, 1, 2, 3))
-    timestep = whole * (1 + pick.one(0.0, pick.sign() * pick.decades(1e-12, 0.1))) / max(spin, 1 / clock)
-    return timestep, pick.one(pick.decades(2, 30), pick.decades(2, 500))
-
-
-def _long(pick: Pick, clock: float, spin: float, frequency: float) -> tuple[float, float]:
-    """Return 20 to 200 s in thousands of steps."""
-    duration, steps = pick.decades(20, 200), pick.decades(2e3, 1.5e4)
-    return duration / steps, steps
-
-
-_PACES: dict[str, Callable[[Pick, float, float, float], tuple[float, float]]] = {
-    "usual": lambda pick, clock, *_: (clock * pick.decades(1e-3, 0.3), _steps(pick)),
-    "swinging": lambda pick, clock, spin, frequency: (
-        2 * math.pi / max(frequency, spin, 1e-3 / clock) / pick.decades(10, 1000),
-        _steps(pick),
-    ),
-    "extreme": lambda pick, clock, spin, _: (
-        clock / max(1.0, spin * clock) * pick.decades(1e-4, 3),
-        pick.decades(10, 1e4),
-    ),
-    "turning": lambda pick, clock, spin, _: (pick.decades(1e-2, 1e2) / max(spin, 1 / clock), _steps(pick)),
-    "resonant": _resonant,
-    "few": lambda pick, clock, *_: (clock * pick.decades(1e-6, 3), pick.between(1, 6)),
-    "long": _long,
-    "desk": lambda pick, *_: (pick.decades(1e-4, 1e-3), pick.decades(100, 2000)),
+_STARTS: dict[str, tuple[Any, Any]] = {
+    "by hand": ([0.0, 1.0, math.pi, Even(-math.pi, math.pi), (1e-9, 1)], [0.0, 0.0, Even(-3, 3)]),
+    "spun": (Even(-4, 4), Signed([(2, 500), (2, 500), (1e2, 1e6)])),
+    "far": (Signed((1e2, 1e4)), [0.0, Even(-3, 3), Signed((1e1, 1e5))]),
+    "let go": (Even(-2.5, 2.5), 0.0),
 }
-"""Timestep [s] and number of steps of a scene with a clock, the time of a fall through the radius [s], and the rates of
-its spin and its swing [rad/s]: of the clock, of a small swing or a turn, far too small or too large, by 0.01 to 100 rad
-a step, in resonance, one step to five, many seconds, or as one steps a can on a desk."""
+"""phi [rad], and phi_dot over the clock's rate; a start beside the separatrix is no row."""
 
 
-def _pace(pick: Pick, scene: Scene, start: Start, name: str) -> tuple[float, int]:
+def _start(pick: Pick, scene: Scene, name: str) -> tuple[float, float]:
+    """Return a start; beside a barrier's top, without damping, or anywhere with nearly the energy of that top."""
+    try:
+        low, high = replace(scene, damping=0.0, drag=0.0).separatrix() if name == "separatrix" else (0.0, 0.0)
+    except NoEquilibriumError:
+        name = "by hand"
+    if name != "separatrix":
+        phi0, rate = (pick(quantity) for quantity in _STARTS[name])
+        return phi0, rate / _clock(scene)
+    beside = pick(Signed((1e-15, 0.1)))
+    if pick.one(True, False):
+        return pick.one(low, high) + beside, 0.0
+    phi0, form = pick(Even(low, high)), scene.oscillator
+    rate = math.sqrt(2 * max(0.0, float(form.drop(phi0, high))) / float(form.inertia(phi0)))
+    return phi0, pick.one(1, -1) * rate * (1 + beside)
+
+
+_MANY_STEPS, _NEARLY = (20, 3000), [1.0, Beside(1, Signed((1e-12, 0.1)))]
+_WHOLE = [math.pi * part * times for part in (0.5, 1.0, 2.0, 4.0, 8.0, 16.0) for times in (1, 1, 1, 2, 3)]
+_PACES: dict[str, tuple[str, Any, Any]] = {
+    "usual": ("clock", (1e-3, 0.3), _MANY_STEPS),
+    "swinging": ("swing", (1e-3, 0.1), _MANY_STEPS),
+    "extreme": ("fast", (1e-4, 3), (10, 1e4)),
+    "turning": ("turn", (1e-2, 1e2), _MANY_STEPS),
+    # A whole number of turns, or nearly, in a step or a part of one: RK4 evaluates forces at half steps, and a run at
+    # half the timestep at quarters of them, all of which then see the same angle.
+    "resonant": ("turn", _WHOLE, [(2, 30), (2, 500)]),
+    "few": ("clock", (1e-6, 3), Even(1, 6)),
+    "long": ("second", (5e-3, 3e-2), (4e3, 1.5e4)),
+    "desk": ("second", (1e-4, 1e-3), (100, 2000)),
+}
+"""The unit of the timestep, the timestep, and the number of steps."""
+
+
+def _pace(pick: Pick, scene: Scene, start: tuple[float, float], name: str) -> tuple[float, int]:
     """Return timestep [s] and number of steps at one of the paces, or less: as much as theory can follow."""
-    spin, frequency, form = abs(start[1]), _frequency(scene, start), scene.oscillator
-    timestep, steps = _PACES[name](pick, slow(scene), spin, frequency)
+    spin, frequency, form, clock = abs(start[1]), _frequency(scene, start), scene.oscillator, _clock(scene)
+    unit, timestep, steps = _PACES[name]
+    units = {"clock": clock, "second": 1.0, "turn": 1 / max(spin, 1 / clock), "fast": clock / max(1.0, spin * clock)}
+    units["swing"] = 2 * math.pi / max(frequency, spin, 1e-3 / clock)
+    step = units[unit] * pick(timestep) * (pick(_NEARLY) if name == "resonant" else 1.0)
     share = _DAMPED if scene.dissipates else 1.0
     push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
     if scene.dissipates:  # the load may turn with the can
@@ -253,11 +235,11 @@ def _pace(pick: Pick, scene: Scene, start: Start, name: str) -> tuple[float, int
     longest = min(share * _TURNED / max(spin, 1e-300), math.sqrt(2 * share * _TURNED / push))
     if frequency > 0:
         longest = min(longest, share * _SWINGS * 2 * math.pi / frequency)
-    timestep = min(timestep, longest)
-    return timestep, max(1, int(min(steps, longest / timestep)))
+    step = min(step, longest)
+    return step, max(1, int(min(pick(steps), longest / step)))
 
 
-def _frequency(scene: Scene, start: Start) -> float:
+def _frequency(scene: Scene, start: tuple[float, float]) -> float:
     """Return about the angular frequency of the swing of a start [rad/s].
 
     Where the can is light and the load has next to no inertia, a small swing about the bottom is faster by many decades
@@ -272,33 +254,20 @@ def _frequency(scene: Scene, start: Start) -> float:
     return math.sqrt(form.depth / (form.base + (form.chord / 4 + form.swing) * square / 2))
 
 
-def _usual_setting(pick: Pick, scene: Scene) -> dict[str, Any]:
-    """Return any way of rolling that the scene allows, any integrator, and in every fourth run a tolerance."""
-    rolling = pick.one(*(way for way in ROLLINGS if supported(scene, way)))
-    tolerance = None
-    if rolling != "contact" and pick.chance(0.25):  # a stiff contact would need too many steps to reach it
-        tolerance = 10 ** -pick.between(1.5, 12)
-    friction = pick.one(1.0, 1.0, pick.decades(0.01, 10), pick.decades(1e-2, 1e3))
-    integrator = pick.one(*INTEGRATORS, "RK4", DOP853, DOP853)
-    return {"rolling": rolling, "integrator": integrator, "tolerance": tolerance, "friction": friction}
+def _setting(pick: Pick, scene: Scene, kind: str) -> dict[str, Any]:
+    """Return any setting that the scene allows, in every fourth run a tolerance unless it is in contact.
 
-
-def _contact(pick: Pick, scene: Scene) -> dict[str, Any]:
-    """Return a contact with next to no friction, or plenty."""
-    integrator = pick.one(*INTEGRATORS, "RK4", DOP853)
-    return {"rolling": "contact", "integrator": integrator, "tolerance": None, "friction": pick.decades(0.01, 10)}
-
-
-def _attached(pick: Pick, scene: Scene) -> dict[str, Any]:
-    """Return a can that lies in a world of its own, which steps it accurately."""
-    return {"rolling": "contact", "integrator": "RK4", "tolerance": None, "attached": True}
-
-
-def _any_setting(pick: Pick, scene: Scene) -> dict[str, Any]:
-    """Return any setting, also where MuJoCo cannot have the scene that way."""
-    setting = _usual_setting(pick, scene)
-    rolling = pick.one(setting["rolling"], setting["rolling"], *ROLLINGS)
-    return setting | {"rolling": rolling, "tolerance": setting["tolerance"] if rolling != "contact" else None}
+    A "contact" has next to no friction, or plenty; "any" may be one that MuJoCo cannot have; "attached" is a can in a
+    world of its own, which steps it accurately.
+    """
+    if kind == "attached":
+        return {"rolling": "contact", "integrator": "RK4", "attached": True}
+    ways = [*(way for way in ROLLINGS if supported(scene, way)), *(ROLLINGS if kind == "any" else ())]
+    rolling, friction = ("contact", (0.01, 10)) if kind == "contact" else (pick.one(*ways), [1.0, 1.0, (0.01, 1e3)])
+    setting: dict[str, Any] = {"rolling": rolling, "friction": pick(friction)}
+    if rolling != "contact" and pick.one(True, False, False, False):
+        return setting | {"tolerance": pick((1e-12, 0.03))}
+    return setting | {"integrator": pick.one(*INTEGRATORS, "RK4", DOP853, DOP853)}
 
 
 def _samples(pick: Pick, steps: int, anywhere: bool, kind: str) -> dict[str, Any]:
@@ -311,8 +280,7 @@ def _samples(pick: Pick, steps: int, anywhere: bool, kind: str) -> dict[str, Any
         return {"every": max(1, -(-steps // pick.one(_MANY, 10 * _MANY)))}
     if kind == "late":
         return {"moments": tuple(sorted({float(max(0, steps - pick.one(0, 0, 1))), float(steps)}))}
-    count = pick.one(2, 3, 4, 5, 6)
-    moments = {pick.between(0, steps) for _ in range(count)}
+    moments = {pick(Even(0, steps)) for _ in range(pick.one(2, 3, 4, 5, 6))}
     return {"moments": tuple(sorted(moments if anywhere else {float(round(moment)) for moment in moments}))}
 
 
@@ -321,9 +289,9 @@ class Region(NamedTuple):
 
     name: str
     scenes: Sequence[Callable[[Pick], Scene]] = (_ordinary,)
-    starts: Sequence[Callable[[Pick, Scene], Start]] = (_by_hand,)
+    starts: Sequence[str] = ("by hand",)
     paces: Sequence[str] = ("usual",)
-    setting: Callable[[Pick, Scene], dict[str, Any]] = _usual_setting
+    setting: str = "usual"
     samples: Sequence[str] = ("regular",)
     damped: bool = False
 
@@ -334,46 +302,41 @@ class Region(NamedTuple):
           ParameterError: if the choices make a scene that cannot be, or a start or timestep outside the domain.
         """
         scene = pick.one(*self.scenes)(pick)
-        if self.damped:
-            scene = _damped(pick, scene)
-        start = pick.one(*self.starts)(pick, scene)
+        scene = _damped(pick, scene) if self.damped else scene
+        start = _start(pick, scene, pick.one(*self.starts))
         timestep, steps = _pace(pick, scene, start, pick.one(*self.paces))
-        setting = self.setting(pick, scene)
-        anywhere = setting["tolerance"] is not None or setting["integrator"] == DOP853
-        if setting["tolerance"] is not None:
-            setting["integrator"] = None
-        setting |= _samples(pick, steps, anywhere, pick.one(*self.samples))
+        setting = _setting(pick, scene, self.setting)
+        setting |= _samples(pick, steps, setting.get("integrator") in (None, DOP853), pick.one(*self.samples))
         require.start(*start)
         require.within("timestep", timestep, *require.TIMESTEP)
         return Trial(scene, *start, timestep=timestep, steps=steps, **setting)
 
 
-_ANY_SCENE = (_ordinary, _steady, _anything, _ratios, _fills, _steep, _gravity)
-_ANY_START = (_by_hand, _by_hand, _spun, _far, _beside_the_separatrix)
-_MOSTLY_ORDINARY, _MOSTLY_STEADY = (_ordinary, _ordinary, _anything), (_steady, _steady, _ordinary)
-_EITHER_PACE, _ANY_PACE = ("usual", "swinging"), tuple(_PACES)
-_ANY_SAMPLES = ("regular", "sparse", "late")
+_ANY = (_ordinary, _STEADY, _ANYTHING, _RATIOS, _fills, _steep, _gravity)
+_ANY_START, _ANY_PACE = ("by hand", "by hand", "spun", "far", "separatrix"), tuple(_PACES)[:-1]
+_MOSTLY, _HEAVY, _EITHER = (_ordinary, _ordinary, _ANYTHING), (_STEADY, _STEADY, _ordinary), ("usual", "swinging")
+_SAMPLES = ("regular", "sparse", "late")
 REGIONS = (
     Region("ordinary"),
-    Region("anything", (_anything,), _ANY_START, ("extreme",), _any_setting),
-    Region("sparse samples", _MOSTLY_ORDINARY, paces=_EITHER_PACE, samples=("sparse",)),
-    Region("single late sample", _MOSTLY_ORDINARY, paces=_EITHER_PACE, samples=("late",)),
+    Region("anything", (_ANYTHING,), _ANY_START, ("extreme",), "any"),
+    Region("sparse samples", _MOSTLY, paces=_EITHER, samples=("sparse",)),
+    Region("single late sample", _MOSTLY, paces=_EITHER, samples=("late",)),
     Region("few steps", paces=("few",)),
-    Region("fast rotation", _MOSTLY_STEADY, (_spun,), ("turning",)),
-    Region("resonance", _MOSTLY_STEADY, (_spun,), ("resonant",), samples=_ANY_SAMPLES),
-    Region("contact friction", setting=_contact),
-    Region("mass ratios", (_ratios,), paces=_EITHER_PACE),
-    Region("thin or full", (_fills,), paces=_EITHER_PACE, samples=_ANY_SAMPLES),
-    Region("long", paces=("long",), samples=_ANY_SAMPLES),
-    Region("far angles", starts=(_far,), samples=_ANY_SAMPLES),
+    Region("fast rotation", _HEAVY, ("spun",), ("turning",)),
+    Region("resonance", _HEAVY, ("spun",), ("resonant",), samples=_SAMPLES),
+    Region("contact friction", setting="contact"),
+    Region("mass ratios", (_RATIOS,), paces=_EITHER),
+    Region("thin or full", (_fills,), paces=_EITHER, samples=_SAMPLES),
+    Region("long", paces=("long",), samples=_SAMPLES),
+    Region("far angles", starts=("far",), samples=_SAMPLES),
     Region("steep", (_steep,)),
     Region("weak or strong gravity", (_gravity,)),
-    Region("beside the separatrix", starts=(_beside_the_separatrix,), samples=_ANY_SAMPLES),
-    Region("mixed", _ANY_SCENE, _ANY_START, _ANY_PACE, _any_setting, _ANY_SAMPLES),
-    Region("liquids", (_liquid,), paces=_EITHER_PACE),
-    Region("attached", (_metal,), (_let_go,), ("desk",), _attached),
-    Region("damped", paces=_EITHER_PACE, damped=True),
-    Region("damped, mixed", _ANY_SCENE, _ANY_START, _ANY_PACE, _any_setting, _ANY_SAMPLES, damped=True),
+    Region("beside the separatrix", starts=("separatrix",), samples=_SAMPLES),
+    Region("mixed", _ANY, _ANY_START, _ANY_PACE, "any", _SAMPLES),
+    Region("liquids", (_liquid,), paces=_EITHER),
+    Region("attached", (_metal,), ("let go",), ("desk",), "attached"),
+    Region("damped", paces=_EITHER, damped=True),
+    Region("damped, mixed", _ANY, _ANY_START, _ANY_PACE, "any", _SAMPLES, damped=True),
 )
 """All regions; as many trials are drawn from each."""
 
