@@ -2,22 +2,18 @@
 
 import math
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.checks import Check, observed_order
-from mjbeer.model.build import build
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator, Rolling, Setting, supported
-from mjbeer.model.state import start
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, Setting, supported
 from mjbeer.paper.frozen import equilibrium_53, frequency_55
 from mjbeer.paper.sliding import frequency_10
 from mjbeer.paper.witness import TOP, fall_from_top
 from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.simulate import simulate
-from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.predictions.semi_implicit_euler import energy_per_swing, euler_motion
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
@@ -112,8 +108,6 @@ def models() -> Iterator[Check]:
     by, light, heavy = "hoop, contact, RK4, 0.1 ms", hoop(hoop_mass=0.2 / 20), hoop(hoop_mass=0.2 / 10)
     yield check("hops missing at M/m = 1/20", lambda: not _hops(light), by, 0, "", "it hops or not")
     yield check("hops too many at M/m = 1/10 (above 1/13)", lambda: _hops(heavy), by, 0, "", "it hops or not")
-    quantity, by = "values that differ between two runs", "every scene, rolling and integrator"
-    yield check(quantity, _count_differences, by, 0, "", "bit for bit")
 
 
 def extremes() -> Iterator[Check]:
@@ -317,21 +311,3 @@ def _lift_off_error(scene: Scene) -> float:
     expected = math.pi - float(np.interp(fall.rolls_until(), fall.time, fall.phi))
     simulated = fall_from_top(scene, 2e-5, _GRIP).takeoff()
     return math.degrees(simulated - expected) if simulated is not None else math.nan
-
-
-def _count_differences() -> int:
-    """Return how many numbers differ when a run is repeated, in one thread and in two."""
-    count = 0
-    for scene in (sliding(), sliding(can=Can.sheet_metal()), frozen(), pendulum(), hoop()):
-        for rolling in (way for way in ROLLINGS if supported(scene, way)):
-            for integrator in INTEGRATORS:
-                model = build(scene, rolling, integrator=integrator)
-                state, steps = start(model, scene, 0.5, 0.0), np.arange(201)
-                alone = Stepper(model).run(state, steps)
-                with ThreadPoolExecutor(2) as pool:
-                    together = [pool.submit(Stepper(model).run, state, steps) for _ in range(2)]
-                count += sum(int(np.count_nonzero(run.result() != alone)) for run in together)
-            once, again = (simulate(scene, 0.2, 1.0, rolling=rolling, integrator=DOP853).phi for _ in range(2))
-            count += int(np.count_nonzero(once != again))
-    once, again = (simulate(frozen(), 2, math.pi, tolerance=1e-9).phi for _ in range(2))
-    return count + int(np.count_nonzero(once != again))
