@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 PACKAGE := $(VENV)/.package
 TOOLS := $(VENV)/.tools
+LINTERS := $(VENV)/.linters
 # A process that has nothing left to do takes tests from another.
 PYTEST := $(BIN)/python -m pytest -n auto --dist worksteal
 # What is not compiled when it is installed is compiled when it is first used, and kept: less disk, and sooner done.
@@ -15,10 +16,10 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check install --quiet --no-com
 
 help:
 	@echo "make report       checks everything, draws the films, and writes one page: report/index.html (minutes)"
-	@echo "make test         installs the tools of the tests as well, then lints and runs the tests (minutes)"
+	@echo "make test         installs the tools of the tests as well, then runs the tests (minutes)"
 	@echo "make quick        runs the tests that take no time"
 	@echo "make everything   runs the costly tests: real films, notebooks, a browser, windows, a wheel, a cluster (minutes)"
-	@echo "make lint         runs ruff, the type checker, and import-linter"
+	@echo "make lint         runs ruff, the type checker, and import-linter, which is for those who change something"
 	@echo "make search       makes 2,000 random runs, of which none may be wrong without saying so"
 	@echo "make renders      draws the animated pictures of the README anew"
 	@echo "make tables       writes the tables of the documents anew"
@@ -29,7 +30,7 @@ help:
 report: $(PACKAGE)
 	$(BIN)/mjbeer report --output report
 
-test: $(TOOLS) lint
+test: $(TOOLS)
 	$(PYTEST) -m "not costly"
 
 quick: $(TOOLS)
@@ -54,11 +55,12 @@ tables: $(TOOLS)
 	$(BIN)/python tools/documents.py
 
 # Names that mjbeer loads when they are first used are loaded, for pdoc to find them.
-api: $(TOOLS)
+api: $(LINTERS)
 	@$(BIN)/python -c 'import mjbeer, pathlib, pdoc; vars(mjbeer).update({each: getattr(mjbeer, each) for each in mjbeer.__all__}); \
 		pdoc.pdoc("mjbeer", output_directory=pathlib.Path("build/api"))'
 
-lint: $(TOOLS)
+# The type checker reads what the tests import, too.
+lint: $(LINTERS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/ty check src tests
@@ -66,7 +68,7 @@ lint: $(TOOLS)
 
 $(PACKAGE): pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "mjbeer needs Python 3.11 or later, this is " + sys.version)'
-	@echo "Installing mjbeer and what it needs into $(VENV), about 0.75 GB: this takes a minute or two."
+	@echo "Installing mjbeer and what it needs into $(VENV), about 0.8 GB: this takes a minute or two."
 	@$(PYTHON) -m venv --clear $(VENV)
 	@$(PIP) --editable .
 	@echo "Compiling the integrators for this machine."
@@ -76,6 +78,10 @@ $(PACKAGE): pyproject.toml
 $(TOOLS): $(PACKAGE)
 	@echo "Installing the tools of the tests into $(VENV), about 0.6 GB: this takes a minute or two."
 	@$(PIP) --upgrade pip
+	@$(PIP) --group test
+	@touch $@
+
+$(LINTERS): $(TOOLS)
 	@$(PIP) --group dev
 	@touch $@
 

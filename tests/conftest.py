@@ -1,6 +1,7 @@
 """The environment of whoever runs the tests must not change what programs write, and when; and a fixture of several.
 
-What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends the tests instead.
+What the machine lacks is skipped, and counted; with MJBEER_EVERYTHING in the environment, it ends the tests instead,
+and any warning is an error but those that `pyproject.toml` lets pass.
 """
 
 import functools
@@ -27,12 +28,17 @@ _no_opengl = functools.cache(opengl.problem)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """End the tests at once if everything is to be there and something is not; the message has all that is missing.
+    """If everything is to be there, take warnings for errors, and end the tests at once if something is not there.
+
+    The message has all that is missing.
 
     Raises:
       UsageError: in that case.
     """
-    if os.environ.get("MJBEER_EVERYTHING") and not hasattr(config, "workerinput"):  # and not once more in each worker
+    if not os.environ.get("MJBEER_EVERYTHING"):
+        return
+    config.getini("filterwarnings").insert(0, "error")  # below the others, of which the last that fits decides
+    if not hasattr(config, "workerinput"):  # and not once more in each worker
         from mjbeer.studies.benchmark.other_tools import absent
         from tests.support import browser
 

@@ -91,7 +91,10 @@ def test_the_document_has_the_folders_and_what_they_import() -> None:
         assert documented == imported(folder) - {"require", "checks", "exceptions"}, folder  # all may import these
 
 
-LAYERS = "exceptions, require, output, theory, predictions model, drawing simulation, paper, studies, report, cli"
+LAYERS = (
+    "exceptions, require, output, theory, predictions model, integrators, drawing simulation, paper, studies, "
+    "report, cli"
+)
 """The folders and modules from below; what has no comma between it stands side by side."""
 LOADERS = {"import_module", "__import__", "find_spec", "resolve_name"}
 """What imports a module by a text, which no linter follows."""

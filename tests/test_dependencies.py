@@ -42,6 +42,18 @@ def test_what_is_imported_is_declared_and_what_is_declared_is_imported() -> None
     assert set(imported(*PACKAGE.rglob("*.py"))) == ALWAYS | OPTIONAL
 
 
+def test_the_packages_that_the_project_was_asked_for_are_always_installed_and_used() -> None:
+    asked = {"mujoco", "numpy", "scipy", "mediapy"}
+    assert asked <= ALWAYS
+    assert asked <= set(imported(*PACKAGE.rglob("*.py")))
+
+
+def test_a_film_alone_takes_mediapy() -> None:
+    """It loads IPython and all of matplotlib, half a second that nothing else should take."""
+    users = [path for path in PACKAGE.rglob("*.py") if "mediapy" in imported(path)]
+    assert users == [PACKAGE / "drawing" / "video.py"]
+
+
 def test_the_peers_are_optional() -> None:
     assert not ALWAYS & OPTIONAL
     assert set(imported(PEERS)) - ALWAYS == EXTRAS["peers"]

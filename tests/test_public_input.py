@@ -28,7 +28,9 @@ from mjbeer.theory.scene import ATTACHMENTS
 
 VALUES: dict[str, Callable[[], object]] = {
     "None": lambda: None, "text": lambda: "0.5", "True": lambda: True, "complex": lambda: 1 + 2j,
+    "half a character": lambda: "\ud800.npz", "long text": lambda: "x" * 300 + ".npz",
     "nan": lambda: math.nan, "inf": lambda: math.inf, "-inf": lambda: -math.inf, "huge": lambda: 1e160,
+    "number in an array": lambda: np.array(0.5),
     "-1": lambda: -1, "0": lambda: 0, "-0.0": lambda: -0.0, "0.3": lambda: 0.3, "long integer": lambda: 10**5000,
     "list": lambda: [0.1, 0.2], "empty list": list, "list of lists": lambda: [[0.0, 0.1]],
     "ragged list": lambda: [[0.0], [0.0, 0.1]], "list with None": lambda: [0.0, None],
@@ -57,6 +59,7 @@ GOOD: dict[str, Any] = {
 GOOD_HERE: dict[str, dict[str, Any]] = {
     "frame": {"time": 0.1}, "export": {"path": "can.xml"},
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)}, "attach": {"can": mjbeer.standing()},
+    "refill": {"model": build(mjbeer.standing()), "can": mjbeer.standing()},
 }  # fmt: skip
 """Those that are others in one function."""
 FRESH = {"parent": mujoco.MjSpec}

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from mjbeer.drawing.video import render
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
-    from mjbeer.model.free import attach
+    from mjbeer.model.free import attach, refill
     from mjbeer.model.state import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep import sweep
@@ -45,6 +45,7 @@ __all__ = [
     "hoop",
     "liquid",
     "pendulum",
+    "refill",
     "render",
     "reset",
     "simulate",
@@ -57,6 +58,7 @@ __all__ = [
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
     "attach": "mjbeer.model.free",
+    "refill": "mjbeer.model.free",
     "build": "mjbeer.model.build",
     "specify": "mjbeer.model.build",
     "export": "mjbeer.model.export",

@@ -3,7 +3,6 @@
 Each check returns the valid value, or raises a `ParameterError` that names what came and what is allowed.
 """
 
-import difflib
 import math
 import numbers
 import os
@@ -122,18 +121,25 @@ def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
     names = {str(each): each for each in allowed}
     if isinstance(value, str) and value in names:
         return names[value]
-    folded = {each.casefold(): each for each in names}
-    alike = difflib.get_close_matches(value.casefold(), folded, n=2) if isinstance(value, str) else []
-    question = f": did you mean {' or '.join(repr(folded[each]) for each in alike)}?" if alike else ""
-    raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {shown(value)}{question}")
+    raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {shown(value)}")
 
 
 def path(value: Any) -> pathlib.Path:
     """Return the path of a file to be written."""
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
-    if not isinstance(name, str) or not name or "\0" in name:
+    try:
+        possible = isinstance(name, str) and name and b"\0" not in os.fsencode(name)
+    except UnicodeEncodeError:  # half of a surrogate pair, which stands for no character
+        possible = False
+    if not possible:
         raise ParameterError(f"path must be the name of a file, got {shown(value)}")
     return pathlib.Path(name)
+
+
+def above(value: float, bound: float, digits: int = 2) -> str:
+    """Return a number above a bound in so many digits, or in more if it would be rounded to the bound otherwise."""
+    texts = (f"{value:.{each}g}" for each in range(digits, 18))
+    return next((text for text in texts if float(text) > bound), f"{value:g}")  # NaN is above nothing
 
 
 def boolean(name: str, value: Any) -> bool:

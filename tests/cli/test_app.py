@@ -32,7 +32,8 @@ RK4 = 1e-5
 @pytest.mark.parametrize("name", SCENES)
 def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Brackets in a file's name are markup to the library that prints."""
-    target = tmp_path / "new" / "motion[red][/c].csv"
+    target = tmp_path / "motion[red][" / "c].csv"
+    target.parent.mkdir()
     assert (
         main(["simulate", name, "--phi0", "57", "--phi-dot0", "-2e1", "--duration", "0.1", f"--output={target}"]) == 0
     )
@@ -59,12 +60,13 @@ def test_standard_output_has_the_csv_or_the_json_alone(
     assert out == csv(run)
     assert "phi at the end" in err
     (note,) = figures.notes
-    told = [*(f"not to be trusted: {warning}" for warning in run.warnings), f"note: {note}"]
+    told = [*(f"model does not hold: {warning}" for warning in run.warnings), f"note: {note}"]
     assert err.splitlines()[-len(told) :] == told
     assert main([*words.split(), "--json"]) == 0
     out, err = capsys.readouterr()
     assert json.loads(out, parse_constant=pytest.fail) == json.loads(figures.json())
-    assert (json.loads(out)["trusted"], err.splitlines()) == (False, told)
+    assert (json.loads(out)["model holds"], err.splitlines()) == (False, told)
+    assert json.loads(out)["equations solved"] is True
     assert not os.listdir(tmp_path)
 
 
@@ -79,6 +81,10 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("simulate sliding --tol 1e-6", "option must be one of '--incline', '--fill', "),
         ("simulate pendulum --fill=0.5", "option must be one of '--incline', '--radius', "),
         ("simulate frozen --damping 1", "option must be one of '--incline', '--fill', "),
+        (
+            "simulate standing",
+            "the scene after simulate must be one of 'sliding', 'liquid', 'frozen', 'pendulum', 'hoop'; ",
+        ),
         ("simulate sliding -- --json", ""),
         ("simulate sliding more", "option must be one of '--incline', '--fill', "),
         ("simulate sliding --phi0 1,2", "argument --phi0: invalid float value: '1,2'"),
@@ -103,6 +109,7 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
         ("export frozen --output x.urdf", "MJCF is written: the file's name must end in .xml, got 'x.urdf'"),
         ("simulate frozen --output .", "cannot write .: it is a folder"),
+        ("simulate frozen --output /", "cannot write /: it is a folder"),
         ("simulate frozen --json --output -", "standard output takes one of them: the JSON, or the CSV of --output -"),
         ("simulate frozen --tolerance 1e-6 --integrator Euler", "give a tolerance or an integrator: a tolerance ch"),
         ("sweep sliding --damping 0,-1", "damping[1]: damping must be 0 or greater [N m s], got -1.0"),
@@ -122,6 +129,7 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
     out, err = capsys.readouterr()
     assert err.startswith(f"mjbeer: {message}")
     assert err.count("\n") == 1
+    assert "did you mean" not in err  # what is spelt alike may be something else: --damping and --duration
     assert out == ""
     assert not os.listdir(tmp_path)
 
@@ -178,10 +186,19 @@ def test_an_export_says_how_its_start_is_loaded(tmp_path: pathlib.Path, capsys: 
 
 
 def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "0.1"]
+    words = ["simulate", "liquid", "--liquid", "olive oil", "--fill", "0.7", "--phi0", "20", "--duration", "1"]
     assert main([*words, "--json"]) == 0
     out, err = capsys.readouterr()
     told = liquid_in("olive oil", fill=0.7)
     assert err.startswith(f"{told}\nnote: olive oil as one lump is an order of magnitude only")
-    run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 0.1, np.radians(20))
+    run = mjbeer.simulate(mjbeer.liquid("olive oil", fill=0.7), 1, np.radians(20))
     assert json.loads(out)["u at the end [m]"] == run.u[-1]
+    assert err.splitlines()[2:] == [f"model does not hold: {warning}" for warning in run.warnings] != []
+
+
+def test_an_equation_that_is_not_solved_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["simulate", "frozen", "--duration", "0.5", "--integrator", "Euler", "--timestep", "4e-3"]
+    assert main(words) == 0
+    out, err = capsys.readouterr()
+    assert "equations solved                no: those of rolling, in reduced coordinates\n" in out
+    assert err.startswith("equations not solved: energy or momentum drift like an error of ")

@@ -51,10 +51,11 @@ def test_what_cannot_be_written_is_known_before_the_work(
     monkeypatch.setattr("mjbeer.drawing.video.encode", lambda *_, **__: pytest.fail("it was drawn"))
     (tmp_path / f"folder{suffix}").mkdir()
     (tmp_path / f"file{suffix}").touch(mode=0o444)
+    only = f"the nearest one that exists is {tmp_path}"
     for name, reason in {
         f"folder{suffix}": "it is a folder",
         f"file{suffix}": "it is read-only",
-        f"file{suffix}/x/new{suffix}": "Not a directory",
+        f"file{suffix}/x/new{suffix}": f"there is no folder {tmp_path}/file{suffix}/x; {only}",
     }.items():
         assert main([*words, "--output", str(tmp_path / name)]) == 2
         assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / name}: {reason}\n"
@@ -68,10 +69,11 @@ def test_a_folder_that_cannot_be_made_is_known_before_the_work(
     for work in ("report.write.validate", *studies):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     (tmp_path / "file").touch()
-    assert main([command, "--output", str(tmp_path / "file" / "new")]) == 2
-    err = capsys.readouterr().err
-    assert err.startswith(f"mjbeer: cannot write {tmp_path / 'file' / 'new'}")
-    assert err.endswith(": Not a directory\n")
+    missing = f"there is no folder {tmp_path / 'misspelt'}; the nearest one that exists is {tmp_path}"
+    for name, reason in {"file": "File exists", "misspelt/new": missing}.items():
+        assert main([command, "--output", str(tmp_path / name)]) == 2
+        assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / name}: {reason}\n"
+    assert os.listdir(tmp_path) == ["file"]
 
 
 @linux

@@ -2,12 +2,13 @@
 
 import json
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mjbeer import Trajectory, exact, frozen, hoop, simulate, sliding
+from mjbeer import Trajectory, exact, frozen, hoop, liquid, simulate, sliding
 from mjbeer.cli.figures import Figures
 from mjbeer.simulation.run import Run
 from mjbeer.theory.scene import Scene
@@ -50,7 +51,8 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
             {"friction coefficient": friction, "to the end": end, "until [s]": None if end else until[friction]}
             for friction, end in ((0.05, False), (1.0, until[1.0] == math.inf))
         ],
-        "trusted": False,
+        "equations solved": not run.solver_warnings,
+        "model holds": False,
         "warnings": list(run.warnings),
         "notes": [],  # a contact slips of itself, and a warning says so
     }
@@ -60,7 +62,31 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
     assert text["energy drift"].startswith(f"{run.energy_drift:.2e} of ")
     assert text["lowest lift"] == f"{(lift / radius).min():.2e} radii"
     assert text["estimated error of phi and u/a"] == f"{run.error_estimate:.2e} rad"
-    assert text["trusted"] == "no"
+    assert text["equations solved"].endswith(": those of a soft contact with friction")
+    assert text["model holds"] == "no"
+
+
+@pytest.mark.parametrize(
+    ("make", "friction", "solved", "holds"),
+    [
+        (lambda: simulate(frozen(), 0.5, 1.0), 1.0, True, True),
+        (lambda: exact(frozen(), [0.0, 0.5], 1.0), 1.0, True, True),
+        (lambda: simulate(frozen(), 0.5, 1.0, integrator="Euler", timestep=4e-3), 1.0, False, True),
+        (lambda: simulate(frozen(), SHORT, START), 1.8, True, False),  # it would slip
+        (lambda: simulate(frozen(), SHORT, START), 2.0, True, True),
+        (lambda: simulate(frozen(), LONG, START), 2.0, True, False),  # it would leave the incline
+        (lambda: simulate(frozen(), 0.5, 1.0, rolling="contact", friction=0.05), 0.05, True, False),
+        (lambda: simulate(liquid(), 1.0, 0.5, tolerance=1e-6), 1.0, True, False),  # it is no lump
+    ],
+)
+def test_how_well_equations_are_solved_is_one_thing_and_whether_they_hold_another(
+    make: Callable[[], Trajectory], friction: float, solved: bool, holds: bool
+) -> None:
+    run = make()
+    told, text = content(run, friction), lines(run, friction)
+    assert (told["equations solved"], told["model holds"]) == (solved, holds)
+    assert text["equations solved"].startswith("yes: those of " if solved else "no: those of ")
+    assert text["model holds"] == ("yes" if holds else "no")
 
 
 def test_a_damped_run_has_its_steady_rolling_and_its_modes() -> None:

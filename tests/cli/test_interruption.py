@@ -6,12 +6,11 @@ tested where a study or a sweep is; that no file is ever seen half, where files 
 
 import os
 import pathlib
-import select
 import signal
 
 import pytest
 
-from tests.support.processes import PATIENCE, hear, interrupt, start
+from tests.support.processes import hear, interrupt, start
 
 pytestmark = pytest.mark.slow
 
@@ -43,28 +42,6 @@ def test_a_video_in_the_middle(tmp_path: pathlib.Path) -> None:
         hear(process, "drawing")
         assert interrupt(process, signal.SIGINT) == (130, TOLD)
     assert not os.listdir(tmp_path)
-
-
-@pytest.mark.draws
-def test_an_ffmpeg_that_hangs_is_ended_too(tmp_path: pathlib.Path) -> None:
-    """It holds a pipe open, which nobody does once it is gone."""
-    program, pipe = tmp_path / "ffmpeg", tmp_path / "pipe"
-    os.mkfifo(pipe)
-    program.write_text(f"#!/bin/sh\nexec 9> {pipe}\necho here >&9\nexec sleep 3600\n")
-    program.chmod(0o755)
-    environment = os.environ | {"IMAGEIO_FFMPEG_EXE": str(program)}
-    words = ["render", "frozen", "--output", str(tmp_path / "film" / "film.mp4")]
-    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    try:
-        with start(words, HALTING.format(0), environment) as process:
-            hear(process, "drawing")
-            select.select([reader], [], [], PATIENCE)
-            assert os.read(reader, 100) == b"here\n"
-            assert interrupt(process, signal.SIGTERM, everybody=False) == (143, TOLD)
-            assert os.read(reader, 100) == b""  # of an ffmpeg that is still there, a BlockingIOError
-    finally:
-        os.close(reader)
-    assert not os.listdir(tmp_path / "film")
 
 
 @pytest.mark.parametrize(

@@ -133,6 +133,7 @@ def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
 def test_a_library_that_crashes_when_it_is_loaded(crashing: dict[str, str], tmp_path: pathlib.Path) -> None:
     """The video is not begun, and the message has the remedy."""
     film = tmp_path / "new" / "film.mp4"
+    film.parent.mkdir()
     status, _, err = run(["render", "frozen", "--duration", "0.1", "--output", str(film)], env=crashing)
     assert status == 2
     assert err.startswith(

@@ -90,7 +90,7 @@ CELLS = (
 )
 MESSAGES = (
     "can must be a Can, got 'metal'",
-    "rolling must be one of 'reduced', 'equality', 'contact'; got 'contac': did you mean 'contact'?",
+    "rolling must be one of 'reduced', 'equality', 'contact'; got 'contac'",
     "scene must be a Scene, got 'sliding'",
     "MJCF is written: the file's name must end in .xml, got 'can.urdf'",
 )

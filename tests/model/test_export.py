@@ -68,7 +68,7 @@ def move(path: pathlib.Path, scene: Scene, start: tuple[float, float] = START, d
 def test_an_export_is_the_model_and_moves_exactly(
     name: str, rolling: Rolling, portable: bool, tmp_path: pathlib.Path
 ) -> None:
-    scene, path, timestep = SCENES[name], tmp_path / "new" / "model.xml", others.timestep(name)
+    scene, path, timestep = SCENES[name], tmp_path / "model.xml", others.timestep(name)
     export(scene, path, *START, rolling, timestep=timestep, friction=FRICTION, portable=portable)
     text = path.read_text()
     assert not re.search(r"\b(file|\w+dir)=|<include", text)

@@ -1,60 +1,24 @@
-"""Cans that are free in space: how one is attached to another world, what it says of it, and what is refused.
+"""Cans that are free in space: their masses, sensors, templates and exports.
 
 What the models do is measured in `studies/validation/standing.py`, whose rows are tests too.
 """
 
 import math
 import pathlib
-import warnings
 
 import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import (
-    Can,
-    Load,
-    Scene,
-    UntrustedWarning,
-    attach,
-    build,
-    exact,
-    export,
-    frozen,
-    pendulum,
-    sliding,
-    specify,
-    standing,
-)
+from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
 from mjbeer.drawing.viewer import Player
-from mjbeer.exceptions import MjbeerError, ParameterError, TemplateError, UnsupportedError
+from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import free, looks
 from mjbeer.model.export import present_standing
 from mjbeer.model.setting import Setting
 from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
-
-PLANE = mujoco.mjtGeom.mjGEOM_PLANE
-BOX = Can.sheet_metal(0.1, 0.3, 1e-3)
-
-
-def world(**options: object) -> mujoco.MjSpec:
-    """A level floor."""
-    spec = mujoco.MjSpec()
-    spec.worldbody.add_geom(name="floor", type=PLANE, size=[0, 0, 1])
-    for name, value in options.items():
-        setattr(spec.option, name, value)
-    return spec
-
-
-def settled(spec: mujoco.MjSpec, duration: float = 1.0) -> mujoco.MjData:
-    """The state after a while."""
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data, round(duration / model.opt.timestep))
-    assert not any(warning.number for warning in data.warning)
-    return data
 
 
 @pytest.mark.parametrize("fill", [0.1, 0.5, 1.0])
@@ -77,30 +41,6 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
     assert free.transverse_inertia(Can.hoop()) == pytest.approx(Can.hoop().inertia / 2 + 0.05 * 0.12**2 / 12, rel=1e-12)
 
 
-def test_cans_are_attached_and_stand_and_lie() -> None:
-    """On a plane and on a box, with nothing to be said about the parent, and under names of their own."""
-    spec = world()
-    spec.worldbody.add_geom(name="table", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1], pos=[1, 0, 0.1])
-    with pytest.raises(ParameterError, match="has a can of this prefix already"):
-        attach(twice := world(), standing()), attach(twice, standing())
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        assert attach(spec, standing(modes=2)).name == "can-can"
-        attach(spec, standing("honey", damping_ratio=0.3), [1, 0, 0.2], prefix="honey-")
-        attach(spec, sliding(can=METAL), [-0.5, 0, METAL.radius], prefix="lying-")
-        data = settled(spec)
-    # MuJoCo's default contact lets a can sink by some 0.4 mm, and a hard one by nothing.
-    for name, place, depth in (
-        ("can", [0, 0, 0], 1e-3),
-        ("honey", [1, 0, 0.2], 1e-3),
-        ("lying", [-0.5, 0, 0.033], 1e-6),
-    ):
-        assert data.body(f"{name}-can").xpos == pytest.approx(place, abs=depth)
-        assert abs(data.body(f"{name}-can").xmat[8] - 1) < 1e-6
-    assert data.sensor("can-slosh2_up").data == pytest.approx([0, 0, 1], abs=1e-6)
-    assert data.sensor("can-slosh1_rise").data[:2] == pytest.approx([0, 0], abs=1e-6)
-
-
 def test_the_sensors_tell_the_slosh() -> None:
     """A can that is held at a tilt: the pendulum is plumb, and the surface rises where it goes down."""
     can, tilt = standing(), 0.1
@@ -114,70 +54,10 @@ def test_the_sensors_tell_the_slosh() -> None:
     assert data.sensor("slosh1_rise").data[:2] == pytest.approx([can.elevations()[0] * math.sin(tilt), 0])
 
 
-def test_a_can_may_be_fixed_to_a_body() -> None:
-    spec = world()
-    spec.worldbody.add_body(name="gripper", pos=[0, 0, 1]).add_geom(size=[0.01] * 3)
-    attach(spec, standing(), [0, 0, -0.5], prefix="held-", free=False, body="gripper")
-    model = spec.compile()
-    assert [model.joint(place).name for place in range(model.njnt)] == ["held-slosh1"]
-    assert build(standing(), free=False).njnt == 1
-    assert specify(standing(modes=0), visuals=True).body("slosh1") is None
-
-
-@pytest.mark.parametrize(
-    ("can", "options", "reason"),
-    [
-        (standing(), {"timestep": 0.05}, r"the timestep of 0\.05 s is coarse: the fastest mode turns by 1\.2 rad"),
-        (standing(), {"gravity": [0, 0, -1.62]}, r"gravity is 1\.62 m/s\^2, and the can is made for 9\.81"),
-        (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_CONTACT)}, "contact disabled it touches nothing"),
-        (frozen(can=METAL), {"integrator": mujoco.mjtIntegrator.mjINT_IMPLICITFAST}, "another integrator than RK4"),
-    ],
-)
-def test_what_the_parent_spoils_is_said(can: Scene, options: dict[str, object], reason: str) -> None:
-    spec = world(**options)
-    with pytest.warns(UntrustedWarning, match=f"the parent's options spoil the can: .*{reason}"):
-        attach(spec, can)
-    for name, value in options.items():  # and left as it is
-        assert np.array_equal(getattr(spec.option, name), value)
-
-
-@pytest.mark.parametrize(
-    ("can", "arguments", "error", "message"),
-    [
-        ("can", {}, ParameterError, "can must be a Standing, got 'can'"),
-        (standing(), {"body": "hand"}, ParameterError, "body must be one of 'world'; got 'hand'"),
-        (standing(), {"body": "hand", "free": False}, ParameterError, "body must be one of 'world'; got 'hand'"),
-        (standing(), {"pos": [0, 0]}, ParameterError, "pos must have 3 numbers, got"),
-        (standing(), {"quat": [0, 0, 0, 0]}, ParameterError, "quat must have 4 numbers, not all 0, got"),
-        (standing(), {"prefix": ""}, ParameterError, "prefix must be a text that is not empty"),
-        (sliding(), {}, UnsupportedError, "without mass and inertia around a sliding load"),
-        (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
-        (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),
-    ],
-)
-def test_what_cannot_be_attached_is_refused(
-    can: object, arguments: dict[str, object], error: type[MjbeerError], message: str
-) -> None:
-    with pytest.raises(error, match=message):
-        attach(world(), can, **arguments)
-
-
 @pytest.mark.parametrize(("name", "value"), [("rolling", "contact"), ("friction", 0.5), ("phi0", 1.0)])
 def test_a_standing_can_does_not_roll(name: str, value: object) -> None:
     with pytest.raises(ParameterError, match=f"a standing can has no {name}, got"):
         build(standing(), **{name: value})
-
-
-def test_a_massless_frozen_can_and_other_sizes_move_too() -> None:
-    light = Scene(Can(), Load.segment(), 0.0, "frozen")
-    spec = world()
-    attach(spec, light, [0, 0, Can().radius])
-    attach(spec, standing(can=BOX, fill=0.3, modes=5), [1, 0, 0], prefix="large-")
-    data = settled(spec, 0.3)
-    assert data.body("can-can").xpos[2] == pytest.approx(Can().radius, abs=1e-6)
-    for depth in (0.06, 3.0, 40.0):  # what MuJoCo cannot move it refuses
-        for ratio in (0.0, 1.0):
-            build(standing("water", 0.5, Can.sheet_metal(length=0.066 * depth), 5, ratio))
 
 
 def test_a_template_that_lacks_something_is_named(copy: pathlib.Path) -> None:
@@ -207,7 +87,7 @@ WRITTEN = 1e-12
 def test_the_template_of_a_standing_can_is_the_model() -> None:
     template = mujoco.MjModel.from_xml_path(str(looks.folder() / "standing.xml"))
     made = present_standing(standing(), True, Setting()).compile()
-    for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority"):
+    for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority", "geom_condim"):
         if name.startswith("geom"):  # the floor is made last
             pairs = [(getattr(template.geom(each), name[5:]), getattr(made.geom(each), name[5:])) for each in GEOMS]
         else:
@@ -219,14 +99,16 @@ def test_the_template_of_a_standing_can_is_the_model() -> None:
 
 def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> None:
     template = mujoco.MjModel.from_xml_path(str(looks.folder() / "lying.xml"))
-    spec, scene = world(timestep=1e-3), sliding(can=METAL)
+    spec, scene = mujoco.MjSpec(), sliding(can=METAL)
+    spec.option.timestep = 1e-3
     attach(spec, scene)
     made = spec.compile()
     for name in ("mass", "inertia", "ipos"):
         for body in ("can", "load"):
             written, other = getattr(template.body(body), name), getattr(made.body(f"can-{body}"), name)
             assert np.allclose(written, other, rtol=WRITTEN, atol=1e-15), (body, name)
-    assert np.allclose(template.geom("can").solref, made.geom("can-can").solref)
+    for name in ("solref", "solimp", "solmix", "friction", "condim", "priority"):
+        assert np.allclose(getattr(template.geom("can"), name), getattr(made.geom("can-can"), name)), name
     data = mujoco.MjData(template)
     for key, phi0 in (("level", -scene.incline), ("swing", 1.0)):
         mujoco.mj_resetDataKeyframe(template, data, template.key(key).id)

@@ -24,8 +24,8 @@ with files.locked(pathlib.Path(sys.argv[1])):
 
 
 @pytest.mark.parametrize("mask", [0o022, 0o000])
-def test_a_file_is_written_into_new_folders_and_any_user_s_permissions(tmp_path: pathlib.Path, mask: int) -> None:
-    target, before = tmp_path / "a" / "b" / "motion.csv", os.umask(mask)
+def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path, mask: int) -> None:
+    target, before = tmp_path / "motion.csv", os.umask(mask)
     try:
         files.write(target, "φ\n")
     finally:
@@ -33,6 +33,22 @@ def test_a_file_is_written_into_new_folders_and_any_user_s_permissions(tmp_path:
     assert target.read_bytes() == "φ\n".encode()
     assert os.listdir(target.parent) == ["motion.csv"]
     assert stat.S_IMODE(target.stat().st_mode) == 0o666 & ~mask
+
+
+def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a folder is to be written to, its last name may be new, and its others may not."""
+    monkeypatch.chdir(tmp_path)
+    told = f"there is no folder {tmp_path / 'reslts'}; the nearest one that exists is {tmp_path}"
+    with pytest.raises(OutputError) as caught:
+        files.write("reslts/motion.csv", "")
+    assert str(caught.value) == f"cannot write reslts/motion.csv: {told}"
+    with pytest.raises(OutputError) as caught:
+        files.make_folder(pathlib.Path("reslts/study"))
+    assert str(caught.value) == f"cannot write reslts/study: {told}"
+    assert not os.listdir(tmp_path)
+    for _ in range(2):
+        files.make_folder(pathlib.Path("results"))
+    assert os.listdir(tmp_path) == ["results"]
 
 
 def test_two_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
@@ -99,6 +115,7 @@ def test_a_disk_that_does_not_take_it_is_an_output_error(
 def test_a_link_stays_and_leads_to_the_new_file_and_a_device_is_not_replaced(tmp_path: pathlib.Path) -> None:
     link, target, pipe = tmp_path / "link.csv", tmp_path / "far" / "motion.csv", tmp_path / "pipe"
     link.symlink_to(target)
+    target.parent.mkdir()
     for text in ("made", "replaced"):
         files.write(link, text)
         assert link.is_symlink()
@@ -117,7 +134,7 @@ def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
     """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
     stubs.benchmark(monkeypatch)
     monkeypatch.setattr("mjbeer.studies.stability.stability_study.plan", lambda extent: [])
-    folder = tmp_path / "a" / "new"
+    folder = tmp_path / "new"
     with start([str(folder)], HOLD) as holder:
         hear(holder, "locked")
         assert main([command, "--output", str(folder)]) == 2

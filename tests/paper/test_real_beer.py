@@ -53,7 +53,7 @@ def test_the_first_metre_of_mujoco_is_that_of_exact_theory(drag: float) -> None:
         scene = water_in(volume, incline, drag=drag)
         times = times_of(scene)
         run = let_go(scene, times)
-        assert run.trusted
+        assert not run.solver_warnings  # the liquid may be no lump any more
         assert over_first_metre(run) == pytest.approx(over_first_metre(exact(scene, times, -incline)), rel=1e-7)
 
 

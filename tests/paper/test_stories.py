@@ -98,7 +98,7 @@ def test_footnote_8_as_printed_is_another_motion() -> None:
 
 def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
     calls = stubs.draw(monkeypatch)
-    folder = tmp_path / "new" / "stories"
+    folder = tmp_path / "stories"
     assert main(["paper", "--output", str(folder)]) == 0
     assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "stories.md"}
     assert not calls

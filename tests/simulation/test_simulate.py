@@ -57,7 +57,7 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
         ({"duration": 1e6, "timestep": 1e-6}, "too many timesteps of 1e-06 s: at most 1e.08, or say with times="),
         ({"phi0": math.nan}, r"phi0 must be a finite number \[rad\], got nan"),
         ({"scene": "frozen"}, "scene must be a Scene, got 'frozen'"),
-        ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4': did you mean 'RK4'\?"),
+        ({"integrator": "rk4"}, r"integrator must be one of 'Euler'.*'GaussJackson'; got 'rk4'$"),
         ({"integrator": "DOP853", "tolerance": 1e-6}, "a tolerance chooses the integrator .* got integrator 'DOP853'"),
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
@@ -203,7 +203,7 @@ def test_rolls_until_is_where_theory_says() -> None:
     ("rolling", "integrator", "timestep"),
     [
         *[(rolling, *each) for rolling in ROLLINGS for each in (("Euler", 1e-4), ("RK4", 4e-3), ("DOP853", 3e-2))],
-        ("reduced", "GaussJackson", 8e-3),
+        ("reduced", "GaussJackson", 3e-2),
     ],
 )
 def test_the_error_that_a_second_run_estimates_is_the_one_that_theory_finds(
@@ -279,8 +279,12 @@ def test_a_liquid_that_is_no_lump_any_more_is_a_warning() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", LiquidWarning)
         scene = liquid("water")
-    with pytest.warns(LiquidWarning, match=r"from t = 0\.\d+ s on the wall's centrifugal acceleration is more than"):
+    with pytest.warns(
+        LiquidWarning, match=r"from t = 0\.\d+ s on the wall's centrifugal acceleration is more than"
+    ) as told:
         run = simulate(scene, 1.0, 1.0)
+    assert run.warnings == (str(told[0].message),)
+    assert (run.trusted, run.solver_warnings, run.rolling_warnings) == (False, (), ())
     speed = float(np.interp(run.record.no_lump_at, run.time, np.abs(run.u_dot)))
     # To a timestep of 1 ms, in which it gains less than 2 mm/s.
     assert speed == pytest.approx(math.sqrt(scene.can.radius * scene.gravity * math.cos(scene.incline)), abs=2e-3)

@@ -10,11 +10,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, pendulum, simulate, sliding
-from mjbeer.exceptions import ToleranceError
+from mjbeer.exceptions import ParameterError, ToleranceError
+from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.model.build import build
 from mjbeer.model.state import read
 from mjbeer.simulation import tolerance as tolerances
-from mjbeer.simulation.kernels import Dynamics
 from mjbeer.simulation.run import Run
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, stiffness
@@ -90,13 +90,17 @@ def test_what_is_brief_is_as_right_as_all_else_if_it_is_asked_for(
 
 
 def test_what_cannot_be_met_is_refused_and_says_how_far_it_got(monkeypatch: pytest.MonkeyPatch) -> None:
-    """More digits than a double has; and, with the patience of a test, a can that parts from the incline, where no step
-    is small enough."""
-    with pytest.raises(ToleranceError, match="tolerance 1e-17 rad is not reached: two runs at the limit of rounding"):
-        simulate(sliding(), 1, 1.0, tolerance=1e-17)
-    monkeypatch.setattr(tolerances, "_EVALUATIONS", 200_000)
-    with pytest.raises(ToleranceError, match=r"tolerance 1e-12 rad is not reached: .* given up at t = 0.7\d+ s"):
-        simulate(frozen(), 1.2, math.pi, rolling="contact", tolerance=1e-12)
+    """More digits than a double has, a budget that is used up, and a model that is wrong by itself."""
+    for tolerance in (1e-17, 1e-30):
+        with pytest.raises(ToleranceError, match=r"is not reached: less than 1e-15 rad is beyond the rounding"):
+            simulate(sliding(), 0.1, 0.1, tolerance=tolerance)
+    with pytest.raises(ToleranceError, match="tolerance 1e-15 rad is not reached: two runs at the limit of rounding"):
+        simulate(sliding(), 1, 1.0, tolerance=1e-15)
+    with pytest.raises(ParameterError, match=r"a contact is soft.* got 'contact' and 1e-09 rad.* error_estimate says"):
+        simulate(frozen(can=METAL), 2, 1.0, rolling="contact", tolerance=1e-9)
+    monkeypatch.setattr(tolerances, "_EVALUATIONS", 5000)
+    with pytest.raises(ToleranceError, match=r"tolerance 1e-12 rad is not reached: .* given up at t = \d"):
+        simulate(frozen(), 10, 1.0, rolling="equality", tolerance=1e-12)
 
 
 @pytest.mark.parametrize("phi0", [0.0, 1e-30])

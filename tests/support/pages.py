@@ -69,6 +69,8 @@ def draw(path: pathlib.Path) -> None:
 
 def fill(folder: pathlib.Path, encoded: bool = False) -> None:
     """Write the files that a page shows into a folder: films are `encoded`, or else a few letters."""
+    for each in (folder / "plots", folder / "paper"):
+        each.mkdir()
     for plot in plots(folder / "plots"):
         plot.write()
     for name in ("letters", *(story.name for story in paper_stories.STORIES)):

@@ -99,7 +99,7 @@ def interrupt(process: subprocess.Popen[str], *numbers: int, everybody: bool = T
 
 
 def run_with_little_disk(words: Sequence[str]) -> tuple[int, str, str]:
-    """As `run`, but no file can become longer than 4 KiB, as if the disk were full; ffmpeg is even killed for it.
+    """As `run`, but no file can become longer than 4 KiB, as if the disk were full.
 
     It writes no bytecode: cut off in the checkout, that would end every later run (Python 3.11.2 does not notice).
     """

@@ -9,6 +9,7 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
+from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, about_run, liquid_in
 from mjbeer.theory.load import segment
@@ -87,6 +88,12 @@ def test_liquids_roll_as_estimated(name: str, effective: float, speed: float) ->
     assert used.law == ("creep" if name == "honey" else "thin layers")
 
 
+@pytest.mark.parametrize("viscosity", [5e-324, 1e-10, 1e7, 1e308])
+def test_a_viscosity_that_no_liquid_has_is_refused(viscosity: float) -> None:
+    with pytest.raises(ParameterError, match=r"viscosity must be between 1e-09 and 1e\+06 \[m\^2/s\], got"):
+        liquid(viscosity=viscosity)
+
+
 def test_a_swing_has_stokes_layers() -> None:
     used = liquid_in("water", incline=0.0, viscosity=1e-6, density=1000.0)
     omega = sliding(0.0).frequency()
@@ -149,11 +156,34 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     time = run.record.no_lump_at
     speed = float(np.interp(time, run.time, run.u_dot))
     assert speed == pytest.approx(math.sqrt(9.81 * math.cos(scene.incline) * 0.033), rel=2e-3)  # a sample later
-    slips = np.abs(slip_rate(scene, run.phi_dot, run.u_dot))
-    assert f"the liquid as one lump is an order of magnitude only: from t = {time:.6g} s on the wall's" in (
-        about_run(scene, float(slips.max()), time) or ""
-    )
-    assert about_run(scene, 50.0, math.inf) is None
-    assert "17.8 to 178 rad/s between can and liquid, but 200" in (about_run(scene, 200.0, math.inf) or "")
+    assert run.record.fastest_slip == np.abs(slip_rate(scene, run.phi_dot, run.u_dot)).max()
+    (told,) = run.liquid_warnings
+    assert f"the liquid as one lump is an order of magnitude only: from t = {time:.6g} s on the wall's" in told
+    assert told in run.warnings
+    assert not run.trusted
     assert exact(scene, run.time[:10], 0.0).record.no_lump_at == math.inf
-    assert about_run(sliding(damping=1e-3), 1e9, 0.0) is None  # what is no liquid's may be anything
+    for own, fastest, reason in (
+        (scene, 50.0, None),
+        (scene, 200.0, "17.8 to 178 rad/s between can and liquid, but 200"),
+        (sliding(damping=1e-3), 1e9, None),  # what is no liquid's may be anything
+    ):
+        about = about_run(own, fastest, math.inf, 0.0)
+        assert about is None if reason is None else reason in (about or "")
+
+
+@pytest.mark.parametrize(("degrees", "seconds", "share"), [(10, 1, None), (10, 8, "57 %"), (2, 8, None)])
+def test_a_film_is_a_reason_once_the_wall_has_carried_it_up(degrees: float, seconds: float, share: str | None) -> None:
+    """Honey creeps at 1.2 rad/s on 10 degrees, where its film can hold 45 %; it is let go faster than that.
+
+    A turn takes it 5 s. On 2 degrees its film holds a fifth.
+    """
+    scene = liquid("honey", math.radians(degrees))
+    run = exact(scene, np.linspace(0, seconds, 801), -scene.incline)
+    film = math.sqrt(7e-3 * 0.033 * run.record.fastest_slip / 9.81)
+    carried = FILM_LOAD * film * 0.033 / (math.pi / 2 * 0.033**2)
+    assert run.trusted == (share is None)
+    if share:
+        assert f"{100 * carried:.0f} %" == share
+        assert f"the film on the wall can hold {share} of it" in run.warnings[0]
+    else:
+        assert carried * min(1, (run.u[-1] - run.u[0]) / (2 * math.pi * 0.033)) < 1 / 3

@@ -88,7 +88,7 @@ REFUSED = [
     ),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
-    ("'drag', 'load', 'attachment'; got 'fil': did you mean 'fill'?", lambda: sliding().replace(fil=0.3)),
+    ("'drag', 'load', 'attachment'; got 'fil'", lambda: sliding().replace(fil=0.3)),
 ]
 
 

@@ -129,7 +129,7 @@ def test_a_thick_liquid_warns() -> None:
         ({"modes": 6}, r"modes must be one of 0, 1, \.\.\. 5, got 6"),
         ({"modes": True}, "modes must be one of"),
         ({"damping_ratio": -0.1}, "damping_ratio must be between 0 and 1"),
-        ({"liquid": "bear"}, "liquid must be one of .* did you mean 'beer'"),
+        ({"liquid": "bear"}, "liquid must be one of .*'beer', .*; got 'bear'$"),
         ({"liquid": METAL}, "liquid must be one of"),
         ({"gravity": 0.0}, "gravity must be between"),
     ],

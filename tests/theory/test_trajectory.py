@@ -219,7 +219,7 @@ def test_a_table_needs_pandas_and_a_file_does_not(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(MjbeerError, match="to_dataframe needs pandas: pip install pandas"):
         motion.to_dataframe()
-    motion.to_csv(tmp_path / "new" / "run.csv")
-    assert (tmp_path / "new" / "run.csv").read_text() == csv(motion)
+    motion.to_csv(tmp_path / "run.csv")
+    assert (tmp_path / "run.csv").read_text() == csv(motion)
     with pytest.raises(OutputError, match="it is a folder"):
         motion.to_csv(tmp_path)

@@ -15,6 +15,14 @@ from mjbeer.theory.named import damping_in_words
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
+_EQUATIONS = {
+    "exact": "rolling, by theory",
+    "reduced": "rolling, in reduced coordinates",
+    "equality": "rolling, by a joint equality",
+    "contact": "a soft contact with friction",
+}
+"""Which equations a motion solves, by how the can rolls."""
+
 
 class Figure(NamedTuple):
     """A key figure: its name, its value, the unit, and how text shows it: as a format, or in words where it is none."""
@@ -53,6 +61,13 @@ class Figures:
         }
 
     @property
+    def holds(self) -> bool:
+        """Return whether the model holds: a can would roll with the friction that was asked for, a liquid is a lump."""
+        run = self.trajectory
+        rolls = run.rolling == "contact" or math.isinf(self.rolls_until[self.friction])
+        return rolls and not (run.rolling_warnings or run.liquid_warnings)
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Return what a real can would do otherwise although the run is right: a sentence, or none.
 
@@ -71,6 +86,7 @@ class Figures:
         """The figures in the order of the text."""
         run, radius = self.trajectory, self.trajectory.scene.can.radius
         slip, lift, normal = run.slip / radius, run.lift / radius, run.forces.normal
+        solved = not run.solver_warnings
         scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
         rolls = [
             {"friction coefficient": friction, "to the end": math.isinf(until), "until [s]": _finite(until)}
@@ -99,7 +115,8 @@ class Figures:
             Figure("can roll without slipping", rolls, "", f"\n{'':<32}".join(ends)),
             *_steady(run.scene),
             Figure("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
-            Figure("trusted", run.trusted, "", "yes" if run.trusted else "no"),
+            Figure("equations solved", solved, "", f"{'yes' if solved else 'no'}: those of {_EQUATIONS[run.rolling]}"),
+            Figure("model holds", self.holds, "", "yes" if self.holds else "no"),
         )
 
     def text(self) -> str:

@@ -2,6 +2,7 @@
 
 import math
 import pathlib
+import warnings
 from argparse import Namespace
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,7 @@ from mjbeer.cli.arguments import (
     steps,
 )
 from mjbeer.drawing.camera import CAMERAS
-from mjbeer.exceptions import ParameterError
+from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
 
@@ -48,7 +49,10 @@ def trajectory_of(given: Namespace) -> "Trajectory":
     """Simulate the scene that was asked for and return its trajectory."""
     from mjbeer.simulation.simulate import simulate
 
-    return simulate(scene(given), given.duration, **start(given), **steps(given))
+    asked = scene(given)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", LiquidWarning)  # `_warn` says it
+        return simulate(asked, given.duration, **start(given), **steps(given))
 
 
 @command(
@@ -144,7 +148,10 @@ def _scene_and_start(given: Namespace) -> tuple[Any, dict[str, Any]]:
 
 
 def _warn(figures: "Figures") -> None:
-    for warning in figures.trajectory.warnings:
-        say(f"not to be trusted: {warning}", "yellow")
+    run = figures.trajectory
+    for warning in run.solver_warnings:
+        say(f"equations not solved: {warning}", "yellow")
+    for warning in (*run.rolling_warnings, *run.liquid_warnings):
+        say(f"model does not hold: {warning}", "yellow")
     for note in figures.notes:
         say(f"note: {note}", "yellow")

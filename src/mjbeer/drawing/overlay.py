@@ -332,7 +332,7 @@ def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, u
     numbers = step * np.arange(math.ceil(min(ends) / step), math.floor(max(ends) / step) + 1)
     down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
     for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)) + shift, strict=True):
-        words = f"{round(number / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
+        words = f"{round(float(number) / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
         below = place + np.array([0, 0.8 * unit])
         box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
         inside = box[0] > 0 and box[1] > shift[1] and box[2] < width and box[3] < shift[1] + height

@@ -229,7 +229,7 @@ class Strip:
             for line in chart.lines:
                 if line.colour is None:
                     continue
-                value = line.values[max(np.searchsorted(line.time, time, side="right") - 1, 0)]
+                value = line.values[max(int(np.searchsorted(line.time, time, side="right")) - 1, 0)]
                 column, up = transform.transform((min(time, line.time[-1]), value))
                 if extent.y0 - 1 <= up <= extent.y1 + 1:
                     sheet.disc(np.array([column, top + self._height - up]), 0.5 * self._unit, line.colour)

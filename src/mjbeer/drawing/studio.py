@@ -49,7 +49,7 @@ class Filmed:
         """Write film and still picture."""
         reel = self.film.reel()
         still = self.film.still or (2 * reel.start + reel.end) / 3  # at the start nothing has happened yet
-        nearest, number, kept = np.abs(reel.times(self.fps) - still).argmin(), itertools.count(), []
+        nearest, number, kept = np.argmin(np.abs(reel.times(self.fps) - still)), itertools.count(), []
 
         def keep(picture: np.ndarray) -> None:
             if next(number) == nearest:

@@ -1,13 +1,14 @@
-"""Films as files: MP4 by ffmpeg, an animated WebP, one picture as a PNG or an array. Whole, or not at all."""
+"""Films as files: MP4 by mediapy, an animated WebP, one picture as a PNG or an array. Whole, or not at all."""
 
 import contextlib
 import errno
 import os
 import pathlib
+import re
 import signal
 import subprocess
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import BinaryIO, cast
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -21,16 +22,19 @@ from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
 
+_RATE = 21
+"""The rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default."""
 _ENCODED = (
-    *("-c:v", "libx264", "-pix_fmt", "yuv420p"),
     # HD colours (BT.709), which players expect; the default are those of SD television.
     *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
-    *("-crf", "21"),  # the rate factor: at 18 no loss is visible, 23 is ffmpeg's default
     # A search for motion that is quick and not deep: files are a sixth larger, and take a quarter less time.
     *("-preset", "veryfast", "-x264-params", "bframes=0:me=dia:subme=1:ref=1:weightp=0:threads=1"),
     *("-movflags", "+faststart"),  # a player can start before it has loaded the whole file
 )
-"""What ffmpeg is told about a video."""
+"""What ffmpeg is told about a file besides."""
+_HELD = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGXFSZ)
+"""Signals that ffmpeg does not hear. A terminal sends Ctrl-C to all processes of a command; if ffmpeg ended first, the
+interruption would be reported as its fault. By the last one the system would end it where a file may grow no more."""
 _DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 """Errors of the disk. ffmpeg prints the system's message for them."""
 _REMEDY = "Reinstall it (`pip install --force-reinstall imageio-ffmpeg`), or name another in IMAGEIO_FFMPEG_EXE"
@@ -68,14 +72,20 @@ def render(
         write(film, target, width, height, fps, lambda _: begin(f"drawing {target.name}"))
 
 
+def show(
+    trajectory: Trajectory, width: int, height: int, fps: float = 30, speed: float = 1.0, camera: Camera = "auto"
+) -> None:
+    """Show a trajectory as a video in a notebook. Arguments and errors are those of `render`."""
+    film = _reel(trajectory, camera, require.positive("speed", speed))
+    with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
+        mediapy.show_video(pictures, fps=fps, autoplay=False)
+
+
 def write(
     film: Reel, path: pathlib.Path, width: int, height: int, fps: float, seen: Callable[[np.ndarray], None]
 ) -> None:
     """Write a film as a video, as `render` does, and call `seen` with each picture."""
-    for name, pixels in (("width", width), ("height", height)):
-        if whole(name, pixels) % 2 != 0:
-            raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
-    pictures = film.draw(film.times(fps), width, height)
+    pictures = _pictures(film, width, height, fps)
 
     def shown() -> Iterator[np.ndarray]:
         for picture in pictures:
@@ -84,6 +94,13 @@ def write(
 
     with files.whole(path) as temporary, contextlib.closing(pictures):
         encode(shown(), temporary, int(width), int(height), fps)
+
+
+def _pictures(film: Reel, width: int, height: int, fps: float) -> Generator[np.ndarray]:
+    for name, pixels in (("width", width), ("height", height)):
+        if whole(name, pixels) % 2 != 0:
+            raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
+    return film.draw(film.times(fps), width, height)
 
 
 def write_webp(film: Reel, path: pathlib.Path, width: int, height: int, fps: float) -> None:
@@ -143,40 +160,55 @@ def encode(frames: Iterable[np.ndarray], path: pathlib.Path, width: int, height:
       RenderingError: if ffmpeg fails; the message has the last line that ffmpeg wrote.
       OSError: if the disk is full or broken.
     """
-    import imageio_ffmpeg
-
-    pictures = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}", "-r", str(fps), "-i", "-")
-    # A terminal sends Ctrl-C to all processes of a command. If ffmpeg ended first, the interruption would be reported
-    # as a fault of ffmpeg: it is started with signals blocked, so that only this process ends it.
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
-    try:
-        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", "-y", *pictures, *_ENCODED, str(path)]
-        ffmpeg = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    except (OSError, RuntimeError) as error:
-        raise _failure(str(error)) from error
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    complete, pipe = True, cast("BinaryIO", ffmpeg.stdin)
-    try:
+    with _mediapy() as mediapy:
+        film = mediapy.VideoWriter(path, (height, width), fps=fps, crf=_RATE, ffmpeg_args=_ENCODED)
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, _HELD)
         try:
+            film.__enter__()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    complete = False
+    try:
+        with contextlib.suppress(BrokenPipeError):
             for frame in frames:
-                pipe.write(frame.data)
-        except BrokenPipeError:
-            complete = False
-        _, messages = ffmpeg.communicate()
-    finally:  # it may never end by itself
-        ffmpeg.kill()
-        ffmpeg.communicate()
-    status = ffmpeg.returncode
-    if status == 0 and complete and path.stat().st_size > 0:
-        return
-    ended = f"it was ended by {signal.Signals(-status).name}" if status < 0 else "it ended before the video did"
-    told = messages.decode(errors="replace").strip()
+                film.add_image(frame)
+            complete = True
+    finally:
+        told = _end(film)
     for number in _DISK:
-        if os.strerror(number) in told or (number == errno.EFBIG and "SIGXFSZ" in ended):
+        if os.strerror(number) in told:
             raise OSError(number, os.strerror(number))
-    raise _failure([ended, *told.splitlines()][-1])
+    if told or not complete or path.stat().st_size == 0:
+        raise _failure(told)
 
 
-def _failure(reason: str) -> RenderingError:
+def _end(film: Any) -> str:
+    """Let ffmpeg end a film, also one that was interrupted, and return what mediapy says if it failed."""
+    try:
+        with contextlib.suppress(BrokenPipeError):
+            film.close()
+        film.close()  # of an ffmpeg that was gone, only now with what it said
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
+@contextlib.contextmanager
+def _mediapy() -> Generator[Any]:
+    """Yield mediapy with the ffmpeg of imageio-ffmpeg; what fails in the block is told as ffmpeg's fault."""
+    import imageio_ffmpeg
+    import mediapy  # which loads matplotlib and IPython: half a second that only films take
+
+    try:
+        mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
+        yield mediapy
+    except (OSError, RuntimeError) as error:
+        if isinstance(error.__context__, KeyboardInterrupt):  # a notebook sends it to ffmpeg as well
+            raise error.__context__ from None
+        raise _failure(str(error)) from error
+
+
+def _failure(told: str) -> RenderingError:
+    said = re.sub("^Error writing '.*?': ", "", told).strip()  # mediapy's words, before those of ffmpeg
+    reason = ["it ended before the video did", *said.splitlines()][-1]
     return RenderingError(f"ffmpeg did not write the video: {reason}\n{_REMEDY}")

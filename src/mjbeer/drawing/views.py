@@ -4,12 +4,9 @@ Trajectories and scenes belong to the theory, which knows no pictures. Their met
 called, as `mjbeer` registers it with them.
 """
 
-import base64
 import html
 import math
 import os
-import pathlib
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -90,30 +87,21 @@ def _values(trajectory: Trajectory, name: str) -> np.ndarray:
     return np.degrees(values) if "°" in _LABELS[name] else values
 
 
-@dataclass(frozen=True)
-class Video:
-    """A video in memory, MP4 with H.264, which a notebook shows."""
+def video(
+    trajectory: Trajectory,
+    path: str | os.PathLike[str] | None,
+    width: int,
+    height: int,
+    progress: bool = True,
+    **others: Any,
+) -> None:
+    """Write a video of a trajectory to `path`, as `mjbeer.render` does, or show it in a notebook if there is none."""
+    from mjbeer.drawing.video import render, show
 
-    data: bytes
-    width: int
-    height: int
-
-    def _repr_html_(self) -> str:
-        """Return the video as HTML, with nothing that has to be fetched."""
-        film = f"data:video/mp4;base64,{base64.b64encode(self.data).decode()}"
-        return f'<video controls loop width="{self.width}" height="{self.height}" src="{film}"></video>'
-
-
-def video(trajectory: Trajectory, path: str | os.PathLike[str] | None, width: int, height: int, **others: Any) -> Video:
-    """Return a video of a trajectory, and write it to `path` if there is one, as `mjbeer.render` does."""
-    import tempfile
-
-    from mjbeer.drawing.video import render
-
-    with tempfile.TemporaryDirectory() as folder:
-        target = pathlib.Path(folder) / "trajectory.mp4" if path is None else require.path(path)
-        render(trajectory, target, width, height, **others)
-        return Video(target.read_bytes(), int(width), int(height))
+    if path is None:
+        show(trajectory, width, height, **others)
+    else:
+        render(trajectory, path, width, height, progress=progress, **others)
 
 
 def trajectory_html(trajectory: Trajectory) -> str:

@@ -10,6 +10,8 @@ from contextlib import contextmanager
 
 import mujoco
 
+LARGEST = 1e10
+"""Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
 _lock = threading.Lock()
 _saved: list[tuple[bool, bool]] = []
 """The log's settings when the first `quiet` was entered, once for each that is still open."""

@@ -114,23 +114,27 @@ def upright(standing: Standing) -> mujoco.MjSpec:
 
     The beer is a column in the body "liquid" under a disc that tilts with the body "slosh1".
     """
-    can, height = standing.can, standing.height
+    can = standing.can
     spec = _read(folder() / "standing.xml", _STANDING)
     _remove_mechanics(spec)
     for site in spec.sites:
         spec.delete(site)
     _fit_sizes(spec, can)
     spec.frame("upright").pos = [0, 0, can.length / 2]
-    column, top = spec.geom("beer"), spec.geom("beer_top")
-    thickness = min(_TOP * can.radius, height / 4)
-    for geom, low, high in ((column, 0.0, height - thickness), (top, height - 2 * thickness, height)):
-        geom.pos, geom.size = [0, 0, (low + high) / 2], [can.radius, (high - low) / 2, 0]
     if standing.modes == 0:
-        column.pos, column.size = [0, 0, height / 2], [can.radius, height / 2, 0]
         spec.delete(spec.body("slosh1"))
-    else:
-        top.pos = [0, 0, height - thickness - standing.pivots(1)[0]]
+    for name, (low, high) in column(standing).items():
+        spec.geom(name).pos, spec.geom(name).size = [0, 0, (low + high) / 2], [can.radius, (high - low) / 2, 0]
     return spec
+
+
+def column(standing: Standing) -> dict[str, tuple[float, float]]:
+    """Return from where to where the geoms reach that draw the beer, along the axes of their bodies [m]."""
+    height = standing.height
+    if standing.modes == 0:
+        return {"beer": (0.0, height)}
+    thickness, pivot = min(_TOP * standing.can.radius, height / 4), standing.pivots(1)[0]
+    return {"beer": (0.0, height - thickness), "beer_top": (height - 2 * thickness - pivot, height - pivot)}
 
 
 def _read(path: pathlib.Path, needed: dict[str, tuple[str, ...]]) -> mujoco.MjSpec:

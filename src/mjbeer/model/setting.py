@@ -60,6 +60,12 @@ class Setting:
                 f"{GAUSS_JACKSON} would be unstable with a constraint: rolling must be 'reduced' with it, got "
                 f"{self.rolling!r}; {DOP853} takes any"
             )
+        if self.tolerance is not None and self.rolling == "contact":
+            raise ParameterError(
+                "a contact is soft, and so is wrong by what no integrator shows: with a tolerance rolling must be "
+                f"'reduced' or 'equality', got 'contact' and {self.tolerance!r} rad; a contact is the harder, the "
+                "shorter its timestep is, and error_estimate says how good it is"
+            )
 
     @property
     def rigid(self) -> bool:

@@ -4,7 +4,7 @@ import os
 import pathlib
 import secrets
 from collections.abc import Generator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 
 from mjbeer.exceptions import OutputError
 
@@ -17,16 +17,17 @@ def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     `path` is either the complete new file or the old one.
 
     Raises:
-      OutputError: if `path` cannot be written: a folder, a device, read-only, or on a full disk.
+      OutputError: if `path` cannot be written: a folder, a device, read-only, in a folder that does not exist, or on a
+        full disk.
     """
     target = pathlib.Path(os.path.realpath(path))  # a link is kept, and the file that it points to is replaced
-    temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
     try:
         if target.exists() and not target.is_file():
             raise OutputError(f"cannot write {path}: it is {'a folder' if target.is_dir() else 'not a regular file'}")
         if target.exists() and not os.access(target, os.W_OK):  # renaming would replace it although it is read-only
             raise OutputError(f"cannot write {path}: it is read-only")
-        _create(target.parent)
+        _require_folder(path, target.parent)
+        temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
         try:
             temporary.touch(exist_ok=False)
             yield temporary
@@ -50,9 +51,9 @@ def locked(folder: pathlib.Path) -> Generator[None]:
     """
     from filelock import FileLock, Timeout  # which only studies need, and which takes long to import
 
+    make_folder(folder)
     lock = FileLock(folder / ".lock", blocking=False)
     try:
-        _create(folder)
         lock.acquire()
     except Timeout:
         raise OutputError(f"cannot write to {folder}: another command is at work there") from None
@@ -74,9 +75,24 @@ def write(path: str | os.PathLike[str], text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def _create(folder: pathlib.Path) -> None:
-    with suppress(FileExistsError):  # if it is a file, the next step fails with a clearer message
-        folder.mkdir(parents=True)
+def make_folder(folder: pathlib.Path) -> None:
+    """Make a folder to write to, unless it exists; the folder that it is in must exist.
+
+    Raises:
+      OutputError: if it cannot be made.
+    """
+    try:
+        _require_folder(folder, folder.absolute().parent)
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise _failure(folder, error) from error
+
+
+def _require_folder(path: str | os.PathLike[str], folder: pathlib.Path) -> None:
+    """Check that the folder of a path exists: making it would hide that its name is misspelt."""
+    if not folder.is_dir():
+        nearest = next(each for each in folder.parents if each.is_dir())
+        raise OutputError(f"cannot write {path}: there is no folder {folder}; the nearest one that exists is {nearest}")
 
 
 def _failure(path: str | os.PathLike[str], error: OSError) -> OutputError:

@@ -216,6 +216,7 @@ def told(folder: pathlib.Path, films: bool, note: str = "") -> Generator[None]:
     Raises:
       OutputError: if the folder cannot be written to.
     """
+    files.make_folder(folder)
     with files.whole(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
         letters = pathlib.Path(__file__).with_name("letters.svg")

@@ -37,7 +37,9 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
       OutputError: if the folder cannot be written to.
       RenderingError: if a video cannot be drawn for another reason.
     """
-    drawn, papers = films.orders(folder, quick), folder / "paper"
+    drawn, papers, plots = films.orders(folder, quick), folder / "paper", folder / "plots"
+    for each in (folder, plots):
+        files.make_folder(each)
     with files.whole(folder / "index.html") as index, stories.told(papers, films=False):
         (folder / "index.html").unlink(missing_ok=True)
         if not_drawn := films.not_drawn([str(order.path.relative_to(folder)) for order in drawn]):
@@ -45,7 +47,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
                 order.path.unlink(missing_ok=True)
             drawn = []
         # The checks take longest, and compile what the films run; plots of what is known need not. The last are quick.
-        orders = [_Checks(folder / "validation.json"), *page.plots(folder / "plots"), *drawn]
+        orders = [_Checks(folder / "validation.json"), *page.plots(plots), *drawn]
         validation, *_ = studio.produce([*orders, *reversed(stories.plots(papers))], console)
         index.write_text(page.html(folder, validation, quick, not_drawn), encoding="utf-8")
     return validation, not_drawn

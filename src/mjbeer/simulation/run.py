@@ -19,12 +19,12 @@ from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.record import ERROR, Record, doubts
+from mjbeer.theory.record import ERROR, Record, departures, doubts
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
 if TYPE_CHECKING:
-    from mjbeer.simulation.kernels import Dynamics
+    from mjbeer.integrators.dynamics import Dynamics
 
 _GREATER = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
@@ -73,7 +73,7 @@ class Prepared:
             self.model.opt.timestep = setting.timestep
             self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), made.data)
         else:
-            from mjbeer.simulation.kernels import Dynamics  # only here, as in `_own`
+            from mjbeer.integrators.dynamics import Dynamics  # only here, as in `_own`
 
             self.dynamics = dynamics or Dynamics(self.model, made.data)
             timestep = setting.timestep * (_GREATER if uneven else 1)
@@ -130,26 +130,26 @@ class Prepared:
 def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float, dynamics: "Dynamics") -> _Solve:
     """Return how mjbeer's own integrators solve a model to a tolerance, or with a `timestep` [s]."""
     # Imported only here: numba, which compiles them, takes longer to import than all else together.
-    from mjbeer.simulation.dop853 import Integrator
-    from mjbeer.simulation.gauss_jackson import GaussJackson
-    from mjbeer.simulation.kernels import SmoothRecorder
-    from mjbeer.simulation.tolerance import Solver
+    from mjbeer.integrators.dop853 import Dop853
+    from mjbeer.integrators.gauss_jackson import GaussJackson
+    from mjbeer.simulation.smooth_recorder import SmoothRecorder
+    from mjbeer.simulation.tolerance import Solver, even_at_most
 
     if (tolerance := setting.tolerance) is not None:
         solver = Solver(model, scene, dynamics)
         return lambda start, times, friction: solver.run(
             start, times, tolerance, math.inf if friction is None else friction
         )
-    method = Integrator(model, dynamics) if setting.integrator == DOP853 else GaussJackson(model, scene, dynamics)
 
     def solve(start: np.ndarray, times: np.ndarray, friction: float | None) -> Solution:
-        if friction is None:
-            return Solution(method.run(start, times, timestep))
-        if isinstance(method, Integrator):
-            recorder = Recorder(model, scene, friction, within=True)
-            return Solution(method.run(start, times, timestep, watch=recorder), record=recorder.record)
-        smooth = SmoothRecorder(scene, friction)
-        return Solution(method.run(start, times, timestep, smooth), record=smooth.record)
+        recorder: Recorder | SmoothRecorder | None = None
+        if setting.integrator == DOP853:
+            recorder = None if friction is None else Recorder(model, scene, friction, within=True)
+            states = Dop853(model, dynamics).run(start, times, timestep, observer=recorder)
+        else:
+            recorder = None if friction is None else SmoothRecorder(scene, friction)
+            states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
+        return Solution(states, record=recorder.record if recorder else None)
 
     return solve
 
@@ -234,22 +234,27 @@ class Run(Trajectory):
 
     @cached_property
     def doubts(self) -> tuple[str, ...]:
-        """Return those reasons not to trust this motion that take no second run."""
-        found = doubts(self.record, self.rolling, self.setting.friction)
+        """Return those reasons to doubt that the equations were solved that take no second run."""
+        found = doubts(self.record, self.rolling)
         turn = self.record.fastest * (timestep := self.timestep or 0.0)
         if turn > _TURN and self.integrator != DOP853:
             # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
             rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
                 found.append(
-                    f"the load turns by {turn:.2g} rad in a timestep (trusted up to {_TURN:g}), in which its weight "
-                    "and inertia change unseen"
+                    f"the load turns by {require.above(turn, _TURN)} rad in a timestep (trusted up to {_TURN:g}), in "
+                    "which its weight and inertia change unseen"
                 )
         return tuple(found)
 
     @cached_property
-    def warnings(self) -> tuple[str, ...]:
-        """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
+    def rolling_warnings(self) -> tuple[str, ...]:
+        """Return where the can did not, or could not, roll without slipping, one sentence for each."""
+        return tuple(departures(self.record, self.rolling, self.setting.friction))
+
+    @cached_property
+    def solver_warnings(self) -> tuple[str, ...]:
+        """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
         if self.solution.error is None and (lost := self._second[1]) > ERROR:
             return (
                 *self.doubts,
@@ -260,7 +265,8 @@ class Run(Trajectory):
             return self.doubts
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
-            found = f"phi and u/a are off by {error:.2g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
+            off = require.above(error, ERROR)
+            found = f"phi and u/a are off by {off} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
         else:
             found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
         return (*self.doubts, found)

@@ -10,7 +10,6 @@ from mjbeer import require
 from mjbeer.exceptions import LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.simulation.run import Run, integrate
-from mjbeer.theory.liquid import about_run
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
@@ -43,9 +42,9 @@ def simulate(
       phi_dot0: its rate at the start [rad/s].
       rolling: how the can is made to roll, as in `build`: "reduced", "equality" or "contact".
       integrator: one of MuJoCo's five, "DOP853" or, in "reduced" without damping, "GaussJackson"; RK4 if none is given.
-      timestep: fixed timestep [s]; with a tolerance the interval between samples, and what a contact is tuned to.
+      timestep: fixed timestep [s], to which a contact is tuned; with a tolerance the interval between samples.
       tolerance: largest error of phi and u/a [rad], relative beyond 1 rad, to which the integrator and its steps are
-        then chosen. It is the error of integrating the model, which in a soft contact has one of its own.
+        then chosen. A "contact" is refused, as its softness is an error of the model.
       times: increasing times of the samples [s], for MuJoCo's integrators multiples of the timestep.
       friction: coefficient of friction of a contact.
 
@@ -69,9 +68,9 @@ def simulate(
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
-    if run.doubts:
-        warnings.warn("this run is not to be relied on: " + "; ".join(run.doubts), UntrustedWarning, stacklevel=2)
-    if about := about_run(scene, run.record.fastest_slip, run.record.no_lump_at):
+    if found := (*run.doubts, *run.rolling_warnings):
+        warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
+    for about in run.liquid_warnings:
         warnings.warn(about, LiquidWarning, stacklevel=2)
     return run
 

@@ -1,7 +1,6 @@
 """MuJoCo's own integrators, stepping a model, and the record of all steps of a run, made while it is stepped."""
 
 import math
-from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass
 
@@ -10,16 +9,13 @@ import numpy as np
 from mujoco.rollout import rollout
 
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.engine import quiet, untimed
+from mjbeer.integrators import Observer
+from mjbeer.model.engine import LARGEST, quiet, untimed
 from mjbeer.model.state import read
 from mjbeer.theory.equations import accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
-LARGEST = 1e10
-"""Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
-Watcher = Callable[[np.ndarray, np.ndarray], None]
-"""What a stepper shows its steps to: the times [s] at their ends, and the states there, shape (steps, nq + nv)."""
 _BLOCK = 4096
 """Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
 cache."""
@@ -52,7 +48,7 @@ class Stepper:
         self._data = mujoco.MjData(model) if data is None else data
         self._rows = np.empty((1, _BLOCK, mujoco.mj_stateSize(model, _STATE)))
 
-    def run(self, start: np.ndarray, samples: np.ndarray, watch: Watcher | None = None) -> np.ndarray:
+    def run(self, start: np.ndarray, samples: np.ndarray, observer: Observer | None = None) -> np.ndarray:
         """Return the states after increasing numbers of steps, `samples`, as an array of shape (samples, nq + nv).
 
         Raises:
@@ -63,8 +59,8 @@ class Stepper:
         data.qpos[:], data.qvel[:] = start[:size], start[size:]
         states = np.empty((len(samples), len(start)))
         states[samples == 0] = start
-        if watch:
-            watch(np.zeros(1), start[None])
+        if observer:
+            observer(np.zeros(1), start[None])
         last = int(samples[-1])
         before = np.empty(mujoco.mj_stateSize(self._models[0], _GUESSED))
         with quiet(), untimed():
@@ -75,8 +71,8 @@ class Stepper:
                     raise self._divergence(before, first, len(block))
                 begin, after = np.searchsorted(samples, [first + 1, first + len(block) + 1])
                 states[begin:after] = block[samples[begin:after] - first - 1]
-                if watch:
-                    watch(step * np.arange(first + 1, first + len(block) + 1), block)
+                if observer:
+                    observer(step * np.arange(first + 1, first + len(block) + 1), block)
         return states
 
     def _advance(self, count: int) -> np.ndarray:
@@ -119,7 +115,7 @@ def _warnings(data: mujoco.MjData) -> str:
 
 
 class Recorder:
-    """The record of a run of one model of a scene, a `Watcher`.
+    """The record of a run of one model of a scene, an `Observer`.
 
     The steps of DOP853 are so long that forces are looked for `within` them, too.
     """

@@ -74,13 +74,14 @@ ALWAYS: Mapping[str, Quantity] = {
 """The quantities that every sweep has, besides "trusted" and "status"."""
 PERIOD, TRUSTED, STATUS, SCENE = "period", "trusted", "status", "scene"
 _PERIOD = Quantity(lambda run: 2 * math.pi / run.frequency(), "s", "period of the swing")
-WELL, REFUSED, DIVERGED, NOT_REACHED, NO_VALUE, NOT_YET = 0, 1, 2, 3, 4, -1
+WELL, REFUSED, DIVERGED, NOT_REACHED, NO_VALUE, BEYOND, NOT_YET = 0, 1, 2, 3, 4, 5, -1
 STATUSES = {
     WELL: "all went well",
     REFUSED: "the scene is not possible",
     DIVERGED: "the motion diverged",
     NOT_REACHED: "the tolerance was not reached",
     NO_VALUE: "a quantity has no value",
+    BEYOND: "the model left its range",
     NOT_YET: "not yet simulated",
 }
 
@@ -126,8 +127,9 @@ def sweep(
     or sooner, and the same call goes on from there after an interruption. A file with other coordinates or attributes
     is refused, and so is one whose first scene has other results than now; `overwrite` replaces it.
 
-    A value that is not allowed is refused before anything runs. A scene that fails later has NaN and a status, and the
-    attribute "failed" has a line for each kind of reason, with the first scene of it. What liquids warn of is said
+    A value that is not allowed is refused before anything runs. A scene that fails later has NaN and a status, one that
+    leaves the range of its model a status, and the attribute "failed" has a line for each kind of reason, with the
+    first scene of it. What liquids warn of is said
     beforehand, once for each kind.
 
     Raises:
@@ -258,6 +260,8 @@ def _outcome(work: Work, row: np.ndarray, values: list[float]) -> tuple[bool, in
             values[place] = float(of(run))
         except Exception as error:
             status, reason = NO_VALUE, f"{name}: {_in_a_line(error)}"
+    if status == WELL and (beyond := (*run.rolling_warnings, *run.liquid_warnings)):
+        status, reason = BEYOND, "; ".join(beyond)
     return trusted, status, reason
 
 

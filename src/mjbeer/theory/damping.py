@@ -27,6 +27,8 @@ class Damping:
     """c3 [N m s^3]."""
     holds: tuple[float, float] | None = field(default=None, compare=False, repr=False, kw_only=True)
     """Slip rates [rad/s] between which it is the damping of a real liquid; None if it is not one's."""
+    coats_at: float = field(default=math.inf, compare=False, repr=False, kw_only=True)
+    """Slip rate [rad/s] from which a film all round the wall can hold a third of that liquid."""
 
     def __post_init__(self) -> None:
         require.store(

@@ -64,6 +64,8 @@ LIQUIDS: dict[Name, Properties] = {
 }
 """Handbook values at 20 degrees Celsius; where samples differ, by how much is said beside them."""
 
+_VISCOSITY = 1e-9, 1e6
+"""Viscosities that a liquid may have [m^2/s]: that of liquid helium is 2e-8, that of pitch 2e5."""
 WALL = 0.8875
 """Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L."""
 ENDS = 2 * 0.61592
@@ -147,10 +149,9 @@ def liquid(
         speed = 0.0
     reasons = []
     if used.carried > _CARRIED:
-        share = f"{100 * used.carried:.0f} %" if used.carried < 1 else "all"
         reasons.append(
-            f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold {share} of "
-            "the liquid"
+            f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold "
+            f"{_share(used.carried)} of the liquid"
         )
     if (ratio := float(centrifugal(scene, speed))) > 1:
         reasons.append(
@@ -174,7 +175,7 @@ def liquid_in(
     """Return what `liquid` uses for the same arguments, with the same errors."""
     own = LIQUIDS[require.choice("liquid", name, NAMES)]
     density = own.density if density is None else require.positive("density", density, "kg/m^3")
-    nu = own.viscosity if viscosity is None else require.positive("viscosity", viscosity, "m^2/s")
+    nu = own.viscosity if viscosity is None else require.within("viscosity", viscosity, *_VISCOSITY, "m^2/s")
     free = sliding(incline, fill, can, density, gravity)
     load, a, length = free.load, free.can.radius, free.can.length
     if load.offset == 0 or free.gravity == 0:
@@ -182,7 +183,7 @@ def liquid_in(
             "a liquid's damping is that of a can which it fills in part, under gravity: fill must be less than 1 and "
             f"gravity more than 0, got fill = {fill!r} and gravity = {free.gravity!r} m/s^2"
         )
-    shape = segment(fill)
+    shape = segment(require.number("fill", fill))
     moment = shape.area * (shape.inertia + shape.offset**2)  # second moment of the wetted area of an end, over a^4
     arc = 2 * shape.half_angle
     layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
@@ -203,27 +204,42 @@ def liquid_in(
             f"viscosity is too small or the can too fast, got {nu:.4g} m^2/s in {free!r}"
         )
     holds = DECADE[0] * slip * bent / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
-    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds)
+    coats_at = (_CARRIED * shape.area * a / FILM_LOAD) ** 2 * free.gravity / (nu * a)
+    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds, coats_at=coats_at)
     law = "swing" if rolled < 1 else "thin layers" if drag > creep else "creep"
     film = math.sqrt(nu * a * steady / free.gravity)
     return Liquid(name, density, nu, law, steady, film, FILM_LOAD * film / (shape.area * a), damping)
 
 
-def about_run(scene: Scene, fastest: float, spread_at: float) -> str | None:
+def about_run(scene: Scene, fastest: float, spread_at: float, turns: float) -> str | None:
     """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
 
-    `fastest` is the largest slip rate of the run [rad/s], and from `spread_at` [s] on `centrifugal` was more than 1.
+    `fastest` is the largest slip rate of the run [rad/s], from `spread_at` [s] on `centrifugal` was more than 1, and
+    the can has turned by so many `turns`.
     """
-    spread = (
-        f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), which "
-        "spreads it round the can"
-    )
-    return _no_lump("the liquid", scene, fastest, [spread] if spread_at < math.inf else [], "the run")
+    reasons = []
+    if spread_at < math.inf:
+        reasons.append(
+            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), "
+            "which spreads it round the can"
+        )
+    # A film grows with the wall that has come up.
+    carried = _CARRIED * math.sqrt(fastest / scene.damping_law.coats_at) * min(1.0, turns)
+    if carried > _CARRIED:
+        reasons.append(
+            f"it coats the can: after {turns:.2g} turns at up to {fastest:.3g} rad/s the film on the wall can hold "
+            f"{_share(carried)} of it"
+        )
+    return _no_lump("the liquid", scene, fastest, reasons, "the run")
 
 
 def centrifugal(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
+
+
+def _share(carried: float) -> str:
+    return f"{100 * carried:.0f} %" if carried < 1 else "all"
 
 
 def _no_lump(name: str, scene: Scene, slip: float, reasons: list[str], what: str) -> str | None:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from mjbeer import require
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, accelerations, part, slip_rate
 from mjbeer.theory.liquid import centrifugal
@@ -168,33 +169,50 @@ class Record:
         return self.axis_drift / max(self.scene.can.radius, self.rolled)
 
 
-def doubts(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
-    """Return the reasons in its record not to trust a motion, one sentence for each.
+def doubts(record: Record, rolling: str) -> list[str]:
+    """Return the reasons in its record to doubt that the equations of a motion were solved, one sentence for each.
 
-    `rolling` says how the can was made to roll. In "contact" it could slip at its coefficient of `friction`, and leave
-    the incline. Where it could not, a normal force below 0 is a reason, as a real can would have left.
+    `rolling` says how the can was made to roll. Only in "contact" may it slip and part, as `departures` says, and then
+    friction and impacts take energy.
     """
-    reasons, radius = [], record.scene.can.radius
+    slipped = _slipped(record)
+    if rolling == "contact" and slipped:
+        return []
+    reasons = slipped
     if not record.implied_error <= ERROR:
         reasons.append(
-            f"energy or momentum drift like an error of {record.implied_error:.2g} rad of phi or u/a (trusted up to "
-            f"{ERROR:g}): take a smaller timestep or a better integrator"
+            f"energy or momentum drift like an error of {require.above(record.implied_error, ERROR)} rad of phi or u/a "
+            f"(trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
         )
-    if not record.slip <= SLIP * radius:
-        reasons.append(f"the can slips by {record.slip / radius:.2g} radii (trusted up to {SLIP:g})")
-    if not record.lift <= LIFT * radius:
-        reasons.append(
-            f"the can parts from the incline, or sinks in, by {record.lift / radius:.2g} radii (trusted up to {LIFT:g})"
-        )
-    if rolling == "contact" and not record.needed <= friction:
-        reasons.append(
-            f"rolling needs a friction coefficient of {record.needed:.3g}, and the contact has {friction:g}: it slides"
-        )
-    if rolling != "contact" and math.isfinite(record.fails_at):
-        reasons.append(
+    return reasons
+
+
+def departures(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
+    """Return where a can did not, or could not, roll as the model of rolling without slipping does.
+
+    In "contact" it slips at its coefficient of `friction`, and leaves the incline. Where it could not, a normal force
+    below 0 says that a real can would have left.
+    """
+    if rolling != "contact":
+        pulls = (
             f"from t = {record.fails_at:.6g} s the incline would have to pull at the can (N < 0): a real one leaves it "
             "there"
         )
+        return [pulls] if math.isfinite(record.fails_at) else []
+    reasons = _slipped(record)
+    if not record.needed <= friction:
+        needed = require.above(record.needed, friction, digits=3)
+        reasons.append(f"rolling needs a friction coefficient of {needed}, and the contact has {friction:g}: it slides")
+    return reasons
+
+
+def _slipped(record: Record) -> list[str]:
+    reasons, slip, lift = [], record.slip / record.scene.can.radius, record.lift / record.scene.can.radius
+    if not slip <= SLIP:
+        reasons.append(f"the can slips by {require.above(slip, SLIP)} radii (trusted up to {SLIP:g})")
+    if not lift <= LIFT:
+        by = require.above(lift, LIFT)
+        reasons.append(f"the can parts from the incline, or sinks in, by {by} radii (trusted up to {LIFT:g})")
     return reasons
 
 

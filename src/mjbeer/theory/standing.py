@@ -241,8 +241,8 @@ def standing(
         layer = math.sqrt(2 * viscosity / made.frequencies(1)[0]) / made.can.radius
         if layer > _THIN:
             warn_of_liquid(
-                f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.2g} radii, not "
-                f"{_THIN:g} or less; give a damping_ratio",
+                f"{name} is too thick for the damping of thin layers: that on the wall has "
+                f"{require.above(layer, _THIN)} radii, not {_THIN:g} or less; give a damping_ratio",
                 stacklevel=2,
             )
     return made

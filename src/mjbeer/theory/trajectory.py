@@ -13,7 +13,8 @@ from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, part, rolling_forces
-from mjbeer.theory.record import Record, doubts
+from mjbeer.theory.liquid import about_run
+from mjbeer.theory.record import Record, departures, doubts
 from mjbeer.theory.scene import Scene, pictures
 
 _LEAST_SWING = 1e-10
@@ -119,9 +120,29 @@ class Trajectory(Coordinates):
         return math.pi - float(self.phi[np.argmax(above)]) if above.any() else None
 
     @cached_property
-    def warnings(self) -> tuple[str, ...]:
-        """Return the reasons not to trust this motion, one sentence for each; empty if there are none."""
+    def solver_warnings(self) -> tuple[str, ...]:
+        """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
         return tuple(doubts(self.record, self.rolling))
+
+    @cached_property
+    def rolling_warnings(self) -> tuple[str, ...]:
+        """Return where a can did not, or could not, roll without slipping as the model does, one sentence for each."""
+        return tuple(departures(self.record, self.rolling))
+
+    @cached_property
+    def liquid_warnings(self) -> tuple[str, ...]:
+        """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
+        record, turn = self.record, 2 * math.pi * self.scene.can.radius
+        about = about_run(self.scene, record.fastest_slip, record.no_lump_at, record.rolled / turn)
+        return (about,) if about else ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Return the reasons not to trust this motion, one sentence for each: of the solver, of rolling, of a liquid.
+
+        That rolling may need more friction than there is counts in contact alone: `rolls_until` knows it of any motion.
+        """
+        return (*self.solver_warnings, *self.rolling_warnings, *self.liquid_warnings)
 
     @property
     def trusted(self) -> bool:
@@ -142,7 +163,7 @@ class Trajectory(Coordinates):
         scene, form = self.scene, self.scene.oscillator
         # After the last sample that swings phi_dot is rounding, whose changes of sign are no turning points.
         least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
-        swing = part(self, slice(int(np.flatnonzero(np.abs(self.phi_dot) > least).max(initial=-1)) + 1))
+        swing = part(self, slice(int(np.max(np.flatnonzero(np.abs(self.phi_dot) > least), initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
         change = accelerations(scene, phi, rate, swing.u_dot)[1]
         turns = _zeros(time, rate, change)
@@ -182,12 +203,12 @@ class Trajectory(Coordinates):
 
     def video(
         self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
-    ) -> Any:
-        """Return a video of the motion, which a notebook shows, and write it to `path` (.mp4) if there is one.
+    ) -> None:
+        """Write a video of the motion to `path` (.mp4), or show it in a notebook if there is none.
 
         `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        return pictures[0]().video(self, path, width, height, **others)
+        pictures[0]().video(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.

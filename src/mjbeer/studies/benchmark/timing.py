@@ -5,7 +5,6 @@ import math
 import time
 from collections.abc import Callable, Container, Sequence
 from functools import partial
-from typing import Any
 
 import mujoco
 import numpy as np
@@ -13,13 +12,15 @@ from rich.console import Console
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError, MjbeerError
+from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
 from mjbeer.model.state import read, start
 from mjbeer.output.terminal import progress_bar
-from mjbeer.simulation import dop853, gauss_jackson, kernels
 from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.stepping import Stepper
+from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Motion
 from mjbeer.studies.benchmark.points import (
@@ -167,12 +168,14 @@ def _evaluations(point: Point, case: Case, model: mujoco.MjModel, begin: np.ndar
         return None
     if point.method in INTEGRATORS:
         return round(float(case.times[-1]) / point.value) * (4 if point.method == "RK4" else 1)
+    method: Dop853 | GaussJackson
     if point.method == DOP853:
-        method: Any = dop853.Integrator(model)
+        method = Dop853(model)
+        method.run(begin, case.times, point.value)
     else:
-        method = gauss_jackson.GaussJackson(model, case.scene, kernels.Dynamics(model, mujoco.MjData(model)))
-    method.run(begin, case.times, point.value)
-    return int(method.evaluations)
+        method = GaussJackson(model)
+        method.run(begin, case.times, point.value, even_at_most(case.scene))
+    return method.evaluations
 
 
 def climb(case: Case, curve: Curve, values: Sequence[float]) -> list[tuple[Point, Rung | None]]:

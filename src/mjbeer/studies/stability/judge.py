@@ -145,8 +145,10 @@ def judge(trial: Trial) -> Outcome:
     allowed = ERROR if trial.tolerance is None else min(ERROR, trial.tolerance + theory_distance)
     if math.isinf(theory_distance):
         return Outcome(SILENT, judges, error, admitted, "two theories differ by more than rounding explains")
+    # What a liquid warns of is of the model, and of no equation's solution.
+    doubts = (*run.solver_warnings, *run.rolling_warnings)
     right = "" if judges == NOBODY else RIGHT if error <= allowed else SILENT
-    return Outcome(right if run.trusted else DOUBTED, judges, error, admitted, "; ".join(run.warnings))
+    return Outcome(DOUBTED if doubts else right, judges, error, admitted, "; ".join(doubts))
 
 
 def _judge_attached(trial: Trial) -> Outcome:

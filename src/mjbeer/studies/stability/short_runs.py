@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
+from mjbeer.integrators.dop853 import Dop853
 from mjbeer.model.build import build, specify
 from mjbeer.model.numbers import stiffest
 from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting
 from mjbeer.model.state import places
-from mjbeer.simulation import dop853
 from mjbeer.simulation.run import integrate
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.predictions import linear_stability, soft_constraint, soft_rolling
@@ -105,7 +105,7 @@ class Swings:
         samples = np.arange(self._steps(timestep) + 1)
         try:
             if self._plan.integrator == DOP853:
-                states = dop853.Integrator(self._model).run(self._start, samples * timestep, timestep)
+                states = Dop853(self._model).run(self._start, samples * timestep, timestep)
             else:
                 states = Stepper(self._model).run(self._start, samples)
         except DivergenceError:

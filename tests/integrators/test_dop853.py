@@ -7,10 +7,10 @@ from scipy.integrate import DOP853
 
 from mjbeer import Can, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DivergenceError
+from mjbeer.integrators.dop853 import Dop853
+from mjbeer.integrators.dynamics import Dynamics, derivative
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
-from mjbeer.simulation.dop853 import Integrator
-from mjbeer.simulation.kernels import Dynamics, slope
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
@@ -25,7 +25,7 @@ def test_fixed_step_is_scipy_s_step() -> None:
     reference = DOP853(slope, 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
     model = build(scene)
-    ours = Integrator(model).run(start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
+    ours = Dop853(model).run(start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
     # Twelve slopes of size 50 and 5 times a step of 0.02, each with the rounding of its forward dynamics.
     assert ours[2] == pytest.approx(reference.y[1::2], rel=1e-13)
     assert ours[1] == pytest.approx(reference.dense_output()(step / 3)[1::2], rel=1e-13)
@@ -38,7 +38,7 @@ def test_continuous_output_is_of_seventh_order() -> None:
     begin, steps, errors = start(model, scene, 0.3, 0.0), 0.16 / 2.0 ** np.arange(4), []
     for step in steps:
         times = step * (np.arange(int(2 / step)) + 0.1)
-        found = read(model, scene, Integrator(model).run(begin, times, float(step)), times).phi
+        found = read(model, scene, Dop853(model).run(begin, times, float(step)), times).phi
         errors.append(np.abs(found - exact(scene, times, 0.3).phi).max())
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(7.5, abs=0.8)
 
@@ -52,7 +52,7 @@ def test_continuous_output_is_of_seventh_order() -> None:
 )
 def test_a_run_without_an_end_is_a_divergence(rate: float, end: float, setting: dict, message: str) -> None:
     with pytest.raises(DivergenceError, match=message):
-        Integrator(build(frozen())).run(np.array([1.0, rate]), np.array([0.0, end]), **setting)
+        Dop853(build(frozen())).run(np.array([1.0, rate]), np.array([0.0, end]), **setting)
 
 
 @pytest.mark.parametrize("scene", [*SCENES.values(), sliding(can=Can.sheet_metal(), damping=1e-3)])
@@ -62,7 +62,7 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     begin = start(model, scene, 0.7, 2.0)
     dynamics, rates = Dynamics(model), np.empty_like(begin)
     assert len(dynamics.kernel[0][0]) > 1
-    slope(*dynamics.kernel, begin, rates)
+    derivative(*dynamics.kernel, begin, rates)
     data = mujoco.MjData(model)
     data.qpos, data.qvel = np.split(begin, 2)
     mujoco.mj_forward(model, data)
@@ -74,7 +74,7 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
 def test_no_clock_is_read_while_stepping_and_it_is_put_back() -> None:
     model, velocity = build(sliding(can=Can.sheet_metal(), damping=1e-3)), mujoco.mjtTimer.mjTIMER_VELOCITY
     dynamics, seen = Dynamics(model), mujoco.MjData(model)
-    Integrator(model, dynamics).run(np.array([0.0, 1.0, 0.0, 0.0]), np.array([0.0, 1.0]), 0.1)
+    Dop853(model, dynamics).run(np.array([0.0, 1.0, 0.0, 0.0]), np.array([0.0, 1.0]), 0.1)
     assert dynamics.data.timer[velocity].number > 100
     assert dynamics.data.timer[velocity].duration == 0
     mujoco.mj_forward(model, seen)

@@ -1,4 +1,10 @@
-"""What a multistep method knows between its steps: the angle of the load, the time that has passed, and the state.
+"""The time that a multistep method with uneven steps has passed, and the states at times that are asked for.
+
+Steps of uneven length are even in a time s of the method's own, in which the caller's pace, dt/ds, is any positive
+function of phi. What passes of t in a step is integrated by Gauss's formula. That takes no evaluation of the dynamics,
+and as many points as the pace needs there: its square nearly vanishes where a heavy load passes the place of its least
+inertia. Most steps are gone over as a whole: the points are at the same shares of each, where phi is a sum of
+accelerations with fixed weights. In a step with samples, or of several parts, phi is a polynomial.
 
 The weights with which accelerations are added up come from rational arithmetic. With the backward difference z
 (z a_n = a_n - a_(n-1)) and a step h, the time derivative is -ln(1 - z)/h, so that the velocity is h/(-ln(1 - z)) and
@@ -6,15 +12,9 @@ the position h^2/ln(1 - z)^2 times the acceleration. Their leading terms, 1/z an
 sum of all accelerations; the rest are differences of the last ones, and so weights for them. A factor (1 - z)^back
 gives the value that many steps before the last acceleration: -1 predicts the next step.
 
-Steps of uneven length are even in a time of the method's own, in which t' = sqrt(J): see `gauss_jackson`. What passes
-of t in a step is integrated by Gauss's formula. That takes no evaluation of the dynamics, and as many points as J needs
-there: it nearly vanishes where a heavy load passes the place of its least inertia. Most steps are gone over as a whole:
-its points are at the same shares of each, where phi is a sum of accelerations with fixed weights. In a step with
-samples, or of several parts, phi is a polynomial.
-
-A function of compiled code has the `form` of a scene, of which `Form` names the parts; the `line` of phi in a step, of
-which `_Line` does; and a share of the step that has `passed`. A `place` is phi, its rate in the method's own time, and
-how fast time passes in that.
+A function of compiled code has the method's `own` time, of which `OwnTime` names the parts; the `line` of phi in a
+step, of which `_Line` does; and a share of the step that has `passed`. A `node` is phi, its rate in the method's own
+time, and the pace.
 """
 
 import functools
@@ -26,8 +26,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 
-from mjbeer.simulation.kernels import FAILS_AT, compiled, forces, inner, see
-from mjbeer.theory.scene import Scene
+from mjbeer.integrators.dynamics import compiled, copy, inner
 
 COUNT = 13
 """Number of accelerations that are kept: the method has differences up to the twelfth."""
@@ -40,12 +39,13 @@ _MOST_POINTS = 12
 _ROUNDEST = 20.0
 """Largest size of the ellipse of `_bounds`: with a larger one, points are too few where phi is no line in the step."""
 _HIGHEST = 3.0
-"""Largest height [rad] of the complex angle at which J vanishes that makes a difference."""
+"""Largest height [rad] of the complex angle at which the pace vanishes that makes a difference."""
 _SEEN = 0.06**2
-"""Square of half of the largest angle [rad] between two looks at the forces, over its distance from that angle, or over
-1 rad: forces that are extreme between them are missed by 1e-3 of their change."""
-_SHARP = 1e-3
-"""Part of a step in which the moment is found, by a line, from when on rolling needs a pull or more friction."""
+"""Square of half of the largest angle [rad] between two states that are kept, over its distance from the angle at which
+the pace vanishes, or over 1 rad: a force that is extreme between them is missed by 1e-3 of its change."""
+SPARE = 512
+"""Rows of what is kept that are left free for the parts of one step: a load that turns by 4 rad past the place where a
+wheel of 1e-8 of its inertia leaves hardly any takes 400."""
 _FARTHEST, _SHORTEST = 2.0, 1e-9
 """Half of the angle [rad] by which a load may turn in a step, and the smallest part of a step. What needs more is no
 motion that the steps are short enough for."""
@@ -53,54 +53,33 @@ _PUNCTUAL, _ATTEMPTS = 3e-5, 5
 """Distance of a sample from its time, over a part's, after which one more attempt has all digits, as it cubes that; and
 the most attempts."""
 
-Form = namedtuple("Form", "base chord swing scale even uneven turns slope along across share height period bounds")
-Form.__doc__ = """J = base + chord sin^2(phi/2) + swing sin^2(phi), -V' = slope + along cos(phi) - across sin(phi).
+OwnTime = namedtuple("OwnTime", "even uneven turns height period bounds")
+OwnTime.__doc__ = """The pace is dt/ds = sqrt(even + uneven sin^2(turns phi)).
 
-The method's own time goes as fast as time where J is `scale`. J over that is `even` + `uneven` sin^2(`turns` phi), and
-vanishes at a complex angle of some `height` [rad] in each `period` [rad]. The `share` of the swing in u is u's change
-with sin(phi) [m]. There are no `bounds` if all steps are even; see `_bounds`.
+It vanishes at a complex angle of some `height` [rad] in each `period` [rad]. `bounds` are those of `_bounds`.
 """
 _Line = namedtuple("_Line", "curve first second step back")
 _Line.__doc__ = """Coefficients of phi between the steps, both sums, the step [s], and how many steps back it begins."""
 
 
-def form(scene: Scene, phi0: float = 0.0, precision: float = 0.0) -> Form:
-    """Return the form of a scene that starts at about `phi0` [rad].
+def own_time(even: float, uneven: float, turns: float, precision: float) -> OwnTime:
+    """Return a method's own time s with dt/ds = sqrt(even + uneven sin^2(turns phi)), which must be positive.
 
-    The time in a step is known to some `precision`, a share of it; for one of 0 all steps are even.
+    The time that passes in a step is known to some `precision`, a share of it. Whatever the pace, the motion is the
+    same; the nearer its square is to that of the load's inertia, the longer the steps may be.
     """
-    shape = scene.oscillator
-    uneven, turns = (shape.swing, 1.0) if shape.swing > 0 else (shape.chord, 0.5)
-    height = math.asinh(math.sqrt(shape.base / uneven)) / turns if uneven > 0 else _HIGHEST
-    scale = shape.base + uneven * math.sin(turns * phi0) ** 2
-    return Form(
-        base=shape.base,
-        chord=shape.chord,
-        swing=shape.swing,
-        scale=scale,
-        even=shape.base / scale,
-        uneven=uneven / scale,
-        turns=turns,
-        slope=shape.slope,
-        along=shape.depth * math.sin(shape.bottom),
-        across=shape.depth * math.cos(shape.bottom),
-        share=scene.load.moment / scene.effective_mass,
-        height=min(height, _HIGHEST),
-        period=math.pi / turns,
-        bounds=_bounds(precision),
-    )
+    height = math.asinh(math.sqrt(even / uneven)) / turns if uneven > 0 else _HIGHEST
+    return OwnTime(even, uneven, turns, min(height, _HIGHEST), math.pi / turns, _bounds(precision))
 
 
 @functools.lru_cache(maxsize=32)
 def _bounds(precision: float) -> np.ndarray:
-    """Return how far away J must vanish for each number of points, from 0, to have a `precision`; none for one of 0.
+    """Return how far away the pace must vanish for each number of points, from 0, to have a `precision`.
 
     That is the square of a complex angle's distance from the middle, over half of the angle between the ends. The error
     of Gauss's formula is the size of an ellipse to the power of minus twice the number of points. It has both ends as
-    foci, and J vanishes at an angle on it.
+    foci, and the pace vanishes at an angle on it.
     """
-    if precision == 0:
-        return np.empty(0)
     size = precision ** (-1 / (2 * np.arange(1, _MOST_POINTS + 1)))
     return np.append(np.inf, np.where(size > _ROUNDEST, np.inf, (size + 1 / size) ** 2 / 4))
 
@@ -160,7 +139,7 @@ for _number in range(1, _MOST_POINTS + 1):
     _POINTS[_number, :_number], _WEIGHTS[_number, :_number] = leggauss(_number)
     _POINTS[_number, :_number] += 1
 _POINTS, _WEIGHTS = _POINTS / 2, _WEIGHTS / 2
-_PLACES = (np.vander(0.5 - _POINTS.ravel(), COUNT + 2) @ _BETWEEN.T).reshape(*_POINTS.shape, COUNT)
+_WITHIN = (np.vander(0.5 - _POINTS.ravel(), COUNT + 2) @ _BETWEEN.T).reshape(*_POINTS.shape, COUNT)
 """`weights` of places at these points of the step that ends `LAG` steps before the last one."""
 _END_RATE, _END_PLACE = weights(1, LAG), weights(2, LAG)
 
@@ -182,12 +161,10 @@ def weighted(weights, accelerations, end):
 
 
 @compiled(forceinline=True)
-def pace(form, phi):
-    """Return how fast time passes in the method's own time, at an angle."""
-    if form.bounds.size == 0:
-        return 1.0
-    sin = math.sin(form.turns * phi)
-    return math.sqrt(form.even + form.uneven * sin * sin)
+def pace(own, phi):
+    """Return dt/ds, how fast time passes in the method's own time, at an angle."""
+    sin = math.sin(own.turns * phi)
+    return math.sqrt(own.even + own.uneven * sin * sin)
 
 
 @inner
@@ -202,51 +179,49 @@ def _bend(line, history, end):
 
 
 @inner
-def _place(form, line, passed):
-    """Return the place in a step."""
+def _node(own, line, passed):
+    """Return the node in a step."""
     x, place, rate = line.back - passed - LAG - 0.5, 0.0, 0.0
     for row in range(COUNT + 2):
         rate = rate * x + place
         place = place * x + line.curve[row]
     phi = line.step * line.step * (place + line.second - (1 + line.back - passed) * line.first)
-    return phi, line.step * (line.first - rate), pace(form, phi)
+    return phi, line.step * (line.first - rate), pace(own, phi)
 
 
 @inner
-def _count(form, before, after, duration, seen):
-    """Return how many points a part needs, between two places some `duration` apart in the method's own time.
+def _count(own, before, after, duration, seen):
+    """Return how many points a part needs, between two nodes some `duration` apart in the method's own time.
 
-    There are 0 if too many would be needed, or if a record is to see shorter parts, and -1 if the steps are not short
+    There are 0 if too many would be needed, or if shorter parts are to be kept, and -1 if the steps are not short
     enough for the motion.
     """
-    if form.bounds.size == 0:
-        return 1
     middle, half = (before[0] + after[0]) / 2, max(abs(before[1]), abs(after[1])) * duration / 2
     if not half < _FARTHEST:
         return -1
-    aside = middle - form.period * np.rint(middle / form.period)
-    away, half = aside * aside + form.height * form.height, half * half
+    aside = middle - own.period * np.rint(middle / own.period)
+    away, half = aside * aside + own.height * own.height, half * half
     if half > seen * min(away, 1.0):
         return 0
     for count in range(1, _MOST_POINTS + 1):
-        if away >= form.bounds[count] * half:
+        if away >= own.bounds[count] * half:
             return count
     return 0
 
 
 @inner
-def _whole(form, history, end, line, count):
+def _whole(own, history, end, line, count):
     """Return the time [s] that passes in the step that ends `LAG` steps before the last one, by so many points."""
     passed = 0.0
     for k in range(count):
-        place = line.second - (LAG + 2 - _POINTS[count, k]) * line.first + weighted(_PLACES[count, k], history[0], end)
-        passed += _WEIGHTS[count, k] * pace(form, line.step * line.step * place)
+        place = line.second - (LAG + 2 - _POINTS[count, k]) * line.first + weighted(_WITHIN[count, k], history[0], end)
+        passed += _WEIGHTS[count, k] * pace(own, line.step * line.step * place)
     return line.step * passed
 
 
 @inner
-def _duration(form, line, begin, end, count, work):
-    """Return the time [s] that passes between two places in a step, by so many points; no number without points."""
+def _duration(own, line, begin, end, count, work):
+    """Return the time [s] that passes between two shares of a step, by so many points; no number without points."""
     if count <= 0:
         return np.nan
     passed, length = 0.0, end - begin
@@ -257,54 +232,52 @@ def _duration(form, line, begin, end, count, work):
             place = place * x + line.curve[row]
         work[k] = line.second + place - (LAG + 1.5 + x) * line.first
     for k in range(count):
-        passed += _WEIGHTS[count, k] * pace(form, line.step * line.step * work[k])
+        passed += _WEIGHTS[count, k] * pace(own, line.step * line.step * work[k])
     return line.step * length * passed
 
 
 @inner
-def _write(form, sums, place, since, drawn, out):
-    """Write the state at a place, `since` [s] after that of the `sums`, to `out`.
+def _write(share, sums, node, since, pulled, out):
+    """Write the state at a node, `since` [s] after that of the `sums`, to `out`.
 
-    The axis less its swing has the acceleration `drawn` [m/s^2].
+    The slide less a `share` of sin(phi) has the acceleration `pulled` [m/s^2].
     """
-    phi, rate, last = place[0], place[1] / place[2], out.size // 2 - 1
+    phi, rate, last = node[0], node[1] / node[2], out.size // 2 - 1
     out[last], out[2 * last + 1] = phi, rate
     if last > 0:
-        out[0] = sums[0, 3] + since * (sums[0, 4] + since * drawn / 2) + form.share * math.sin(phi)
-        out[1 + last] = sums[0, 4] + since * drawn + form.share * math.cos(phi) * rate
+        out[0] = sums[0, 3] + since * (sums[0, 4] + since * pulled / 2) + share * math.sin(phi)
+        out[1 + last] = sums[0, 4] + since * pulled + share * math.cos(phi) * rate
 
 
 @inner
-def _find(form, line, part, count, since, work):
-    """Return the place `since` [s] after the beginning of a `part`.
+def _find(own, line, part, count, since, work):
+    """Return the node `since` [s] after the beginning of a `part`.
 
     That is the begin and the end of it, its duration [s], and the pace at both. The first guess is a cubic; an attempt
-    takes the change of the pace into account, 1/2 J'/J phi' of it.
+    takes the change of the pace into account.
     """
     left, right, span, slower, faster = part
     length, share = right - left, since / span
-    if form.bounds.size == 0:
-        return _place(form, line, left + length * share)
     unit = span / (line.step * length)
     first, last = unit / slower, unit / faster
     passed = left + length * share * (first + share * (3 - 2 * first - last + share * (first + last - 2)))
     for _ in range(_ATTEMPTS):
         if share < 0.5:
-            late = since - _duration(form, line, left, passed, count, work)
+            late = since - _duration(own, line, left, passed, count, work)
         else:
-            late = since - span + _duration(form, line, passed, right, count, work)
-        phi, rate, fast = _place(form, line, passed)
-        grows = form.uneven * form.turns * math.sin(2 * form.turns * phi) * rate / (2 * fast * fast)
+            late = since - span + _duration(own, line, passed, right, count, work)
+        phi, rate, fast = _node(own, line, passed)
+        grows = own.uneven * own.turns * math.sin(2 * own.turns * phi) * rate / (2 * fast * fast)
         ahead = late / fast
         passed += ahead * (1 - grows * ahead / 2) / line.step
         if abs(late) <= _PUNCTUAL * span:
             break
-    return _place(form, line, passed)
+    return _node(own, line, passed)
 
 
 @inner
-def add(sums, row, term):
-    """Add a term to a sum, and the rounding of the addition before (Kahan)."""
+def kahan_add(sums, row, term):
+    """Add a term to a sum, and the rounding of the addition before."""
     term -= sums[1, row]
     total = sums[0, row] + term
     sums[1, row] = (total - sums[0, row]) - term
@@ -312,90 +285,82 @@ def add(sums, row, term):
 
 
 @inner
-def _go_on(sums, span, drawn):
-    """Add a `span` [s] to the time, and what it adds to the axis less its swing."""
-    add(sums, 2, span)
-    add(sums, 3, span * (sums[0, 4] + span * drawn / 2))
-    add(sums, 4, span * drawn)
+def _go_on(sums, span, pulled):
+    """Add a `span` [s] to the time, and what it adds to the slide less its share of sin(phi)."""
+    kahan_add(sums, 2, span)
+    kahan_add(sums, 3, span * (sums[0, 4] + span * pulled / 2))
+    kahan_add(sums, 4, span * pulled)
 
 
 @inner
-def _leaves(record, place):
-    """Return whether rolling ends at a place: it is not possible there, and was so at all that a `record` has seen."""
-    numbers, found = record
-    if found.size == 0 or found[FAILS_AT] < np.inf:
-        return False
-    rate = place[1] / place[2]
-    return forces(numbers, math.sin(place[0]), math.cos(place[0]), rate * rate)[2] < 0
+def dense_output(own, share, sums, node, history, end, back, step, work, times, sample, samples, kept, row):
+    """Go on to the step that many steps `back`: fill in the samples on the way, and keep states of it.
 
-
-@inner
-def read_off(form, sums, node, history, end, back, step, work, state, times, sample, samples, record):
-    """Go on to the step that many steps `back`: fill in the samples and the `record` on the way.
-
-    Return the next sample. `sums` and `history` are those of `gauss_jackson`; `node` is the place at the step before.
-    `work` is space for points and coefficients, and `state` for a state.
+    Return the next sample and the next row of what is kept. `sums` and `history` are those of `gauss_jackson`; `node`
+    is that of the step before. `work` is space for points and coefficients.
     """
-    numbers, found = record
     if sample == times.size:
-        return sample
-    if form.bounds.size == 0 and found.size == 0 and times[sample] > (sums[0, 2] + step) * (1 + 1e-14):
-        _go_on(sums, step, (history[1, end - 2 - back] + history[1, end - 1 - back]) / 2)
-        return sample
+        return sample, row
     line, before = _Line(work[1], sums[0, 0], sums[0, 1], step, back + 1.0), (node[0], node[1], node[2])
-    span, seen = np.nan, _SEEN if found.size > 0 else np.inf
+    span, seen = np.nan, _SEEN if kept[0].size > 0 else np.inf
     if back == LAG:
         phi = step * step * (line.second - line.back * line.first + weighted(_END_PLACE, history[0], end))
-        after = phi, step * (line.first + weighted(_END_RATE, history[0], end)), pace(form, phi)
-        count = _count(form, before, after, step, seen)
+        after = phi, step * (line.first + weighted(_END_RATE, history[0], end)), pace(own, phi)
+        count = _count(own, before, after, step, seen)
         if count > 0:
-            span = _whole(form, history, end, line, count)
+            span = _whole(own, history, end, line, count)
     else:
         _bend(line, history, end)
-        after = _place(form, line, 1.0)
+        after = _node(own, line, 1.0)
     # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
-    drawn = (before[2] * history[1, end - 2 - back] + after[2] * history[1, end - 1 - back]) / (before[2] + after[2])
-    if times[sample] > (sums[0, 2] + span) * (1 + 1e-14) and not _leaves(record, after):
-        if found.size > 0:
-            _write(form, sums, after, span, drawn, state)
-            see(numbers, found, sums[0, 2] + span, state)
-        _go_on(sums, span, drawn)
+    pulled = (before[2] * history[1, end - 2 - back] + after[2] * history[1, end - 1 - back]) / (before[2] + after[2])
+    if times[sample] > (sums[0, 2] + span) * (1 + 1e-14):
+        if kept[0].size > 0:
+            kept[0][row] = sums[0, 2] + span
+            _write(share, sums, after, span, pulled, kept[1][row])
+            row += 1
+        _go_on(sums, span, pulled)
     else:
         if back == LAG:
             _bend(line, history, end)
-        motion = span, drawn, seen
-        sample = _by_parts(form, sums, line, before, after, motion, work[0], state, times, sample, samples, record)
+        motion = span, pulled, seen
+        sample, row = _by_parts(
+            own, share, sums, line, before, after, motion, work[0], times, sample, samples, kept, row
+        )
     node[0], node[1], node[2] = after
-    return sample
+    return sample, row
 
 
 @inner
-def _by_parts(form, sums, line, before, at_end, motion, work, state, times, sample, samples, record):
-    """Go on through a step in parts, from one place to another, and return the next sample; see `read_off`.
+def _by_parts(own, share, sums, line, before, at_end, motion, work, times, sample, samples, kept, row):
+    """Go on through a step in parts, from one node to another; see `dense_output`.
 
-    The `motion` is the duration of the step [s], if it is known, what is drawn, and the size of what is seen.
+    The `motion` is the duration of the step [s], if it is known, the slide's acceleration, and the size of what is
+    kept.
     """
-    numbers, found = record
-    span, drawn, seen = motion
+    span, pulled, seen = motion
     left, right = 0.0, 1.0
     while left < 1.0 and sample < times.size:
-        after = at_end if right == 1.0 else _place(form, line, right)
-        count = _count(form, before, after, line.step * (right - left), seen)
-        if (count == 0 and right - left > _SHORTEST) or (right - left > _SHARP and _leaves(record, after)):
-            right = (left + right) / 2  # more points than there are, or the moment is within a shorter part
+        after = at_end if right == 1.0 else _node(own, line, right)
+        count = _count(own, before, after, line.step * (right - left), seen)
+        if count == 0 and right - left > _SHORTEST:
+            right = (left + right) / 2
             continue
         if not (right - left == 1.0 and span > 0):
-            span = _duration(form, line, left, right, count, work)
+            span = _duration(own, line, left, right, count, work)
         earlier, part = sums[0, 2], (left, right, span, before[2], after[2])
         while sample < times.size and times[sample] <= (earlier + span) * (1 + 1e-14):
             since = times[sample] - earlier
-            _write(form, sums, _find(form, line, part, count, since, work), since, drawn, samples[sample])
+            _write(share, sums, _find(own, line, part, count, since, work), since, pulled, samples[sample])
             sample += 1
-        if found.size > 0 and sample < times.size:
-            _write(form, sums, after, span, drawn, state)
-            see(numbers, found, earlier + span, state)
-        elif found.size > 0:  # the run ends within this part
-            see(numbers, found, times[-1], samples[-1])
-        _go_on(sums, span, drawn)
+        if row < kept[0].size:
+            if sample < times.size:
+                kept[0][row] = earlier + span
+                _write(share, sums, after, span, pulled, kept[1][row])
+            else:  # the run ends within this part
+                kept[0][row] = times[-1]
+                copy(samples[-1], kept[1][row])
+            row += 1
+        _go_on(sums, span, pulled)
         left, right, before = right, 1.0, after
-    return sample
+    return sample, row

@@ -1,0 +1,161 @@
+"""What mjbeer's own integrators share in compiled code: MuJoCo's accelerations, and a run in blocks of steps.
+
+numba, which compiles it, takes longer to import than all else together: what steps with MuJoCo's integrators alone
+does not import this.
+"""
+
+import ctypes
+from contextlib import nullcontext
+from functools import partial
+from typing import Any
+
+import mujoco
+import numpy as np
+from llvmlite import ir
+from numba import njit, types
+from numba.core import event
+from numba.extending import intrinsic
+
+from mjbeer.exceptions import DivergenceError
+from mjbeer.integrators import Observer
+from mjbeer.model.engine import address, quiet, untimed
+
+DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
+"""The statuses with which a kernel can end."""
+compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False)
+"""Compiles what allocates nothing, so that arrays need not be counted: that takes a seventh of the time of a run."""
+inner = partial(compiled, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
+"""Compiles what compiled code alone may call, into its callers: a call with so many arguments takes as long as what it
+does, and an entry for Python a seventh of the compiler's time."""
+_CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+_ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
+_SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
+"""What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
+the same numbers to the last bit, in three quarters of the time."""
+_WITHOUT_PASSIVE = (
+    "mj_kinematics", "mj_comPos", "mj_tendon", "mj_crb", "mj_tendonArmature", "mj_factorM", "mj_comVel", "mj_rne",
+    "mj_tendonBias", "mj_fwdAcceleration",
+)  # fmt: skip
+"""What that leaves of these in a model that has no damping either: another quarter less. Without tendons, those of the
+tendons are left out, too."""
+_COMPILING = "mjbeer: compiling this integrator for this machine, once: up to 4 s"
+
+
+class _Compiling(event.Listener):
+    """Says once, if somebody may see it, that numba compiles; what is read from its cache is not compiled."""
+
+    said = False
+
+    def on_start(self, _: Any) -> None:
+        from mjbeer.output import terminal
+
+        if not _Compiling.said and terminal.is_seen():
+            _Compiling.said = True
+            terminal.say(_COMPILING)
+
+    def on_end(self, _: Any) -> None: ...
+
+
+def run_blocks(
+    name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, observer: Observer | None
+) -> int:
+    """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
+
+    It takes `fixed` arguments, the last of which has room for the steps that the `observer` is shown, and a `place`,
+    which begins with the time [s]. It returns the status, the new place, and how many evaluations and kept rows there
+    were.
+
+    Raises:
+      DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
+    """
+    status, total = BLOCK_END, 0
+    heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
+    with quiet(), untimed(), heard:
+        while status == BLOCK_END:
+            if total > limit:
+                raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
+            status, place, evaluations, count = kernel(*fixed, place)
+            total += evaluations
+            if observer and count:
+                observer(*(rows[:count] for rows in fixed[-1]))
+    if status != DONE:
+        cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
+        raise DivergenceError(f"the {name} run diverged at t = {place[0]:.6g} s: {cause}")
+    return total
+
+
+@intrinsic
+def call_c(typing_context, function, model, data, flag, result):
+    """Call the C function at the address `function`; no address is compiled in, so that caching works.
+
+    It gets two pointers, a number and a third pointer. A function that takes fewer does not look at the others: those
+    that MuJoCo is built for pass them in registers.
+    """
+
+    def generate(context, builder, signature, arguments):
+        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
+        function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
+        builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
+        return context.get_dummy_value()
+
+    return types.void(types.intp, types.intp, types.intp, types.intp, types.intp), generate
+
+
+class Dynamics:
+    """The forward dynamics of a model of slides and hinges, as kernels evaluate it.
+
+    Without `data` of the model, in its initial state, it makes its own.
+    """
+
+    def __init__(self, model: mujoco.MjModel, data: mujoco.MjData | None = None) -> None:
+        self._model, self.data = model, mujoco.MjData(model) if data is None else data
+        data, self._actuated = self.data, model.nu > 0 and not model.opt.disableflags & _ACTUATION
+        constant = not (model.na or model.actuator_gainprm.any() or model.actuator_biasprm[:, 1:].any())
+        smooth = bool(model.opt.disableflags & _CONSTRAINT) and (not self._actuated or constant)
+        needed, names = np.ones(model.nq, np.bool_), ("mj_forward",)
+        if smooth:
+            names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER else _SMOOTH
+            names = tuple(name for name in names if model.ntendon or "endon" not in name)
+            if "slide" in (joints := [model.joint(joint).name for joint in range(model.njnt)]):
+                # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
+                # from positions in the world, whose rounding would hide a short arm far from the origin.
+                needed[joints.index("slide")] = False
+        bias = data.qfrc_bias.__array_interface__["data"][0]
+        functions = np.array([(address(name), bias if name == "mj_tendonBias" else 0) for name in names])
+        views = data.qpos, data.qvel, data.qacc_smooth if smooth else data.qacc, needed
+        self.kernel = (functions, model._address, data._address, bias), views
+        """Addresses and views by which kernels evaluate the accelerations, as `derivative` takes them."""
+        self.begin()
+
+    def begin(self) -> None:
+        """Compute the actuators' forces of a model that has changed, which a smooth one then takes unchanged."""
+        if self._actuated and len(self.kernel[0][0]) > 1:
+            mujoco.mj_forward(self._model, self.data)
+
+
+@compiled(forceinline=True)
+def derivative(pointers, views, state, out):
+    """Write the time derivative of a state to `out`.
+
+    `pointers` are the addresses of the functions that compute an acceleration, with the third argument of each, of
+    model and data, and of the forces in which mj_rne puts its result; `views` are qpos, qvel and acceleration in the
+    data, and which of qpos are needed.
+    """
+    functions, model, data, bias = pointers
+    qpos, qvel, qacc, needed = views
+    n = qpos.size
+    for i in range(n):
+        qpos[i] = state[i] if needed[i] else 0.0
+        qvel[i] = state[n + i]
+    for k in range(len(functions)):
+        call_c(functions[k, 0], model, data, functions[k, 1], bias)
+    for i in range(n):
+        out[i] = qvel[i]
+        out[n + i] = qacc[i]
+
+
+@inner
+def copy(values, out):
+    """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
+    for i in range(values.size):
+        out[i] = values[i]
