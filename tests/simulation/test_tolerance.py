@@ -1,5 +1,6 @@
 """tolerance: the true error is below it at every sample, the estimate bounds it, and what cannot be met is an error."""
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,8 +10,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Load, Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer import Can, Load, Scene, exact, frozen, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, ToleranceError
+from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.model.build import build
 from mjbeer.model.state import read
@@ -245,12 +247,46 @@ def test_the_forces_of_all_steps_are_those_of_the_motion() -> None:
     assert run.record.needed == pytest.approx(truth.forces.needed.max(), rel=5e-3)
 
 
-def test_two_runs_that_err_alike_by_chance_are_not_taken_for_right() -> None:
-    """Where J nearly vanishes: 2.8 times as far off as it should have been."""
-    scene = pendulum(0.09356407173243433, 1.0327759696048296e-06, 0.2, 0.020590168436111955, radius=0.1)
-    tolerance, end = 4.739352222043245e-06, 6.057825328153827
-    run = simulate(scene, end, 0.4136957499445644, tolerance=tolerance, times=np.linspace(0, end, 1001))
-    assert error(run) <= tolerance
+BEER = liquid("beer", 0.1862714527002634, 0.5462536680818177, METAL)
+ALIKE = {
+    "J nearly vanishes: 2.8 times as far off as it should have been": (
+        pendulum(0.09356407173243433, 1.0327759696048296e-06, 0.2, 0.020590168436111955, radius=0.1),
+        *(6.057825328153827, 0.4136957499445644, 4.739352222043245e-06, 1001),
+    ),
+    "both runs step over the corner of w |w|: 2.9 times": (
+        *(BEER, 1.2311211448353625, -2.7988929561755853, 6.396292254614532e-07, 1232),
+    ),
+    "near an extremum of the error over the timestep: 47 times": (
+        *(pendulum(incline=0.11220960980692374), 6.9936464232124855, 3.083032103894576, 1.8683238169061503e-06, 200),
+    ),
+}
+
+
+@pytest.mark.parametrize(("scene", "end", "phi0", "tolerance", "samples"), ALIKE.values(), ids=ALIKE)
+def test_two_runs_that_err_alike_are_not_taken_for_right(
+    scene: Scene, end: float, phi0: float, tolerance: float, samples: int
+) -> None:
+    assert_kept(simulate(scene, end, phi0, tolerance=tolerance, times=np.linspace(0, end, samples)), tolerance)
+
+
+def test_a_tolerance_near_rounding_is_kept_where_the_damping_has_corners() -> None:
+    """It was refused: two runs agreed, and the one before was far off."""
+    assert_kept(simulate(BEER, 1.2, -2.8, tolerance=1e-11), 1e-11)
+
+
+def test_a_rotation_is_stepped_through_again_with_shorter_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An even rotation takes steps of any length: two runs had 507 and 496 evaluations, and nearly the same error."""
+    runs, run = [], Dop853.run
+
+    def noted(method: Dop853, *arguments: object) -> np.ndarray:
+        found = run(method, *arguments)
+        runs.append(method.longest)
+        return found
+
+    monkeypatch.setattr(Dop853, "run", noted)
+    simulate(frozen(can=METAL), 1.0, 1.0, 100.0, rolling="equality", tolerance=1e-3, times=[1.0])
+    assert len(runs) >= 2
+    assert all(later <= earlier / 1.2 for earlier, later in itertools.pairwise(runs))
 
 
 @pytest.mark.parametrize("scene", [sliding(), frozen()])

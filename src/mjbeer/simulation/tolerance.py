@@ -147,6 +147,7 @@ class Solver:
                 f'too many over {times[-1]:.6g} s; integrator="implicitfast" has longer ones, and a frozen load is the '
                 "limit",
             )
+        self._left = _EVALUATIONS
         far = (times[1:] - times[:-1]).max(initial=times[0]) > times[-1] * _PARTS[1]
         along = np.sort(np.concatenate([times, times[-1] * _PARTS])) if far else times
         found = None
@@ -178,10 +179,12 @@ class Solver:
             for _ in range(_TRIES):
                 if coarse is None:
                     nudged, begun, beside = False, 0.0, start + share * self._nudge
-                    coarse = method.run(beside, some_times, timestep, own, None, push, _EVALUATIONS)
+                    coarse = method.run(beside, some_times, timestep, own, None, push, self._left / 2)
+                    self._left -= method.evaluations
                 timestep /= _FINER
                 recorder, beside = SmoothRecorder(self._scene, friction), start + nudged * share * self._nudge
-                fine = method.run(beside, times, timestep, own, recorder, nudged * push, _EVALUATIONS)
+                fine = method.run(beside, times, timestep, own, recorder, nudged * push, self._left / 2)
+                self._left -= method.evaluations
                 some = np.ascontiguousarray(fine[compared])
                 distance, record = _distance(self._angles, coarse, some, start), recorder.record
                 begun = begun or distance
@@ -199,17 +202,18 @@ class Solver:
 
     def _by_dop853(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return the solution by ever finer runs of DOP853."""
-        integrator, limit, left = Dop853(self._model, self._dynamics), math.inf, _EVALUATIONS
-        longest = math.inf
+        integrator, limit, longest = Dop853(self._model, self._dynamics), math.inf, math.inf
 
         def run(start: np.ndarray, local: float, recorder: Recorder | None = None) -> np.ndarray:
-            nonlocal limit, left, longest
+            nonlocal limit, longest
             try:
-                states = integrator.run(start, times, None, local, self._scale, min(limit, left), longest, recorder)
+                states = integrator.run(
+                    start, times, None, local, self._scale, min(limit, self._left), longest, recorder
+                )
             except DivergenceError as error:
                 raise _not_reached(tolerance, str(error)) from error
-            limit, left = _MORE * integrator.evaluations, left - integrator.evaluations
-            longest = integrator.longest / _SHORTER
+            self._left -= integrator.evaluations
+            limit, longest = _MORE * integrator.evaluations, integrator.longest / _SHORTER
             return states
 
         local = max(min(_FIRST * tolerance, _COARSEST), _RATIO * self._smallest)
