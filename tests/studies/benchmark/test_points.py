@@ -60,11 +60,13 @@ def stored() -> Benchmark:
 
 @pytest.mark.slow
 def test_the_study_that_comes_with_mjbeer_is_of_this_code(stored: Benchmark) -> None:
-    """On a few of its points, to the digits that rounding leaves."""
+    """On a few of its points, to the digits that rounding leaves; some are of an earlier one (see its page)."""
     assert set(stored.cases) <= set(CASES)
     compared = 0
     for old in stored.points[:: len(stored.points) // 24]:
-        if old.failure or not 1e-10 < old.error < 1e-2 or not old.method:
+        if old.failure or not 1e-10 < old.error < 1e-2 or old.method in ("", "GaussJackson"):
+            continue
+        if (old.method, old.parameter) == ("mjbeer", "tolerance"):
             continue
         case, new = CASES[old.case], Point(old.case, old.model, old.method, old.parameter, old.value)
         Rung(case, new).measure(case.truth())
