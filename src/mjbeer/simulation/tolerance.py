@@ -43,6 +43,11 @@ includes the effect of a small change of the start, which is large beside a sepa
 _PUSH = 2e-15
 """Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows how much a small change of the energy
 on the way matters, as for a swing that comes near a barrier's top, where the start does not."""
+_NUDGED = 3e-12
+"""Tolerance below which the nudge of Gauss-Jackson is as much smaller, as it would be all of the distance."""
+_ROUNDING = 0.3
+"""Effect of rounding over that of a whole nudge of Gauss-Jackson, at most but for one of twenty random motions beside a
+separatrix, where it was up to 0.93."""
 _ROUNDING_OVER_NUDGE = 3 / 40
 """Estimated effect of rounding over that of the nudge: a run's rounding is like a nudge of some 1e-15; safety is 3."""
 _CANCELLED = 0.1
@@ -163,39 +168,34 @@ class Solver:
     ) -> Solution | None:
         """Return the solution, or None if it is not within the `tolerance` [rad].
 
-        The first run is nudged, at its start and all along. Where rounding counts, every second one is.
+        The coarser of two runs is nudged, at its start and all along, both of which change its energy the same way.
         """
         stride = 1 if self._rounded else math.ceil(len(times) / _COMPARED)
         compared = slice((len(times) - 1) % stride, None, stride)  # with the last one
         some_times = np.ascontiguousarray(times[compared])
-        safety = (_BRIEF if self._rounded else 1.0) * (1.0 if tolerance > _ASYMPTOTIC[0] else _SAFETY_BY_CHANCE)
+        share = 1.0 if self._rounded else min(1.0, tolerance / _NUDGED)
+        by_chance = _SAFETY_BY_CHANCE if tolerance <= _ASYMPTOTIC[0] else 1.0
+        safety = max((_BRIEF if self._rounded else 1.0) * by_chance, _ROUNDING / share)
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
         timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
         own = pendulum_time(self._scene, phi0, _PRECISION * tolerance)
-        share = 1.0 if self._rounded else min(1.0, tolerance / _ASYMPTOTIC[0])
-        push = share * _PUSH * (self._scale[-1] / self._scale[method.size - 1]) ** 2
-        coarse, nudged, begun = None, False, 0.0
+        nudge, push = share * self._nudge, share * _PUSH * (self._scale[-1] / self._scale[method.size - 1]) ** 2
+        gain = float(self._scene.oscillator.acceleration(phi0, 0.0))
+        energy = phi_dot0 * nudge[-1] - gain * nudge[method.size - 1]  # by which the nudge changes it, over J
+        push = math.copysign(push, energy * (phi_dot0 or gain))
         try:
             for _ in range(_TRIES):
-                if coarse is None:
-                    nudged, begun, beside = False, 0.0, start + share * self._nudge
-                    coarse = method.run(beside, some_times, timestep, own, None, push, self._left / 2)
-                    self._left -= method.evaluations
-                timestep /= _FINER
-                recorder, beside = SmoothRecorder(self._scene, friction), start + nudged * share * self._nudge
-                fine = method.run(beside, times, timestep, own, recorder, nudged * push, self._left / 2)
+                coarse = method.run(start + nudge, some_times, timestep, own, None, push, self._left / 2)
                 self._left -= method.evaluations
-                some = np.ascontiguousarray(fine[compared])
-                distance, record = _distance(self._angles, coarse, some, start), recorder.record
-                begun = begun or distance
-                drift = max(_DRIFT * record.swing_error, record.axis_error)
-                error = max(safety * distance, drift, _ROUNDING_OVER_NUDGE / share * begun)
+                recorder = SmoothRecorder(self._scene, friction)
+                fine = method.run(start, times, timestep / _FINER, own, recorder, 0.0, self._left / 2)
+                self._left -= method.evaluations
+                distance = _distance(self._angles, coarse, np.ascontiguousarray(fine[compared]), start)
+                drift = max(_DRIFT * recorder.record.swing_error, recorder.record.axis_error)
+                error = max(safety * distance, drift)
                 if error <= tolerance:
-                    return Solution(fine, record, error, GAUSS_JACKSON)
-                if safety * distance <= _FINER**_ORDER * tolerance:  # the next run would reach it
-                    coarse, nudged = some, self._rounded and not nudged
-                else:
-                    coarse, timestep = None, timestep * _FINER * (tolerance / (safety * distance)) ** (1 / _ORDER)
+                    return Solution(fine, recorder.record, error, GAUSS_JACKSON)
+                timestep *= min(1 / _FINER, (tolerance / (safety * distance)) ** (1 / _ORDER))
         except DivergenceError:
             pass
         return None
