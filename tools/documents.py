@@ -50,7 +50,7 @@ def counts() -> dict[str, Any]:
     return json.loads(COUNTS.read_text(encoding="utf-8"))
 
 
-def table(columns: Sequence[str], lines: Sequence[Sequence[str]], left: tuple[int, ...] = (0,)) -> str:
+def table(columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
     """Return a table as Markdown."""
     return Table("", columns, lines, left).markdown(title=False)
 
