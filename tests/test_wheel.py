@@ -94,7 +94,7 @@ def test_the_wheel_holds_the_package_and_all_templates(wheel: pathlib.Path) -> N
     expected = {f"mjbeer/{each.as_posix()}" for each in templates}
     expected |= {each.as_posix() for each in package if each.parent.name != "__pycache__"}
     assert {each.suffix or each.name for each in templates} == {".xml", ".obj", ".md", ".png", "LICENSE"}
-    assert {"mjbeer/py.typed", "mjbeer/studies/benchmark/study.jsonl"} < expected
+    assert {"mjbeer/py.typed", "mjbeer/studies/benchmark/study.json"} < expected
     assert {name for name in zipfile.ZipFile(wheel).namelist() if name.startswith("mjbeer/")} == expected
 
 

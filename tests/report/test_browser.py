@@ -36,7 +36,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     """Where the page is, with films of a second, and with a few misprints: axe-core looks at every letter for long."""
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("mjbeer.paper.stories.stories", pages.stories)
+        patch.setattr("mjbeer.paper.stories.STORIES", pages.stories())
         pages.fill(folder, encoded=True)
         text = page.html(folder, pages.validation(LONGEST), quick=False, not_drawn="")
     (folder / "index.html").write_text(text)

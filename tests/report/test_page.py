@@ -15,15 +15,15 @@ from mjbeer.cli.app import main
 from mjbeer.drawing.film import Take
 from mjbeer.output import files
 from mjbeer.paper import stories
-from mjbeer.paper.row import Misprint
+from mjbeer.paper.claim import Misprint
 from mjbeer.report import films, formulas, page
-from mjbeer.studies.benchmark import diagrams
-from mjbeer.studies.stability import stiff_maps
+from mjbeer.studies.benchmark import work_precision
+from mjbeer.studies.stability import stability_maps
 from tests.support import pages, stubs
 from tests.support.pages import Page
 
 SECTIONS = ["verdict", "races", "scenes", "errors", "stability", "stories", "misprints", "machine"]
-MISPRINTS = [row.misprint for row in paper.rows() if row.misprint]
+MISPRINTS = [row.misprint for row in paper.claims() if row.misprint]
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Generator[pathlib.Path]:
     """The files of a report with two stories and a race."""
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stories, "stories", pages.stories)
+        patch.setattr(stories, "STORIES", pages.stories())
         pages.fill(folder)
         yield folder
 
@@ -102,8 +102,11 @@ def test_a_plot_has_its_title_as_heading_opens_large_and_its_points_tell_what_th
 def test_the_plots_of_a_page_are_those_that_are_drawn_for_it(
     folder: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(diagrams, "draw", lambda study, path: files.write(path.with_name(f"{path.name}.svg"), ""))
-    monkeypatch.setattr(stiff_maps, "draw", lambda path, *_, **__: files.write(path.with_name(f"{path.name}.svg"), ""))
+    def draw(path: pathlib.Path) -> None:
+        files.write(path.with_name(f"{path.name}.svg"), "")
+
+    monkeypatch.setattr(work_precision, "draw", lambda study, path: draw(path))
+    monkeypatch.setattr(stability_maps, "draw", lambda path, **_: draw(path))
     for plot in page.plots(tmp_path):
         plot.write()
     assert {each.name for each in tmp_path.iterdir()} == {each.name for each in (folder / "plots").iterdir()}
@@ -126,15 +129,15 @@ def test_a_quick_page_has_no_films_of_stories_and_says_so(folder: pathlib.Path) 
 def test_the_misprints_have_their_kinds_the_paper_s_words_and_the_numbers_of_the_findings(
     text: str, read: Page
 ) -> None:
-    found = pages.validation().findings
+    found = pages.validation().audit
     numbers = [float(element.attributes["value"]) for element in read.all("data")]
-    assert numbers == [number for finding in found for number in (finding.printed, finding.right)]
+    assert numbers == [number for finding in found for number in (finding.values["printed"], finding.error)]
     told = [element.text for element in read.all("data")]
     assert told[:4] == ["1.3 %", "1.7\u2009·\u200910\N{MINUS SIGN}9", "2.5 %", "3.4\u2009·\u200910\N{MINUS SIGN}9"]
     kinds = [element.text for element in read.all("span") if element.attributes.get("class") == "kind"]
     assert kinds == [f"{each.kind} of {each.of}" if each.of else each.kind for each in MISPRINTS]
     assert "consequence of (39)" in kinds
-    quotes = [row.quote for row in paper.rows() if row.misprint and row.quote]
+    quotes = [row.quote for row in paper.claims() if row.misprint and row.quote]
     assert [element.text for element in read.all("blockquote")] == [f"“{quote}”" for quote in quotes]
     (found_line,) = (each.text for each in read.all("li") if "The audit measured" in each.text)
     assert " ".join(found_line.split()).startswith(
@@ -168,7 +171,7 @@ def test_letters_and_numbers_of_the_audit() -> None:
 
 def test_the_verdict_has_its_tables_and_what_failed(text: str, read: Page) -> None:
     (verdict,) = (element for element in read.all("p") if element.attributes.get("class", "").startswith("verdict"))
-    assert verdict.text.startswith("1 of 2 checks and 25 of 25 rows of the audit passed")
+    assert verdict.text.startswith("1 of 2 checks and 25 of 25 claims of the paper passed")
     assert verdict.attributes["class"] == "verdict failed"
     assert {"fine", "a <stub>", "φ₀²"} <= {element.text for element in read.all("td")}
     assert [element.text for element in read.all("strong")] == ["FAILED:", "FAIL"]

@@ -17,7 +17,7 @@ from mjbeer.output import terminal
 from tests.support import stubs
 from tests.support.pages import Page
 
-SENTENCE = r"{} of {} checks and {} of {} rows of the audit passed, in \d+ s\n"
+SENTENCE = r"{} of {} checks and {} of {} claims of the paper passed, in \d+ s\n"
 FILMS = ("race", "liquids", "sliding", "frozen", "pendulum", "hoop", "carry")
 DRAWN = {f"{film}{end}" for film in FILMS for end in (".mp4", "-still.png")}
 FILES = {"validation.json", "index.html", "paper", "plots"}
@@ -31,7 +31,7 @@ def test_the_exit_status_of_validate(
     assert main(["validate"]) == status
     out, err = capsys.readouterr()
     assert out == ""
-    failure = f"FAILED: second (a stub): error {error:.1e}, at most 1.0e-03 rad\n" if status else ""
+    failure = f"FAILED: stubs: second (a stub): error {error:.1e}, at most 1.0e-03 rad\n" if status else ""
     assert re.fullmatch(re.escape(failure) + SENTENCE.format(2 - status, 2, 0, 0), err)
     assert main(["validate", "--json"]) == status
     content = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
@@ -51,8 +51,8 @@ def test_a_failure_is_told_whatever_is_asked_for(
     out, err = capsys.readouterr()
     *failures, last = err.splitlines()
     assert failures == [
-        "FAILED: second (a stub): error 2.0e-03, at most 1.0e-03 rad",
-        "FAILED: other a stub (none): error nan, at most 1.0e-03",
+        "FAILED: stubs: second (a stub): error 2.0e-03, at most 1.0e-03 rad",
+        "FAILED: other: a stub (none): error nan, at most 1.0e-03",
     ]
     assert re.fullmatch(SENTENCE.format(1, 2, 1, 2), last + "\n")
     assert ("│ first" in out) == (eye and options == ["--table"])
@@ -71,9 +71,9 @@ def test_a_report_has_the_table_and_the_films(
     assert main(["report", "--output", str(folder), *(["--quick"] if quick else [])]) == 0
     assert set(os.listdir(folder)) == FILES | DRAWN
     content = json.loads((folder / "validation.json").read_text())
-    assert [row["quantity"] for row in content["checks"]] == ["first", "second"]
+    assert [row["name"] for row in content["checks"]] == ["first", "second"]
     read = Page.of((folder / "index.html").read_text())
-    assert "2 of 2 checks and 0 of 0 rows of the audit passed." in [element.text for element in read.all("p")]
+    assert "2 of 2 checks and 0 of 0 claims of the paper passed." in [element.text for element in read.all("p")]
     cells = [element.text for element in read.all("td")]
     assert cells[cells.index("first") :][:5] == ["first", "a stub", "1.0e-05", "1.0e-03 rad", "none"]
     assert len(read.all("video")) == len(FILMS) + (not quick)
@@ -147,7 +147,7 @@ def test_a_check_that_cannot_be_measured_ends_the_report(
 
     stubs.validate(monkeypatch, first=1e-5)
     stubs.draw(monkeypatch)
-    monkeypatch.setattr("mjbeer.studies.rows.Row.result", lambda _: fail())
+    monkeypatch.setattr("mjbeer.checks.Check.result", lambda _: fail())
     assert main(["report", "--output", str(tmp_path)]) == 2
     assert capsys.readouterr().err.endswith("mjbeer: no frequency\n")
     assert set(os.listdir(tmp_path)) == {"paper", "plots"}

@@ -9,18 +9,18 @@ import numpy as np
 from PIL import Image
 
 from mjbeer import exact, frozen, paper
+from mjbeer.checks import Result
 from mjbeer.drawing import video
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Plotted
 from mjbeer.output import files
 from mjbeer.paper import stories as paper_stories
-from mjbeer.paper.row import CORRECTED, Finding
+from mjbeer.paper.claim import CORRECTED
 from mjbeer.paper.stories import Story
 from mjbeer.report import films
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.rows import Result
-from mjbeer.studies.stability import stiff_maps
-from mjbeer.studies.validation.run import Validation
+from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.validation.validate import Validation
 
 PLOT = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 900 300"><title>A plot of {}</title>'
@@ -35,29 +35,31 @@ def validation(misprints: slice = slice(None)) -> Validation:
     """A validation with two checks, the second of which failed, and a finding for each misprint, or for some."""
     errors = {"fine": 1e-6, "bad": 0.5}
     checks = [Result("stubs", name, "a <stub>", 1e-3, "rad", "phi_0^2", error) for name, error in errors.items()]
-    findings = [
-        Finding(
-            row.equation, row.quantity, CORRECTED, "a witness", 0.0127 * (place + 1), right=1.7e-9 * (place + 1),
-            bound=1e-6, misses_by=0.0123 * (place + 1), reason="rounding",
+    audit = [
+        Result(
+            claim.equation, claim.quantity, "a witness", 1e-6, "", "rounding", 1.7e-9 * (place + 1),
+            {"verdict": CORRECTED, "printed": 0.0127 * (place + 1), "expected_error": 0.0123 * (place + 1)},
         )
-        for place, row in enumerate(row for row in paper.rows() if row.misprint)
+        for place, claim in enumerate(claim for claim in paper.claims() if claim.misprint)
     ]  # fmt: skip
-    return Validation(checks, findings[misprints])
+    return Validation(checks, audit[misprints])
 
 
 def stories() -> list[Story]:
     """Two stories, of which the first has a film."""
     film = Take(partial(exact, frozen(), np.array([0.0, 1.0]), 1.0), speed=1.0)
     return [
-        Story("told", "A story of phi_0.", lambda path: None, film),
-        Story("still", "A plot.", lambda path: None),
+        Story("told", "A story", "", "A story of phi_0.", (1, 1, 4, 3), lambda panels: None, film),
+        Story("still", "A plot", "", "A plot.", (1, 1, 4, 3), lambda panels: None),
     ]
 
 
 def plots(folder: pathlib.Path) -> list[Plotted]:
     """Plots of the benchmark and of stability that are nearly empty, to be drawn into a folder."""
     names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-    return [Plotted(draw, folder / name) for name in (*names, *stiff_maps.FIGURES)]
+    return [
+        Plotted(draw, folder / name) for name in (*names, *(f"stability-{family}" for family in stability_maps.FIGURES))
+    ]
 
 
 def draw(path: pathlib.Path) -> None:
@@ -71,9 +73,9 @@ def fill(folder: pathlib.Path, encoded: bool = False) -> None:
         each.mkdir()
     for plot in plots(folder / "plots"):
         plot.write()
-    for name in ("letters", *(story.name for story in paper_stories.stories())):
+    for name in ("letters", *(story.name for story in paper_stories.STORIES)):
         draw(folder / "paper" / name)
-    for name in (*films.FILMS, *(f"paper/{story.name}" for story in paper_stories.stories() if story.film)):
+    for name in (*films.FILMS, *(f"paper/{story.name}" for story in paper_stories.STORIES if story.film)):
         if encoded:
             width, height, fps = SIZE
             shades = np.linspace(0, 255, fps).astype(np.uint8)

@@ -5,7 +5,6 @@ import io
 import math
 import pathlib
 import re
-import statistics
 from collections import Counter
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,17 +14,18 @@ from markupsafe import Markup, escape
 from PIL import Image
 
 from mjbeer import paper
+from mjbeer.checks import Result
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Plotted
 from mjbeer.paper import stories
-from mjbeer.paper.row import Finding, Row
+from mjbeer.paper.claim import Claim
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
-from mjbeer.studies.benchmark import diagrams, tables
+from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.rows import machine
-from mjbeer.studies.stability import stiff_maps
-from mjbeer.studies.validation.run import Validation
+from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.study import machine
+from mjbeer.studies.validation.validate import Validation
 
 LIMIT = 8.5e6
 """Largest size of films and plots in the page [bytes], which with its text is below 9 MB; films of the paper that would
@@ -105,8 +105,10 @@ def plots(folder: pathlib.Path) -> list[Plotted]:
     """Return the plots of error against run time, scene by scene, and the stability maps, to be drawn into a folder."""
     benchmark = Benchmark.load(SHIPPED)
     scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
-    drawn = {f"error-{case}": partial(diagrams.draw, scene) for case, scene in scenes.items()}
-    return [Plotted(draw, folder / name) for name, draw in (drawn | stiff_maps.figures(stiff_maps.load())).items()]
+    drawn = {f"error-{case}": partial(work_precision.draw, scene) for case, scene in scenes.items()}
+    return [
+        Plotted(draw, folder / name) for name, draw in (drawn | stability_maps.figures(stability_maps.load())).items()
+    ]
 
 
 def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: str) -> str:
@@ -119,14 +121,15 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         lstrip_blocks=True,
     )
     environment.filters |= {"mathml": mathml, "power": power, "share": share, "marked": _marked}
-    benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
+    benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
     films = {name: _film(folder, name) for name in FILMS}
     errors = [Plot.of(folder / "plots" / f"error-{case}.svg") for case in benchmark.cases]
     figures = [
         Shown(plot.name, plot.title, figure.caption, maps["command"], plot)
-        for name, figure in stiff_maps.FIGURES.items()
-        for plot in [Plot.of(folder / "plots" / f"{name}.svg", captioned=True)]
+        for name, figure in stability_maps.FIGURES.items()
+        for plot in [Plot.of(folder / "plots" / f"stability-{name}.svg", captioned=True)]
     ]
+    summary = stability_maps.summary(maps).values()
     room = LIMIT - sum(len(film.video) + len(film.poster) for film in films.values())
     room -= sum(len(plot.svg) for plot in errors) + sum(len(each.plot.picture) for each in figures if each.plot)
     return environment.get_template("page.html").render(
@@ -136,17 +139,17 @@ def html(folder: pathlib.Path, validation: Validation, quick: bool, not_drawn: s
         not_drawn=not_drawn,
         errors=errors,
         benchmark=benchmark,
-        costs=[tables.others(benchmark), *(tables.cheapest(benchmark, case) for case in benchmark.cases)],
+        costs=benchmark_tables.tables(benchmark),
         slower=_range(benchmark, "MuJoCo RK4"),
         heyoka=_range(benchmark, "heyoka"),
         maps=maps,
         figures=figures,
-        runs=sum(len(cells) for each in maps["maps"] for cells in each["measured"]),
-        same=statistics.fmean(each["same"] for each in maps["maps"]),
+        runs=round(sum(of["runs"] for of in summary)),
+        same=sum(of["as predicted"] for of in summary) / sum(of["runs"] for of in summary),
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
-        quoted=[row for row in paper.rows() if row.quote and not row.misprint],
-        findings=len(validation.findings),
+        quoted=[row for row in paper.claims() if row.quote and not row.misprint],
+        findings=len(validation.audit),
         stories=_stories(folder, quick, room),
         validation=validation,
         tables=validation.tables(document=True),
@@ -187,10 +190,10 @@ def _stories(folder: pathlib.Path, quick: bool, room: float) -> list[Shown]:
 
     A `quick` report has no films of stories; an earlier one may have left some.
     """
-    plots = [Plot.of(folder / "paper" / f"{story.name}.svg") for story in stories.stories()]
+    plots = [Plot.of(folder / "paper" / f"{story.name}.svg") for story in stories.STORIES]
     room -= sum(len(plot.picture) for plot in plots)
     shown = []
-    for story, plot in zip(stories.stories(), plots, strict=True):
+    for story, plot in zip(stories.STORIES, plots, strict=True):
         video = folder / "paper" / f"{story.name}.mp4"
         each = Shown(story.name, plot.title, story.caption, "mjbeer paper" + " --films" * (not quick), plot)
         if story.film is not None and not quick and video.exists():
@@ -220,15 +223,13 @@ def _uri(content: bytes, kind: str) -> str:
 
 def _range(benchmark: Benchmark, name: str) -> str:
     """Return the least and the largest run time of another tool over that of mjbeer's best setting, at equal error."""
-    table = tables.others(benchmark)
-    ratios = [cell for row in table.rows if (cell := row[table.columns.index(name)]) != "-"]
-    return f"{min(ratios, key=float)} to {max(ratios, key=float)}"
+    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(benchmark, name)))
 
 
-def _misprints(validation: Validation) -> list[tuple[Finding, Row]]:
+def _misprints(validation: Validation) -> list[tuple[Result, Claim]]:
     """Return the findings of what is wrong in the paper, each with its row."""
-    rows = {(row.equation, row.quantity): row for row in paper.rows() if row.misprint}
-    named = [((finding.equation, finding.quantity), finding) for finding in validation.findings]
+    rows = {(row.equation, row.quantity): row for row in paper.claims() if row.misprint}
+    named = [((result.group, result.name), result) for result in validation.audit]
     return [(finding, rows[name]) for name, finding in named if name in rows]
 
 
