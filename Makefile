@@ -56,7 +56,7 @@ templates: $(PACKAGE)
 	$(BIN)/python tools/templates.py mjcf
 
 tables: $(TOOLS)
-	$(BIN)/python -m tests.support.documents
+	$(BIN)/python tools/documents.py
 
 # Names that mjbeer loads when they are first used are loaded, for pdoc to find them.
 api: $(LINTERS)

@@ -38,7 +38,7 @@ def pytest_configure(config: pytest.Config) -> None:
         return
     config.getini("filterwarnings").insert(0, "error")  # below the others, of which the last that fits decides
     if not hasattr(config, "workerinput"):  # and not once more in each worker
-        from mjbeer.studies.benchmark.peers import absent
+        from mjbeer.studies.benchmark.other_tools import absent
 
         lacking = [f"{name} is absent: {reason}" for name, reason in absent().items()]
         lacking += [reason for reason in (_no_opengl(),) if reason]

@@ -19,7 +19,7 @@ THEORY = [
     for path in sorted((PACKAGE / folder).glob("*.py"))
     if path.stem != "__init__"
 ]
-IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.row"))
+IMPORTS = "; ".join(f"import {module}" for module in (*THEORY, "mjbeer.paper.claim"))
 USE = "import mjbeer; assert mjbeer.exact(mjbeer.frozen(), [0.0, 1.0], 0.5).trusted; mjbeer.sliding().period(1.0)"
 COMPILER = {"numba", "llvmlite"}
 HEAVY = {"mujoco", *COMPILER, "matplotlib", "OpenGL"}

@@ -13,7 +13,7 @@ import mjbeer
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 PACKAGE = pathlib.Path(mjbeer.__file__).parent
-PEERS = PACKAGE / "studies" / "benchmark" / "peers.py"
+PEERS = PACKAGE / "studies" / "benchmark" / "other_tools.py"
 PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
 ALWAYS = {Requirement(text).name for text in PROJECT["dependencies"]}
 EXTRAS = {

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import pytest
 
 from mjbeer.cli.app import parse
-from mjbeer.studies.rows import Result, Study
-from mjbeer.studies.stability import limits, search, study
-from tests.support import documents, stubs
+from tests.support import stubs
+from tools import documents
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 README = CHECKOUT / "README.md"
@@ -106,21 +105,6 @@ def test_a_wrong_number_between_the_marks_is_found() -> None:
     text = "<!-- made: ranges -->\nmjbeer is faster than everything.\n<!-- end -->\nOn.\n"
     assert "times as long" in documents.anew(text)
     assert documents.anew(text).endswith("\n<!-- end -->\nOn.\n")
-
-
-@pytest.mark.slow
-def test_the_counts_of_a_stability_study_are_taken(tmp_path: pathlib.Path) -> None:
-    batch = search.batch(0, len(search.REGIONS))
-    swing = {"stable": 2.02, "stable_predicted": 2.0, "accurate": 0.9, "accurate_predicted": 1.0}
-    made = Study(study.COMMAND, {"extent": "long"}, {})
-    made.results = [Result(limits.GROUP, "a swing", values=swing), Result(search.RANDOM, "a batch", values=batch)]
-    (tmp_path / "stability.jsonl").write_text(made.lines())
-    found = documents.counts_of(tmp_path / "stability.jsonl")
-    assert found.keys() == documents.counts().keys()
-    assert found["regions"][-1].keys() == documents.counts()["regions"][-1].keys()
-    assert found["regions"][-1]["runs"] == str(len(search.REGIONS))
-    assert found["limits"]["stable"] == pytest.approx(0.01)
-    assert found["limits"]["accurate"] == pytest.approx(0.1)
 
 
 def test_the_version_is_that_of_the_citation_and_of_the_newest_entry_of_the_changelog() -> None:

@@ -30,9 +30,9 @@ def draw_outcomes(friction: float = 0.5, duration: float = 2.0) -> None:
     """Draw what a frozen can does that is released with its surface along the incline."""
     inclines, fills = np.radians(np.linspace(0.5, 45, 90)), np.linspace(0.05, 0.95, 61)
     swept = mjbeer.sweep(frozen, duration, 0.0, tolerance=1e-6, incline=inclines, fill=fills)
-    found = np.where(np.abs(swept["phi"]) > math.pi, 1, 0)
-    found[swept["friction_needed"] > friction] = 2
-    found[np.isfinite(swept["parting_time"])] = 3
+    found = np.where(np.abs(swept["phi"].values) > math.pi, 1, 0)
+    found[swept["friction_needed"].values > friction] = 2
+    found[np.isfinite(swept["parting_time"].values)] = 3
 
     def rolls_down(scene: Scene) -> float:
         try:
@@ -119,7 +119,7 @@ def draw_damping(duration: float = 4.0) -> None:
 
     damping, incline = (grid.ravel() for grid in np.meshgrid(dampings, inclines, indexing="ij"))
     swept = mjbeer.sweep(can, duration, -incline, paired=True, tolerance=1e-6, damping=damping, incline=incline)
-    found = (np.abs(swept["phi"]) > math.pi).reshape(len(dampings), len(inclines))  # once over the top, for good
+    found = (np.abs(swept["phi"].values) > math.pi).reshape(len(dampings), len(inclines))  # once over the top, for good
     shown = dampings[::2]  # exact motions of a stiff can take a second
     borders = [bisect(beyond, inclines[0], inclines[-1], (each,), xtol=math.radians(0.025)) for each in shown]
     subtitle = f"half-full can of sheet metal, let go with its surface level, {duration:g} s"

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from mjbeer.model.free import attach, refill
     from mjbeer.model.state import reset
     from mjbeer.simulation.simulate import simulate
-    from mjbeer.studies.sweep.run import sweep
+    from mjbeer.studies.sweep import sweep
 
 __all__ = [
     "AngleWarning",
@@ -65,7 +65,7 @@ _LAZY = {
     "reset": "mjbeer.model.state",
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
-    "sweep": "mjbeer.studies.sweep.run",
+    "sweep": "mjbeer.studies.sweep",
 }
 pictures[:] = [lambda: import_module("mjbeer.drawing.notebook")]
 

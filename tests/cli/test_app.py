@@ -100,8 +100,8 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("simulate frozen --json --output -", "standard output takes one of them: the JSON, or the CSV of --output -"),
         ("simulate frozen --tolerance 1e-6 --integrator Euler", "give a tolerance or an integrator: a tolerance ch"),
         ("sweep sliding --damping 0,-1", "damping[1]: damping must be 0 or greater [N m s], got -1.0"),
-        ("sweep frozen", "a plot needs one or two options with several values, got 0: write .csv, .npz or .nc"),
-        ("sweep frozen --fill 0.2,0.3 --output map.jpg", "the file's name must end in .png or .svg or .csv or .npz or"),
+        ("sweep frozen", "a plot needs one or two options with several values, got 0: write .csv or .nc"),
+        ("sweep frozen --fill 0.2,0.3 --output map.jpg", "the file's name must end in .png or .svg or .csv or .nc"),
     ],
 )
 def test_what_is_not_allowed_is_one_line_and_exit_status_2(

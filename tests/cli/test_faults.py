@@ -58,7 +58,8 @@ def test_what_cannot_be_written_is_known_before_the_work(
 def test_a_folder_that_cannot_be_made_is_known_before_the_work(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for work in ("report.write.validate", "studies.benchmark.measure.conduct", "studies.stability.study.conduct"):
+    studies = "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"
+    for work in ("report.write.validate", *studies):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     (tmp_path / "file").touch()
     missing = f"there is no folder {tmp_path / 'misspelt'}; the nearest one that exists is {tmp_path}"

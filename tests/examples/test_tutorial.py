@@ -1,7 +1,6 @@
 """The tutorial runs from top to bottom, and its cells show what the text beside them says."""
 
 import pathlib
-import re
 
 import nbformat
 import pytest
@@ -23,7 +22,7 @@ def test_the_tutorial_runs_and_shows_a_plot_a_video_and_tables(monkeypatch: pyte
     assert "this run is not to be relied on: " in text
     assert "the can slips by" in text
     assert "tolerance 1e-9 rad, error" in text
-    assert re.search(r"<Sweep of .* over incline \(12\) x fill \(12\) to t = 2 s: \d+ of 144 scenes went well", text)
+    assert "0.8194" in text  # of the runs can be relied on
 
 
 def test_the_tutorial_is_kept_with_its_output() -> None:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from mjbeer import exact, frozen, pendulum, simulate, sliding
+from mjbeer.checks import observed_order
 from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.integrators.gauss_jackson import _ANGLES, _CHECKS, GaussJackson
 from mjbeer.integrators.uneven_time import BLOCK, COUNT, LAG, OwnTime, own_time, weights
@@ -19,7 +20,6 @@ from mjbeer.model.state import read, start
 from mjbeer.simulation import tolerance
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.tolerance import pendulum_time
-from mjbeer.studies.validation.motions import observed_order
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import distance
 from tests.support.scenes import METAL

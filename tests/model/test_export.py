@@ -26,9 +26,9 @@ from mjbeer.model import state
 from mjbeer.model.build import build
 from mjbeer.model.export import export, farthest, present
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
-from mjbeer.studies.benchmark.measure import applied_share
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy, potential_energy
+from tests.support.constraints import applied_share
 from tests.support.scenes import METAL, SCENES, scenes
 from tools import portability as others
 from tools.portability import BY_NAME, FRICTION, START

@@ -16,7 +16,7 @@ from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import free, looks, setting
 from mjbeer.model.export import present_standing
 from mjbeer.model.setting import Setting
-from mjbeer.studies.validation import standing as measured
+from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
 
 

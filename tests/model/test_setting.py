@@ -6,8 +6,9 @@ import pytest
 
 from mjbeer import build, frozen
 from mjbeer.model.state import start
-from mjbeer.studies.benchmark.measure import applied_share
-from mjbeer.studies.benchmark.points import USUAL, usual_model
+from mjbeer.studies.benchmark.points import USUAL
+from mjbeer.studies.benchmark.timing import usual_model
+from tests.support.constraints import applied_share
 
 
 @pytest.mark.parametrize("written", USUAL)

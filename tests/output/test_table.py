@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, simulate
+from mjbeer.checks import Result
 from mjbeer.output import terminal
 from mjbeer.output.terminal import Table
-from mjbeer.paper.row import CONFIRMED, CORRECTED, Finding
-from mjbeer.studies.rows import Result
-from mjbeer.studies.validation.run import Validation
+from mjbeer.paper.claim import CONFIRMED, CORRECTED
+from mjbeer.studies.validation.validate import Validation
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import SCENES
 
@@ -22,9 +22,12 @@ PASSED = Result("", "phi over 2 s", "frozen, reduced", 1e-7, "rad", "RK4", 1.5e-
 FAILED = Result("", "hops", "hoop, contact", 0.0, "", "it hops or not", 2.0)
 UNKNOWN = Result("", "lift-off", "hoop, contact", 0.5, "degrees", "penetration", math.nan)
 
-RIGHT = Finding("(16)", "motion of phi", CONFIRMED, "MuJoCo", 5e-15, None, 1e-12, None, "rounding")
-MISPRINT = Finding("(49)", "motion of phi", CORRECTED, "MuJoCo", 0.0589, 4e-10, 2e-8, 0.059, "drift")
-NO_MISPRINT = Finding("(50)", "rolling", CORRECTED, "MuJoCo", 1e-9, math.nan, 2e-8, 0.059, "drift")
+RIGHT = Result("(16)", "motion of phi", "MuJoCo", 1e-12, "", "rounding", 5e-15, {"verdict": CONFIRMED})
+
+
+def misprint(printed: float, right: float) -> Result:
+    values = {"verdict": CORRECTED, "printed": printed, "expected_error": 0.059}
+    return Result("(49)", "motion of phi", "MuJoCo", 2e-8, "", "drift", right, values)
 
 
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES)
@@ -62,27 +65,27 @@ def test_a_program_reads_tabs_and_an_eye_lines(
     assert "│ phi  │   1.5 │" in capsys.readouterr().out
 
 
-def test_json_has_versions_rows_and_a_verdict_that_one_row_decides() -> None:
-    def judged(checks: list[Result], findings: list[Finding]) -> dict[str, Any]:
+def test_json_has_versions_checks_and_a_verdict_that_one_decides() -> None:
+    def judged(checks: list[Result], audit: list[Result]) -> dict[str, Any]:
         # Python would write NaN, which no other reader of JSON takes.
-        return json.loads(Validation(checks, findings).json(), parse_constant=pytest.fail)
+        return json.loads(Validation(checks, audit).json(), parse_constant=pytest.fail)
 
-    assert judged([PASSED], [RIGHT, MISPRINT])["passed"] is True
-    assert judged([PASSED], [NO_MISPRINT])["passed"] is False
+    assert judged([PASSED], [RIGHT, misprint(0.0589, 4e-10)])["passed"] is True
+    for wrong in (misprint(1e-9, 4e-10), misprint(0.0589, math.nan), misprint(0.0589, 3e-8)):
+        assert judged([PASSED], [wrong])["passed"] is False
     content = judged([PASSED, UNKNOWN], [RIGHT])
     assert content["passed"] is False
-    assert content["versions"] == {each: version(each) for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba")}
-    assert content["checks"] == [
-        {
-            "quantity": "phi over 2 s", "by": "frozen, reduced", "error": 1.5e-9, "bound": 1e-7, "unit": "rad",
-            "reason": "RK4", "passed": True,
-        },
-        {
-            "quantity": "lift-off", "by": "hoop, contact", "error": None, "bound": 0.5, "unit": "degrees",
-            "reason": "penetration", "passed": False,
-        },
-    ]  # fmt: skip
-    assert content["audit"] == [{
-        "equation": "(16)", "quantity": "motion of phi", "verdict": "confirmed", "witness": "MuJoCo", "printed": 5e-15,
-        "right": None, "bound": 1e-12, "misses_by": None, "reason": "rounding", "passed": True,
-    }]  # fmt: skip
+    for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba"):
+        assert content["versions"][each] == version(each)
+    assert [(each["name"], each["error"], each["passed"]) for each in content["checks"]] == [
+        ("phi over 2 s", 1.5e-9, True),
+        ("lift-off", None, False),
+    ]
+    assert content["audit"][0]["values"] == {"verdict": CONFIRMED}
+
+
+def test_a_document_has_the_verdict_of_the_audit_and_what_failed() -> None:
+    checks, audit = Validation([PASSED, FAILED], [RIGHT, misprint(0.0589, 4e-10)]).tables(document=True)
+    assert checks.rows[1][2].endswith(" **FAIL**")
+    assert [row[2] for row in audit.rows] == [CONFIRMED, CORRECTED]
+    assert audit.rows[1][4:6] == ("0.059", "4.0e-10")

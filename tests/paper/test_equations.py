@@ -9,7 +9,7 @@ import sympy as sp
 
 from mjbeer import paper
 from mjbeer.paper import frozen, sliding
-from mjbeer.paper.row import Motion, Row, Terms
+from mjbeer.paper.claim import Claim, Motion, Terms
 from mjbeer.paper.witness import metal, rolling_down, swing, wheel
 
 a, b, m, inertia, can_mass, can_inertia, g = sp.symbols("a b m I_cm m_can I_can g", positive=True)
@@ -68,14 +68,14 @@ def vanishes(terms: Terms, motion: Callable[..., Motion]) -> bool:
     return sp.rem(sp.rem(top, S**2 + C**2 - 1, S), A**2 + B**2 - 1, A) == 0
 
 
-def motion_of(row: Row) -> Any:
+def motion_of(row: Claim) -> Any:
     return getattr(row.witness.see, "func", row.witness.see)
 
 
 INTEGRATED = {"(1)", "sec. 2.3.1", "figure of A.3"}  # rows that hold over time
 DERIVED = [
     row
-    for row in paper.rows()
+    for row in paper.claims()
     if motion_of(row) in GIVEN and row.limit is None and row.equation not in INTEGRATED and "linear" not in row.quantity
 ]
 
@@ -88,7 +88,7 @@ def test_every_equation_of_a_motion_is_derived() -> None:
 
 @pytest.mark.costly
 @pytest.mark.parametrize("row", DERIVED, ids=lambda row: f"{row.equation} {row.quantity}")
-def test_derived(row: Row) -> None:
+def test_derived(row: Claim) -> None:
     """No term of it vanishes by itself, so that none could be left out; and a misprint does not follow."""
     motion, terms = motion_of(row), row.terms(Q)
     assert vanishes(terms, motion)
@@ -112,7 +112,7 @@ def test_small_oscillations() -> None:
     squared = -torque.diff(x).subs(x, 0) / (3 * a**2 / 2 - 2 * a * b * sp.cos(rest))
     assert sp.simplify(frozen.eq_55(Q, sp.cos(rest), sp.cos(alpha + rest)) - squared) == 0
     assert sp.simplify(frozen.eq_55(Q, sp.cos(rest), sp.cos(alpha + rest), 1) - squared) != 0
-    (linear,) = (row for row in paper.rows() if row.equation == "(4)" and row.misprint)
+    (linear,) = (row for row in paper.claims() if row.equation == "(4)" and row.misprint)
     for terms, right in ((linear.terms, True), (linear.printed, False)):
         assert (sp.diff(sum(terms(Q)), phi).subs(phi, 0) == 0) is right
 

@@ -14,8 +14,7 @@ from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.race import Race
 from mjbeer.paper import stories
 from mjbeer.paper.hopping import MU
-from mjbeer.paper.plots_frozen import contact_at_equilibrium, footnote_8_as_printed, skids
-from mjbeer.paper.plots_sliding import least_push
+from mjbeer.paper.plots_frozen import footnote_8_as_printed, skids
 from mjbeer.paper.witness import footnote_scene
 from mjbeer.theory.named import in_words
 from mjbeer.theory.trajectory import Trajectory
@@ -24,9 +23,8 @@ from tests.support import figures, stubs
 pytestmark = pytest.mark.slow
 
 SKETCH = {"letters.svg"}
-STORIES = {story.name: story for story in stories.stories()}
+STORIES = {story.name: story for story in stories.STORIES}
 FILMS = {name: story.film for name, story in STORIES.items() if story.film is not None}
-CHECKOUT = pathlib.Path(__file__).parents[2]
 
 
 @pytest.mark.costly
@@ -35,7 +33,7 @@ def test_a_plot_can_be_read_by_itself(name: str, tmp_path: pathlib.Path, monkeyp
     """It has a title and a scene, every line a name, every axis a unit, and no text lies on another or on a line; its
     caption has the letters of the formulas, and its film is of the same scene."""
     seen = figures.saved(monkeypatch)
-    STORIES[name].draw(tmp_path / name)
+    STORIES[name].plot(tmp_path / name)
     assert sorted(os.listdir(tmp_path)) == [f"{name}.svg"]
     assert (tmp_path / f"{name}.svg").stat().st_size < 150_000
     (figure,) = seen
@@ -53,16 +51,6 @@ def test_a_plot_can_be_read_by_itself(name: str, tmp_path: pathlib.Path, monkeyp
         assert all(scene in "\n".join(text.get_text() for text in figure.texts) for scene in scenes)
 
 
-SKETCHES = {"layer", "rolling"}
-"""What `docs/figures/sketches.py` draws."""
-
-
-def test_the_figures_of_the_documents_are_those_of_the_stories() -> None:
-    kept = {each.stem for each in (CHECKOUT / "docs" / "figures").glob("*.svg")}
-    told = {each for each in kept if not each.startswith(("stability-", "sweep-"))}
-    assert told == {*STORIES, "letters", "carry", *SKETCHES}
-
-
 def motions(film: Film) -> list[Trajectory]:
     """The motions of a film: one, or those of the cans that it compares."""
     if isinstance(film, Race):
@@ -73,29 +61,19 @@ def motions(film: Film) -> list[Trajectory]:
 
 @pytest.mark.parametrize("name", FILMS)
 def test_films_show_what_they_say(name: str) -> None:
-    """Those of contact slip, and all but that of friction leave the incline; every other can be trusted."""
+    """That of contact slips and leaves the incline; every other can be trusted."""
     for run in motions(FILMS[name]):
         if run.rolling != "contact":
             assert run.trusted, run.warnings
-        elif name != "friction":
+        else:
             assert np.ptp(run.slip) > run.scene.can.radius / 2
             assert run.lift.max() > run.scene.can.radius / 5
 
 
-def test_of_two_cans_one_swings_or_slides_and_the_other_does_not() -> None:
+def test_of_two_cans_one_swings_and_the_other_does_not() -> None:
     swinging, still = motions(FILMS["trivial"])
     assert np.ptp(swinging.phi) > math.radians(119)
     assert np.abs(still.phi).max() < 1e-9
-    sliding, held = motions(FILMS["friction"])
-    assert np.abs(sliding.slip).max() > 3 * sliding.scene.can.radius
-    assert np.abs(held.slip).max() < 1e-5 * held.scene.can.radius
-
-
-def test_footnote_7_holds_just_above_and_slides_just_below() -> None:
-    above, below = contact_at_equilibrium(1.02), contact_at_equilibrium(0.98)
-    radius = above.scene.can.radius
-    assert np.abs(above.u - above.u[0]).max() < 1e-5 * radius
-    assert abs(below.u[-1] - below.u[0]) > 0.1 * radius
 
 
 def test_a_jump_is_a_gap_and_no_slope() -> None:
@@ -107,8 +85,7 @@ def test_a_jump_is_a_gap_and_no_slope() -> None:
     assert angles[gap + 1] > 90
 
 
-def test_looping_beer_leaves_its_can_down_up_to_47_rad_a_second() -> None:
-    assert least_push(47.3) > 0 > least_push(47.5)
+def test_looping_beer_leaves_its_can_down() -> None:
     (run,) = motions(FILMS["looping"])
     assert run.forces.normal.min() > 0
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
-from mjbeer.paper.row import Letters
-from mjbeer.paper.witness import cosines, examine, loop, sines, watch
+from mjbeer.paper.claim import SceneConstants
+from mjbeer.paper.witness import cosines, loop, measure_motion, simulate_motion, sines
 from mjbeer.theory.equations import accelerations, rolling_forces
 
 # MuJoCo takes the drift of its joint equality back: 3e-9 of the accelerations.
@@ -32,7 +32,7 @@ def slopes(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 def test_velocities_and_accelerations_are_slopes(name: str) -> None:
     """At 0.2 ms the differences are good to (omega h)^6, some 1e-13, and to rounding over h, 1e-11."""
     scene, rolling = SCENES[name]
-    q = examine(simulate(scene, 0.01, 1.2, 3.0, rolling, "DOP853", timestep=2e-4))
+    q = measure_motion(simulate(scene, 0.01, 1.2, 3.0, rolling, "DOP853", timestep=2e-4))
     for each in ("s", "u", "phi", "across"):
         position, rate, acceleration = (getattr(q, each + dots) for dots in ("", "_dot", "_ddot"))
         assert slopes(q.time, position) == pytest.approx(rate[3:-3], abs=1e-8 * np.abs(rate).max())
@@ -43,7 +43,7 @@ def test_velocities_and_accelerations_are_slopes(name: str) -> None:
 def test_it_agrees_with_theory(name: str) -> None:
     """In accelerations, and in the friction that makes a can roll, which MuJoCo's constraint has to 1e-6."""
     scene, rolling = SCENES[name]
-    q = watch(scene, rolling, 0.5, 1.2, samples=11)
+    q = simulate_motion(scene, rolling, 0.5, 1.2, samples=11)
     u_ddot, phi_ddot = accelerations(scene, q.phi, q.phi_dot, q.u_dot)
     if name == "frozen, reduced":
         u_ddot = 0 * u_ddot  # the reduced can turns on the spot
@@ -59,15 +59,15 @@ def test_it_agrees_with_theory(name: str) -> None:
 def test_its_energy_is_that_of_the_trajectory(name: str) -> None:
     scene, rolling = SCENES[name]
     run = simulate(scene, 0.3, 1.2, rolling=rolling)
-    q = examine(run)
+    q = measure_motion(run)
     assert q.kinetic + q.potential == pytest.approx(run.energy, abs=1e-11 * q.kinetic.max())
 
 
 def test_height_is_against_gravity() -> None:
     scene = Scene(Can.massless(), sliding().load, math.radians(30))
-    q = watch(scene, "reduced", 0.2, 1.2, samples=3)
+    q = simulate_motion(scene, "reduced", 0.2, 1.2, samples=3)
     fell = exact(scene, q.time, 1.2)
-    height = -fell.u * 0.5 - Letters.of(scene).b * np.cos(fell.phi + math.pi / 6)
+    height = -fell.u * 0.5 - SceneConstants.of(scene).b * np.cos(fell.phi + math.pi / 6)
     assert q.height == pytest.approx(height, abs=1e-10)
 
 

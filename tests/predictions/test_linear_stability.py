@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from mjbeer.predictions import linear_stability, soft_constraint
-from mjbeer.predictions.linear_stability import RUNGE_KUTTA, amplification, error, polynomial, spectral_radius
-from tests.support import rows
+from mjbeer.studies.predictions import linear_stability, soft_constraint
+from mjbeer.studies.predictions.linear_stability import RUNGE_KUTTA, amplification, error, polynomial, spectral_radius
+from tests.support import soft_rows as rows
 
 EPS = np.finfo(float).eps
 FEW = 20 * EPS

@@ -8,12 +8,13 @@ import pytest
 from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.model.build import build
 from mjbeer.model.state import read, start
-from mjbeer.predictions import semi_implicit_euler, soft_constraint, soft_rolling
 from mjbeer.simulation.stepping import Stepper
-from mjbeer.studies.benchmark.measure import applied_share
-from mjbeer.studies.benchmark.points import usual_model
-from mjbeer.studies.cases import CASES
+from mjbeer.studies.benchmark.points import CASES
+from mjbeer.studies.benchmark.timing import usual_model
+from mjbeer.studies.predictions import semi_implicit_euler, soft_constraint
 from mjbeer.theory.exact import phi_error
+from tests.support import soft_rows
+from tests.support.constraints import applied_share
 
 pytestmark = pytest.mark.slow
 
@@ -94,5 +95,5 @@ def test_a_can_that_sinks_in_slips(written: str) -> None:
 def test_a_usual_joint_equality_has_a_share_of_its_force(scene: Scene) -> None:
     model = usual_model("equality, slide first", scene)
     share = applied_share(model, np.zeros(model.nq + model.nv))
-    predicted = soft_constraint.reached_share(0.9, soft_rolling.diagonal_excess(scene))
+    predicted = soft_constraint.reached_share(0.9, soft_rows.diagonal_excess(scene))
     assert share == pytest.approx(predicted, rel=ROUNDING)

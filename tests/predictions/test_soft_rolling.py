@@ -11,11 +11,11 @@ from mjbeer.model import state
 from mjbeer.model.build import build
 from mjbeer.model.numbers import stiffest
 from mjbeer.model.setting import Integrator, Rolling
-from mjbeer.predictions import soft_rolling
-from mjbeer.predictions.linear_stability import spectral_radius
-from mjbeer.predictions.soft_constraint import MAX_IMPEDANCE, spring
-from mjbeer.studies.stability.stiff_runs import settle
+from mjbeer.studies.predictions import soft_rolling
+from mjbeer.studies.predictions.linear_stability import spectral_radius
+from mjbeer.studies.predictions.soft_constraint import MAX_IMPEDANCE, spring
 from mjbeer.theory.can import Can
+from tests.support.constraints import settle
 
 pytestmark = pytest.mark.slow
 

@@ -1,5 +1,6 @@
 """Stand-ins for what takes long: made-up rows to validate, videos that are not drawn, studies that are short."""
 
+import os
 import pathlib
 from collections.abc import Mapping
 from dataclasses import replace
@@ -8,20 +9,19 @@ from functools import partial
 import pytest
 
 from mjbeer import exact, paper, sliding
+from mjbeer.checks import Check
 from mjbeer.drawing import opengl, studio, video
 from mjbeer.drawing.film import Take
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files, plots
 from mjbeer.paper import stories
-from mjbeer.paper.row import Bound, Witness
-from mjbeer.paper.row import Row as Claim
+from mjbeer.paper.claim import Bound, Claim, Witness
 from mjbeer.paper.stories import Story
 from mjbeer.report import page
-from mjbeer.studies.benchmark import measure, peers, sweeps
+from mjbeer.studies.benchmark import other_tools, timing
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark, Curve
-from mjbeer.studies.rows import Row
-from mjbeer.studies.stability import search, stiff_maps, study
-from mjbeer.studies.validation import run as validation
+from mjbeer.studies.stability import search, stability_maps, stability_study
+from mjbeer.studies.validation import validate as validation
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
@@ -43,32 +43,29 @@ FEW = {Curve("reduced", "RK4"): STEPS[:2], Curve("equality", "RK4"): STEPS[:2]}
 
 
 def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[float, ...]] = LADDERS) -> None:
-    """Make the benchmark one of short ladders, timed twice, with all peers there and made-up times of sweeps."""
-    monkeypatch.setattr(measure, "ladders", lambda *_: dict(ladders))
-    monkeypatch.setattr(peers, "absent", dict)
-    monkeypatch.setattr(measure, "REPEATS", 2)
-    swept = {"ways": [{"name": "a sweep of stubs", "seconds": 1e-3, "error": 1e-7}]}
-    monkeypatch.setattr(sweeps, "compare", lambda quick: swept)
+    """Make the benchmark one of short ladders, timed twice, with all tools there."""
+    monkeypatch.setattr(timing, "ladders", lambda *_: dict(ladders))
+    monkeypatch.setattr(other_tools, "absent", dict)
+    monkeypatch.setattr(timing, "REPEATS", 2)
 
 
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make the stability study one of the first row of each group, with small maps and few runs, in this process."""
-    first: dict[str, Row] = {}
-    for row in study.plan("quick"):
-        first.setdefault(row.group, row)
-    small = {"maps": partial(stiff_maps.measure, stiff_maps.PLANS[0], (4, 4))}
-    small["damped"] = partial(stiff_maps.measure_damped, "reduced", "Euler", (2, 2))
+    """Make the stability study one of the first check of each group, with a small map and few runs, in this process."""
+    first: dict[str, Check] = {}
+    for check in stability_study.plan("quick"):
+        first.setdefault(check.group, check)
+    small = {"maps": partial(stability_maps.measure, stability_maps.PLANS[0], (4, 4))}
     small["search"] = partial(search.batch, 0, 4)
     first |= {group: replace(first[group], measure=measure) for group, measure in small.items()}
-    monkeypatch.setattr(study, "plan", lambda extent: list(first.values()))
-    monkeypatch.setattr(study.os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(stability_study, "plan", lambda extent: list(first.values()))
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
 
 
 def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     """Make the validation table one of rows with a quantity and an error each, and the bound 1e-3; audit nothing."""
-    made = [Row("stubs", name, lambda e=error: e, "a stub", 1e-3, "rad", "none") for name, error in errors.items()]
-    monkeypatch.setattr(validation, "rows", lambda: made)
-    monkeypatch.setattr(paper, "rows", list)
+    made = [Check("stubs", name, lambda e=error: e, "a stub", 1e-3, "rad", "none") for name, error in errors.items()]
+    monkeypatch.setattr(validation, "checks", lambda: made)
+    monkeypatch.setattr(paper, "claims", list)
 
 
 def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
@@ -77,7 +74,7 @@ def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
         Claim(name, "a stub", Witness("none", lambda error=error: error), Bound(1e-3, ""), lambda e: (1.0 + e, -1.0))
         for name, error in errors.items()
     ]
-    monkeypatch.setattr(paper, "rows", lambda: rows)
+    monkeypatch.setattr(paper, "claims", lambda: rows)
 
 
 def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[studio.Filmed]:
@@ -100,13 +97,15 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[studio.Film
 
     def few(folder: pathlib.Path) -> list[studio.Plotted]:
         names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-        return [studio.Plotted(plot, folder / name, in_memory=True) for name in (*names, *stiff_maps.FIGURES)]
+        names += [f"stability-{name}" for name in stability_maps.FIGURES]
+        return [studio.Plotted(plot, folder / name, in_memory=True) for name in names]
 
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
     monkeypatch.setattr(studio.Filmed, "write", filmed)
     monkeypatch.setattr(studio, "produce", lambda orders, _: [order.write() for order in orders])
     monkeypatch.setattr(opengl, "problem", lambda: None)
-    monkeypatch.setattr(stories, "stories", lambda: [Story("told", "A stub's story.", plot, film)])
+    story = Story("told", "A story & a title", "", "A stub's story.", (1, 1, 4, 3), lambda panels: None, film)
+    monkeypatch.setattr(stories, "STORIES", (story,))
     monkeypatch.setattr(page, "plots", few)
     monkeypatch.setattr(video, "render", lambda trajectory, path, *_, **__: files.write(path, "film"))
     return calls

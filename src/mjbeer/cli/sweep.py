@@ -3,7 +3,6 @@
 import contextlib
 import functools
 import pathlib
-import re
 from argparse import Namespace
 from typing import TYPE_CHECKING, Any, cast
 
@@ -15,10 +14,10 @@ from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    import xarray
 
 PLOTS = (".png", ".svg")
-ENDINGS = (*PLOTS, ".csv", ".npz", ".nc")
+ENDINGS = (*PLOTS, ".csv", ".nc")
 _OF_A_RUN = "phi u phi_dot u_dot error lowest_normal friction_needed parting_time energy_drift"
 QUANTITIES = (*_OF_A_RUN.split(), "trusted", "status", "period")
 _QUANTITY = (
@@ -26,8 +25,8 @@ _QUANTITY = (
     "estimate, and parting_time the time from which N < 0. period is measured only if it is asked for"
 )
 _OUTPUT = (
-    "file to write: a plot (.png or .svg) over one or two options, a table (.csv), or all arrays (.npz for NumPy, .nc "
-    "for xarray). An interrupted sweep to .npz goes on where it was"
+    "file to write: a plot (.png or .svg) over one or two options, a table (.csv), or NetCDF (.nc), with all arrays; "
+    "an interrupted sweep to .nc goes on where it was"
 )
 
 
@@ -35,7 +34,7 @@ _OUTPUT = (
     *run_options(several),
     Option("quantity", _QUANTITY, "phi", QUANTITIES),
     Option("output", _OUTPUT, pathlib.Path("sweep.png"), pathlib.Path),
-    Option("overwrite", "replace a .npz of another sweep, and begin the same one anew", kind=bool),
+    Option("overwrite", "replace a .nc of another sweep, and begin the same one anew", kind=bool),
     numbers=several,
 )
 def sweep(given: Namespace) -> int:
@@ -44,37 +43,60 @@ def sweep(given: Namespace) -> int:
     NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
     1e-6 rad.
     """
-    from mjbeer.studies.sweep.measure import BEYOND
-    from mjbeer.studies.sweep.result import checked, shown
-    from mjbeer.studies.sweep.run import sweep
+    from mjbeer.studies.sweep import STATUSES, WELL, sweep
 
-    checked(given.output, ENDINGS)
+    if given.output.suffix not in ENDINGS:
+        raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")
     options = {**asked(given), **start(given)}
     varied = [each for each in options.values() if isinstance(each, np.ndarray)]
     if given.output.suffix in PLOTS and len(varied) not in (1, 2):
         raise ParameterError(
-            f"a plot needs one or two options with several values, got {len(varied)}: write .csv, .npz or .nc instead"
+            f"a plot needs one or two options with several values, got {len(varied)}: write .csv or .nc instead"
         )
     if given.tolerance is None and given.integrator is None:
         given.tolerance = 1e-6
     maker = functools.partial(make, SCENES[given.scene])
-    cast("Any", maker).__name__ = given.scene
-    resumed = given.output if given.output.suffix == ".npz" else None
+    cast("Any", maker).__qualname__ = given.scene
+    resumed = given.output if given.output.suffix == ".nc" else None
     with files.whole(given.output) if resumed is None else contextlib.nullcontext() as temporary:
         options |= {"quantity": given.quantity, "output": resumed, "overwrite": given.overwrite, **steps(given)}
         result = sweep(maker, given.duration, **options)
         if temporary and given.output.suffix in PLOTS:
-            cast("Figure", result.plot(given.quantity).figure).savefig(temporary, facecolor="white", dpi=150)
+            _plot(result, given.quantity, temporary)
         elif temporary:
-            result.save(temporary)
-    alike: dict[str, list[Any]] = {}
-    for failure in result.failed:  # reasons that differ in nothing but numbers are one
-        alike.setdefault(re.sub(r"\d[\d.e+-]*", "", failure.reason), []).append(failure)
-    for first, *others in sorted(alike.values(), key=len, reverse=True):
-        named = zip(result.dims, first.index, strict=True)
-        place = ", ".join(f"{name} = {shown(name, result[name])[index]:.6g}" for name, index in named)
-        what = "beyond the model" if result["status"][first.index] == BEYOND else "failed"
-        say(f"{what}: {1 + len(others)} scene{'s' * bool(others)}, the first at {place}: {first.reason}", "yellow")
+            result.to_dataframe().to_csv(temporary, float_format="%.17g", index=bool(result.dims))
+    for line in result.attrs["failed"].splitlines():
+        say(f"failed: {line}", "yellow")  # one of each kind
     say(f"wrote {given.output}")
-    terminal.write(f"{result.counts}\n")
+    status = result["status"].values
+    counts = [f"{np.count_nonzero(status == number)}: {text}" for number, text in STATUSES.items() if number in status]
+    doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
+    terminal.write("; ".join(counts + [f"{doubted}: not trusted"] * bool(doubted)) + "\n")
     return 0
+
+
+def _plot(result: "xarray.Dataset", quantity: str, path: pathlib.Path) -> None:
+    """Plot a quantity over one parameter, or as a map over two, with angles in degrees."""
+    import matplotlib as mpl
+    from matplotlib import pyplot as plt
+
+    from mjbeer.output.plots import STYLE
+
+    shown = result.copy()
+    for name in (*shown.coords, quantity):
+        unit = shown[name].attrs.get("units", "")
+        if "rad" in unit and name != "error":
+            values = np.degrees(shown[name].values)
+            shown[name] = shown[name].dims, values, shown[name].attrs | {"units": unit.replace("rad", "°")}
+    with mpl.rc_context(STYLE):
+        figure = plt.figure(figsize=(7, 4.5), layout="constrained")
+        axes = figure.add_subplot()
+        values = shown[quantity].where(np.isfinite(shown[quantity]))
+        if values.ndim == 1:
+            values.plot.line(ax=axes, marker="." if values.size < 100 else "")
+        else:
+            values.plot.pcolormesh(ax=axes, x=values.dims[0], cmap="cividis", rasterized=True)
+            axes.grid(visible=False)
+        axes.set_title(f"{result.attrs['make']}, {result.attrs['duration']:.6g} s")
+        figure.savefig(path, facecolor="white", dpi=150)
+        plt.close(figure)

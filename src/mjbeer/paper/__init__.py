@@ -3,12 +3,12 @@
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from mjbeer.paper.row import Row
+    from mjbeer.paper.claim import Claim
 
 
-def rows() -> "list[Row]":
-    """Return all rows of the audit in the order of the paper's sections; nothing is simulated before they measure."""
+def claims() -> "list[Claim]":
+    """Return all claims in the order of the paper's sections; nothing is simulated before they measure."""
     from mjbeer.paper import frozen, hopping, massive_can, oscillation, pendulum, segment, sliding
 
     chapters = (sliding, oscillation, segment, massive_can, frozen, hopping, pendulum)
-    return [row for chapter in chapters for row in chapter.ROWS]
+    return [claim for chapter in chapters for claim in chapter.CLAIMS]

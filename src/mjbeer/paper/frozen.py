@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853
-from mjbeer.paper.row import Bound, Letters, Limit, Misprint, Motion, Row, Terms, Witness
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Terms, Witness
 from mjbeer.paper.witness import (
     CONTACT,
     DRIFT,
@@ -24,9 +24,9 @@ from mjbeer.paper.witness import (
     ROLL_DOWN,
     SMALL,
     balanced,
-    examine,
     footnote_scene,
     frequency,
+    measure_motion,
     resting,
 )
 from mjbeer.simulation.simulate import simulate
@@ -65,7 +65,7 @@ def equilibrium_53(scene: Scene) -> float:
     return math.asin(sine) - scene.incline
 
 
-def eq_55(c: Letters, cos_phi: Any, cos_theta: Any, factor: int = 2) -> Any:
+def eq_55(c: SceneConstants, cos_phi: Any, cos_theta: Any, factor: int = 2) -> Any:
     """Return omega^2 [1/s^2] by eq. (55), corrected; its misprint has the `factor` 1.
 
     omega^2 = g b cos(alpha + phi_0) / (3a^2/2 - `factor` ab cos(phi_0)).
@@ -76,7 +76,7 @@ def eq_55(c: Letters, cos_phi: Any, cos_theta: Any, factor: int = 2) -> Any:
 def frequency_55(scene: Scene, factor: int = 2) -> float:
     """Return omega [rad/s] by eq. (55), corrected, or with the `factor` 1 as printed."""
     phi = scene.equilibrium()
-    return math.sqrt(eq_55(Letters.of(scene), math.cos(phi), math.cos(scene.incline + phi), factor))
+    return math.sqrt(eq_55(SceneConstants.of(scene), math.cos(phi), math.cos(scene.incline + phi), factor))
 
 
 def long_run(form: Oscillator) -> float:
@@ -92,7 +92,7 @@ def long_run(form: Oscillator) -> float:
 @cache
 def _rocking_in_contact() -> Motion:
     """Return half a second of a can in contact, let go at phi = 0."""
-    return examine(simulate(frozen(), 0.5, 0.0, rolling="contact", times=np.linspace(0, 0.5, 51)))
+    return measure_motion(simulate(frozen(), 0.5, 0.0, rolling="contact", times=np.linspace(0, 0.5, 51)))
 
 
 def _acceleration(scene: Scene, phi: float) -> float:
@@ -105,11 +105,11 @@ def _acceleration(scene: Scene, phi: float) -> float:
 
 
 @cache
-def _rest() -> tuple[Letters, float]:
+def _rest() -> tuple[SceneConstants, float]:
     """Return the letters, and the sine of alpha + phi where MuJoCo's acceleration changes sign, below 60 degrees."""
     scene = frozen()
     phi = float(brentq(lambda phi: _acceleration(scene, phi), 0.0, math.pi / 3, xtol=1e-15))
-    return Letters.of(scene), math.sin(phi + scene.incline)
+    return SceneConstants.of(scene), math.sin(phi + scene.incline)
 
 
 @cache
@@ -178,64 +178,64 @@ _AMPLITUDE = Bound(1e-6, "the amplitude: 3e-7")
 _SLIPS = Bound(1e-6, "the can slips a little in its soft contact")
 
 # fmt: off
-ROWS = (
-    Row("(50)", "u = a phi", _TOUCHES, _SLIPS, lambda q: (q.u, -q.a * q.phi)),
-    Row("(50)", "s = a phi - b sin(phi)", _TOUCHES, _SLIPS, lambda q: (q.s, -q.a * q.phi, q.b * q.sin_phi)),
-    Row("(51)", "T", ROLL_DOWN, HELD, lambda q: (
+CLAIMS = (
+    Claim("(50)", "u = a phi", _TOUCHES, _SLIPS, lambda q: (q.u, -q.a * q.phi)),
+    Claim("(50)", "s = a phi - b sin(phi)", _TOUCHES, _SLIPS, lambda q: (q.s, -q.a * q.phi, q.b * q.sin_phi)),
+    Claim("(51)", "T", ROLL_DOWN, HELD, lambda q: (
         3 * q.m * q.a**2 / 4 * q.phi_dot**2, -q.m * q.a * q.b * q.cos_phi * q.phi_dot**2, -q.kinetic)),
-    Row("(51)", "V", ROLL_DOWN, EXACT,
+    Claim("(51)", "V", ROLL_DOWN, EXACT,
         lambda q: (-q.m * q.g * q.a * q.phi * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta, -q.potential)),
-    Row("(52)", "equation of motion of phi", ROLL_DOWN, HELD, eq_52),
-    Row("footnote 8", "the equation as typed in: 3(1) sin(x) (x')^2; printed 3(0.5)", FOOTNOTE_8, HELD, eq_52,
+    Claim("(52)", "equation of motion of phi", ROLL_DOWN, HELD, eq_52),
+    Claim("footnote 8", "the equation as typed in: 3(1) sin(x) (x')^2; printed 3(0.5)", FOOTNOTE_8, HELD, eq_52,
         Misprint(0.32, lambda q: eq_52(q, 0.5),
             "Frozen beer: the term ab sin φ φ̇² as typed in, with a = 3 cm and b = 1 cm", r"3(<0.5|1>)\sin(x)\,(x')^2"),
         quote="3(0.5) sin(x)(x')² …, which corresponds to a = 3 cm, b = 1 cm"),
-    Row("(53)", "angle at which nothing turns the can", Witness(EQUALITY, _rest), EXACT,
+    Claim("(53)", "angle at which nothing turns the can", Witness(EQUALITY, _rest), EXACT,
         lambda rest: (rest[1], -rest[0].a * rest[0].sin_alpha / rest[0].b)),
-    Row("(53)", "there the centre of mass is above the contact", Witness(EQUALITY, _rest), EXACT,
+    Claim("(53)", "there the centre of mass is above the contact", Witness(EQUALITY, _rest), EXACT,
         lambda rest: (rest[0].b * rest[1], -rest[0].a * rest[0].sin_alpha),
         quote="the center of mass of the half cylinder is directly above the point of contact"),
-    Row("sec. A.1", "steepest incline with an equilibrium, sin(alpha) = 4/(3 pi)", _STEEPEST, EXACT,
+    Claim("sec. A.1", "steepest incline with an equilibrium, sin(alpha) = 4/(3 pi)", _STEEPEST, EXACT,
         lambda steepest: (math.sin(steepest), -4 / (3 * math.pi)),
         quote="This equilibrium exists only for sin α ≤ 4/3π"),
-    Row("sec. A.1", "that is 25 degrees", _STEEPEST, Bound(2e-2, "half a unit of the last digit"),
+    Claim("sec. A.1", "that is 25 degrees", _STEEPEST, Bound(2e-2, "half a unit of the last digit"),
         lambda steepest: (25.0, -math.degrees(steepest)), quote="for α ≤ 25°"),
-    Row("footnote 7", "least friction coefficient at which the can stays: tan(alpha)",
+    Claim("footnote 7", "least friction coefficient at which the can stays: tan(alpha)",
         Witness(CONTACT, _least_friction), Bound(1e-3, "bisection, and what counts as slipping"),
         lambda least: (least, -math.tan(frozen().incline)),
         quote="only if the coefficient μ of static friction is larger than tan α"),
-    Row("(54)", "change of cos(phi) to first order",
+    Claim("(54)", "change of cos(phi) to first order",
         _TAYLOR, Bound(3e-3, "the next order: swing cot(phi_0)/2 = 2e-3"),
         lambda at: (math.cos(at[1]) - math.cos(at[0]), SMALL * math.sin(at[0]))),
-    Row("(54)", "change of sin(alpha + phi) to first order: its sign",
+    Claim("(54)", "change of sin(alpha + phi) to first order: its sign",
         _TAYLOR, Bound(3e-4, "the next order: swing tan(alpha + phi_0)/2 = 2e-4"), lambda at: _sine_54(at, 1),
         Misprint(2.0, lambda at: _sine_54(at, -1), "Frozen beer: the sine near the equilibrium",
             r"\sin(\alpha+\varphi)\approx\sin(\alpha+\varphi_0)\\ "
             r"{}<-|+>\,\epsilon\cos\omega t\,\cos(\alpha+\varphi_0)")),
-    Row("(55)", "omega of small oscillations: 2ab cos(phi_0); printed ab cos(phi_0)", _SMALL_SWING, _AMPLITUDE,
+    Claim("(55)", "omega of small oscillations: 2ab cos(phi_0); printed ab cos(phi_0)", _SMALL_SWING, _AMPLITUDE,
         lambda omega: (frequency_55(frozen()), -omega),
         Misprint(0.21, lambda omega: (frequency_55(frozen(), 1), -omega), "Frozen beer: frequency of small swings",
             r"\omega^2=\frac{gb\cos(\alpha+\varphi_0)}{\frac{3a^2}{2}-<|2>ab\cos\varphi_0}")),
-    Row("sec. A.2", "from phi = 0 the can rocks with omega of (55): there, and within, at 1e-3 rad",
+    Claim("sec. A.2", "from phi = 0 the can rocks with omega of (55): there, and within, at 1e-3 rad",
         _SMALL_SWING, _AMPLITUDE, lambda omega: (frequency_55(frozen()), -omega),
         limit=Limit(0.0154, partial(_omega, 0.0)),
         quote="it does not roll, but executes oscillations with frequency approximately given by eq. (55)"),
-    Row("footnote 9", "b = 0: phi = g sin(alpha) t^2/(3a)",
+    Claim("footnote 9", "b = 0: phi = g sin(alpha) t^2/(3a)",
         Witness(EQUALITY, lambda: resting(balanced(0.5))), Bound(1e-7, DRIFT),
         lambda q: (q.phi, -q.g * q.sin_alpha * q.time**2 / (3 * q.a)), quote="φ = g sin αt²/3a"),
-    Row("sec. A.3", "mean acceleration of a long roll-down (2/3) g sin(alpha): b = a/3; within, b = a/300",
+    Claim("sec. A.3", "mean acceleration of a long roll-down (2/3) g sin(alpha): b = a/3; within, b = a/300",
         Witness(EQUALITY, partial(_mean_acceleration, 0.01)),
         Bound(1e-3, "the start, of whose waves 1e-4 is left between 8 s and 16 s"),
         lambda found: (found[1], -found[0].acceleration()), limit=Limit(0.0264, _mean_acceleration),
         quote="A solid cylinder that rolls without slipping would have acceleration (2/3)g sin α down the incline"),
-    Row("sec. A.3", "the same by exact theory: that over (mean of sqrt(J))^2 / (3 m a^2/2)",
+    Claim("sec. A.3", "the same by exact theory: that over (mean of sqrt(J))^2 / (3 m a^2/2)",
         Witness(EQUALITY, _mean_acceleration), Bound(1e-3, "the start, as above"),
         lambda found: (found[1], -long_run(found[0].oscillator) * found[0].can.radius),
         quote="Angle φ varies almost quadratically in time, with a small oscillation about this"),
-    Row("figure of A.3", "phi(t) of the roll-down from phi = pi, a = 3 cm, b = 1 cm", FOOTNOTE_8, Bound(1e-7, DRIFT),
+    Claim("figure of A.3", "phi(t) of the roll-down from phi = pi, a = 3 cm, b = 1 cm", FOOTNOTE_8, Bound(1e-7, DRIFT),
         lambda q: (q.phi, -exact(footnote_scene(), q.time, math.pi).phi),
         quote="for a = 3 cm, b = 1 cm, α = 10°, φ(0) = π and φ̇(0) = 0"),
-    Row("figure of A.3", "time at which N = 0, after which a real can is not on the incline: 0.848 s",
+    Claim("figure of A.3", "time at which N = 0, after which a real can is not on the incline: 0.848 s",
         Witness(CONTACT, _lift_off_time),
         Bound(4e-3, "the soft contact, and that the can slips a moment before"),
         lambda time: (time, -exact(footnote_scene(), np.linspace(0, 1, 10_001), math.pi).rolls_until()),

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from mjbeer.model.setting import Rolling
-from mjbeer.paper.row import Bound, Limit, Row, Witness
+from mjbeer.paper.claim import Bound, Claim, Limit, Witness
 from mjbeer.paper.witness import CONTACT, GRIP, TOP
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.named import hoop
@@ -116,25 +116,26 @@ def _friction_at_lift_off(ratio: float) -> float:
 _THEORY = "exact theory"
 
 # fmt: off
-ROWS = (
-    Row("sec. A.4", "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
+CLAIMS = (
+    Claim("sec. A.4", "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
         Witness(_THEORY, partial(lift_off, 1e-9)), Bound(1e-8, "M/m"), lambda angle: (math.pi / 2, -angle),
         limit=Limit(0.091, partial(lift_off, RATIO)),
         quote="The hoop lifts off the ground when the radius vector to the weight becomes horizontal."),
-    Row("sec. A.4", "angle of lift-off at M/m = 1/20, by theory 99.0 degrees", Witness(CONTACT, partial(_event, GRIP)),
+    Claim("sec. A.4", "angle of lift-off at M/m = 1/20, by theory 99.0 degrees",
+        Witness(CONTACT, partial(_event, GRIP)),
         Bound(5e-3, "penetration of the contact, which unloads late"), lambda angle: (angle, -lift_off(RATIO)),
         quote="the can leaves the surface briefly"),
-    Row("sec. A.4", "Pritchett: hops from rest below M/m = 1/13",
+    Claim("sec. A.4", "Pritchett: hops from rest below M/m = 1/13",
         Witness(_THEORY, _threshold), Bound(1e-9, "the search for the least N"), lambda ratio: (1 / 13, -ratio),
         quote="valid only if the mass of the unloaded hoop is nonzero"),
-    Row("sec. A.4", "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
+    Claim("sec. A.4", "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
         Witness(CONTACT, partial(_event, MU)), Bound(5e-3, "what counts as skidding, and the push that starts it"),
         lambda angle: (angle, -slip(RATIO, MU)), quote="In actual practice the hoop skids first."),
-    Row("sec. A.4", "rolling without slipping cannot hop: beyond, held by friction alone; within, by a constraint",
+    Claim("sec. A.4", "rolling without slipping cannot hop: beyond, held by friction alone; within, by a constraint",
         Witness(CONTACT, partial(_height, "equality")), Bound(0.0, "it hops or not"),
         lambda height: (height, -np.ones_like(height)), limit=Limit(0.58, partial(_height, "contact")),
         quote="A rigid can that is somehow constrained to roll without slipping cannot hop."),
-    Row("footnote 10", "nothing pushes at 90 degrees: beyond, the friction at lift-off for M/m = 1/20; within, 1e-9",
+    Claim("footnote 10", "nothing pushes at 90 degrees: beyond, the friction at lift-off for M/m = 1/20; within, 1e-9",
         Witness(_THEORY, partial(_friction_at_lift_off, 1e-9)), Bound(1e-8, "M/m"),
         lambda force: (1.0, force, -1.0),  # the error is a share of m g
         limit=Limit(0.146, partial(_friction_at_lift_off, RATIO)),

@@ -6,7 +6,7 @@ is 2M, has the same.
 
 from typing import Any
 
-from mjbeer.paper.row import Bound, Letters, Limit, Misprint, Motion, Row, Terms, Witness
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Terms, Witness
 from mjbeer.paper.sliding import kinetic_11, potential_14, potential_17
 from mjbeer.paper.witness import DRIFT, EQUALITY, EXACT, HELD, METAL, resting
 from mjbeer.theory.can import Can
@@ -86,7 +86,7 @@ def _swing(q: Motion) -> Terms:
     )
 
 
-def steady(c: Letters, k: Any) -> Any:
+def steady(c: SceneConstants, k: Any) -> Any:
     """Return the acceleration [m/s^2] of footnote 4 for a can whose beer does not swing."""
     return c.g * c.sin_alpha * (c.m + c.can_mass) / (c.m + k)
 
@@ -110,62 +110,62 @@ BRACKET_49 = (
 )
 
 # fmt: off
-ROWS = (
-    Row("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, lambda q: (q.phi, -q.theta, q.alpha),
+CLAIMS = (
+    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, lambda q: (q.phi, -q.theta, q.alpha),
         Misprint(0.16, lambda q: (q.phi, -q.theta, -q.alpha), "The two angles of the beer",
             r"\varphi=\theta\,<+|->\,\alpha"),
         quote="θ or φ = θ + α as the independent coordinates"),
-    Row("(39)", "T_can in u", METAL, HELD, lambda q: (q.rolling * q.u_dot**2 / 2, -_of_the_can(q))),
-    Row("(39)", "T_can in s and phi: its last term has cos^2; printed sin^2", METAL, HELD,
+    Claim("(39)", "T_can in u", METAL, HELD, lambda q: (q.rolling * q.u_dot**2 / 2, -_of_the_can(q))),
+    Claim("(39)", "T_can in s and phi: its last term has cos^2; printed sin^2", METAL, HELD,
         lambda q: (*can_39(q, q.rolling, q.cos_phi**2), -_of_the_can(q)),
         Misprint(0.060, lambda q: (*can_39(q, q.rolling, q.sin_phi**2), -_of_the_can(q)), "Kinetic energy of the can",
             r"\frac12" + _CAN + r"\bigl(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi\\ "
             r"{}+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2\bigr)")),
-    Row("(40)", "V_can in u", METAL, EXACT,
+    Claim("(40)", "V_can in u", METAL, EXACT,
         lambda q: (-q.can_mass * q.g * q.u * q.sin_alpha, *potential_14(q), -q.potential)),
-    Row("(40)", "V_can in s and phi", METAL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
-    Row("(41)", "x of the beer's centre of mass", METAL, EXACT, lambda q: (q.u, -q.b * q.sin_phi, -q.s)),
-    Row("(41)", "y of the beer's centre of mass", METAL, EXACT, lambda q: (-q.b * q.cos_phi, -q.across)),
-    Row("(42)", "x_dot = s_dot; printed s_dot^2 (in SI units)", METAL, EXACT,
+    Claim("(40)", "V_can in s and phi", METAL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
+    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, lambda q: (q.u, -q.b * q.sin_phi, -q.s)),
+    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, lambda q: (-q.b * q.cos_phi, -q.across)),
+    Claim("(42)", "x_dot = s_dot; printed s_dot^2 (in SI units)", METAL, EXACT,
         lambda q: (q.s_dot, -q.u_dot, q.b * q.cos_phi * q.phi_dot),
         Misprint(0.39, lambda q: (q.s_dot**2, -q.u_dot, q.b * q.cos_phi * q.phi_dot),
             "Velocity of the centre of mass along the incline", r"\dot x=<\dot s^2|\dot s>")),
-    Row("(42)", "y_dot", METAL, EXACT, lambda q: (q.b * q.sin_phi * q.phi_dot, -q.across_dot)),
-    Row("(43)", "v_beer^2 in u and theta", METAL, EXACT, lambda q: (*speed_43(q), -(q.s_dot**2 + q.across_dot**2))),
-    Row("(43)", "v_beer^2 in s and phi", METAL, EXACT,
+    Claim("(42)", "y_dot", METAL, EXACT, lambda q: (q.b * q.sin_phi * q.phi_dot, -q.across_dot)),
+    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT, lambda q: (*speed_43(q), -(q.s_dot**2 + q.across_dot**2))),
+    Claim("(43)", "v_beer^2 in s and phi", METAL, EXACT,
         lambda q: (q.s_dot**2, q.b**2 * q.sin_phi**2 * q.phi_dot**2, -(q.s_dot**2 + q.across_dot**2))),
-    Row("(44)", "T_beer in u and theta", METAL, HELD, lambda q: (
+    Claim("(44)", "T_beer in u and theta", METAL, HELD, lambda q: (
         *(q.m / 2 * each for each in speed_43(q)), q.inertia * q.phi_dot**2 / 2,
         q.rolling * q.u_dot**2 / 2, -q.kinetic)),
-    Row("(44)", "T_beer in s and phi", METAL, HELD,
+    Claim("(44)", "T_beer in s and phi", METAL, HELD,
         lambda q: (*kinetic_11(q), q.rolling * q.u_dot**2 / 2, -q.kinetic)),
-    Row("(45)", "V_beer in u and theta", METAL, EXACT,
+    Claim("(45)", "V_beer in u and theta", METAL, EXACT,
         lambda q: (*potential_17(q), -q.can_mass * q.g * q.u * q.sin_alpha, -q.potential)),
-    Row("(45)", "V_beer in s and phi", METAL, EXACT,
+    Claim("(45)", "V_beer in s and phi", METAL, EXACT,
         lambda q: (*potential_14(q), -q.can_mass * q.g * q.u * q.sin_alpha, -q.potential)),
-    Row("(46)", "equation of motion of u", METAL, HELD, lambda q: motion_46(q, q.rolling)),
-    Row("(47)", "equation of motion of theta: I_axis; printed m a^2 (for m a^2/2 of a half can)", METAL, HELD,
+    Claim("(46)", "equation of motion of u", METAL, HELD, lambda q: motion_46(q, q.rolling)),
+    Claim("(47)", "equation of motion of theta: I_axis; printed m a^2 (for m a^2/2 of a half can)", METAL, HELD,
         lambda q: motion_47(q, q.axial * q.phi_ddot),
         Misprint(0.50, lambda q: motion_47(q, q.m * q.a**2 * q.phi_ddot), "Massive can: equation of motion of θ",
             r"<ma^2|I_{\text{axis}}>\,\ddot\theta-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta"),
         quote="recalling that mb² + I_cm = ma²"),
-    Row("(48)", "equation of motion of s", METAL, HELD, lambda q: motion_48(q, q.rolling)),
-    Row("(49)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", METAL, HELD,
+    Claim("(48)", "equation of motion of s", METAL, HELD, lambda q: motion_48(q, q.rolling)),
+    Claim("(49)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", METAL, HELD,
         lambda q: motion_49(q, q.rolling),
         Misprint(0.059, lambda q: printed_49(q, q.rolling), "Massive can: equation of motion of φ",
             _LEFT_49 + _CAN + "(" + BRACKET_49 + r"<|{}+m_{\text{can}}gb\sin\alpha\,\cos\varphi>")),
-    Row("footnote 4", "acceleration of a can whose beer does not swing", _rests(_FULL), HELD,
+    Claim("footnote 4", "acceleration of a can whose beer does not swing", _rests(_FULL), HELD,
         lambda q: (q.u_ddot, -steady(q, q.rolling)),
         quote="the acceleration of the center of the can would be constant, with value "
         "g sin α(m + m_can)/(m + m_can + I_can/a²)"),
-    Row("footnote 4", "the same with I_can = m_can a^2: beyond, the metal can; within, a hoop",
+    Claim("footnote 4", "the same with I_can = m_can a^2: beyond, the metal can; within, a hoop",
         _rests(_HOOP), Bound(1e-7, DRIFT), lambda q: (q.u_ddot, -steady(q, 2 * q.can_mass)),
         limit=Limit(4.2e-3, _rests(_FULL).see), quote="≈ g sin α(m + m_can)/(m + 2m_can)"),
-    Row("sec. 3.1", "(g/2) sin(alpha) of a nearly empty can: beyond, of sheet metal; within, a hoop",
+    Claim("sec. 3.1", "(g/2) sin(alpha) of a nearly empty can: beyond, of sheet metal; within, a hoop",
         _rests(_HOOP), Bound(1e-4, "what beer is left (fill 1e-4)"), lambda q: (q.u_ddot, -q.g * q.sin_alpha / 2),
         limit=Limit(0.054, _rests(_NEARLY_EMPTY).see),
         quote="nearly the same as that of an empty can, with acceleration (g/2) sin α down the incline"),
-    Row("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _rests(_FULL), HELD,
+    Claim("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _rests(_FULL), HELD,
         lambda q: (q.sin_phi / q.cos_phi, -(steady(q, q.rolling) - q.g * q.sin_alpha) / (q.g * q.cos_alpha)),
         quote="small oscillations of the “beer” about an equilibrium"),
 )

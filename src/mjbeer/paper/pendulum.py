@@ -5,6 +5,7 @@ They are those of the massive can with I_can/a^2 = m_can = M and I_cm = 0, as th
 
 import math
 
+from mjbeer.paper.claim import CONSEQUENCE, Bound, Claim, Limit, Misprint, Motion, Terms, Witness
 from mjbeer.paper.massive_can import (
     BRACKET_49,
     can_39,
@@ -16,7 +17,6 @@ from mjbeer.paper.massive_can import (
     printed_49,
     speed_43,
 )
-from mjbeer.paper.row import CONSEQUENCE, Bound, Limit, Misprint, Motion, Row, Terms, Witness
 from mjbeer.paper.sliding import potential_14
 from mjbeer.paper.witness import EXACT, HELD, REDUCED, SMALL, WHEEL, frequency
 from mjbeer.theory.named import pendulum
@@ -53,41 +53,41 @@ _AS_IN_3 = "the considerations in sec. 3 above with m_can → M, I_can/a² → M
 _LIMITS = "can be analyzed simply only in the limits that m ≪ M or m ≫ M"
 
 # fmt: off
-ROWS = (
-    Row("(56)", "T in u and theta: the sign of u_dot theta_dot, and b^2 theta_dot^2", WHEEL, HELD,
+CLAIMS = (
+    Claim("(56)", "T in u and theta: the sign of u_dot theta_dot, and b^2 theta_dot^2", WHEEL, HELD,
         lambda q: (q.can_mass * q.u_dot**2, *(q.m / 2 * each for each in speed_43(q)), -q.kinetic),
         Misprint(0.70, lambda q: (
             q.can_mass * q.u_dot**2, q.m / 2 * q.u_dot**2, q.m * q.b * q.cos_phi * q.u_dot * q.phi_dot, -q.kinetic),
             "Pendulum in a wheel: kinetic energy",
             r"M\dot u^2+\frac m2\bigl[\dot u^2<{}+2b\cos(\theta-\alpha)\,\dot u\,\dot\theta|"
             r"{}-2b\cos(\theta-\alpha)\,\dot u\,\dot\theta+b^2\dot\theta^2>\bigr]")),
-    Row("(56)", "V in u and theta", WHEEL, EXACT,
+    Claim("(56)", "V in u and theta", WHEEL, EXACT,
         lambda q: (-(q.can_mass + q.m) * q.g * q.u * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta, -q.potential)),
-    Row("(57)", "equation of motion of u", WHEEL, HELD, lambda q: motion_46(q, 2 * q.can_mass)),
-    Row("(58)", "equation of motion of theta: theta_ddot; printed theta (in SI units)", WHEEL, HELD,
+    Claim("(57)", "equation of motion of u", WHEEL, HELD, lambda q: motion_46(q, 2 * q.can_mass)),
+    Claim("(58)", "equation of motion of theta: theta_ddot; printed theta (in SI units)", WHEEL, HELD,
         lambda q: motion_47(q, q.m * q.b**2 * q.phi_ddot),
         Misprint(1.12, lambda q: motion_47(q, q.m * q.b**2 * q.theta), "Pendulum in a wheel: equation of motion of θ",
             r"mb^2<\theta|\ddot\theta>-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta")),
-    Row("(59)", "T in s and phi: cos^2; printed sin^2", WHEEL, HELD,
+    Claim("(59)", "T in s and phi: cos^2; printed sin^2", WHEEL, HELD,
         lambda q: (*can_39(q, 2 * q.can_mass, q.cos_phi**2), *_bob_59(q), -q.kinetic),
         Misprint(0.28, lambda q: (*can_39(q, 2 * q.can_mass, q.sin_phi**2), *_bob_59(q), -q.kinetic),
             "Pendulum in a wheel: kinetic energy of the wheel",
             r"M(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2)",
             CONSEQUENCE, "(39)"),
         quote=_AS_IN_3),
-    Row("(59)", "V in s and phi", WHEEL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
-    Row("(60)", "equation of motion of s", WHEEL, HELD, lambda q: motion_48(q, 2 * q.can_mass)),
-    Row("(61)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", WHEEL, HELD,
+    Claim("(59)", "V in s and phi", WHEEL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
+    Claim("(60)", "equation of motion of s", WHEEL, HELD, lambda q: motion_48(q, 2 * q.can_mass)),
+    Claim("(61)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", WHEEL, HELD,
         lambda q: motion_49(q, 2 * q.can_mass),
         Misprint(1.09, lambda q: printed_49(q, 2 * q.can_mass), "Pendulum in a wheel: equation of motion of φ",
             r"mb^2(\sin^2\!\varphi\,\ddot\varphi+\sin\varphi\,\cos\varphi\,\dot\varphi^2)\\ {}+2M(" + BRACKET_49
             + r"<|{}+Mgb\sin\alpha\,\cos\varphi>", CONSEQUENCE, "(49)"),
         quote=_AS_IN_3),
-    Row("appendix B", "m << M: a pendulum in a frame at (g/2) sin(alpha): beyond, m = M; within, m = 1e-6 M",
+    Claim("appendix B", "m << M: a pendulum in a frame at (g/2) sin(alpha): beyond, m = M; within, m = 1e-6 M",
         Witness(REDUCED, lambda: _bob(1e-6)), Bound(2e-6, "m/M = 1e-6"),
         lambda found: (light_bob(found[0]), -found[1]),
         limit=Limit(0.182, lambda: _bob(1.0)), quote=_LIMITS),
-    Row("appendix B", "m >> M: omega^2 = g cos(alpha) m/(2 M b), without bound: beyond, m = M; within, 1e4 M",
+    Claim("appendix B", "m >> M: omega^2 = g cos(alpha) m/(2 M b), without bound: beyond, m = M; within, 1e4 M",
         Witness(REDUCED, lambda: _bob(1e4, True)), Bound(2e-4, "M/m = 1e-4"),
         lambda found: (heavy_bob(found[0]), -found[1]),
         limit=Limit(0.42, lambda: _bob(1.0, True)), quote=_LIMITS),

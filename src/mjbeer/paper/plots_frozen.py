@@ -1,7 +1,7 @@
 """Plots of loads that are frozen to their cans, appendix A of the paper: rocking, rolling down, and hopping."""
 
 import math
-import pathlib
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -17,32 +17,28 @@ from mjbeer.output.plots import (
     SIMULATED,
     THEORY,
     UNPHYSICAL,
-    chart,
     label,
     name_below,
     note,
     ticks,
 )
 from mjbeer.paper import hopping
-from mjbeer.paper.hopping import MU, RATIO
+from mjbeer.paper.hopping import MU
 from mjbeer.paper.witness import GRIP, fall_from_top
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, hoop, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.named import frozen, hoop, in_degrees, pendulum, sliding
 from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_MU = 1.0
+FRICTION = 1.0
 """Friction coefficient of the incline from which the can lifts off."""
 ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853)
-LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=_MU)
+LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION)
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
-SKID = partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4, friction=MU)
-"""The motions of films: a light hoop is pushed with the weight on top, in contact with level ground."""
-_HOOP = "hoop of mass M with a weight m on its rim, level ground; rolling from rest"
+"""The motions of films."""
 _JUMP = 3.0
 """Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
-_FROM_TOP = "angle of the weight from the top [°]"
 
 
 def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
@@ -58,51 +54,45 @@ def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.nd
     return solve_ivp(slope, (0, times[-1]), [phi0, 0.0], t_eval=times, rtol=1e-10, atol=1e-12).y[0]
 
 
-def draw_rocking(path: pathlib.Path) -> None:
+def draw_rocking(panels: Sequence[Axes]) -> None:
     """Draw how frozen beer rocks, by MuJoCo and by footnote 8, and how far each is from theory."""
     run = ROCKING()
     scene, times = run.scene, run.time
-    title = "A can of frozen beer rocks about its equilibrium and stays"
-    subtitle = f"{in_words(scene)}; let go at φ = 0"
-    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as (angle, error):
-        truth = exact(scene, times, run.phi0).phi
-        printed = footnote_8_as_printed(scene, times, run.phi0)
-        angle.plot(times, np.degrees(truth), label="exact theory, eq. (52)", **THEORY)
-        angle.plot(times, np.degrees(run.phi), label="MuJoCo", **SIMULATED)
-        angle.plot(times, np.degrees(printed), label="footnote 8 as printed", **PRINTED)
-        angle.axhline(math.degrees(scene.equilibrium()), label="equilibrium, eq. (53)", **REFERENCE)
-        error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
-        error.plot(times, np.degrees(printed - truth), **PRINTED)
-        label(angle, "", "φ, beer's surface to the incline [°]", "The swing")
-        label(error, "time t [s]", "φ less that of theory [°]", "How far each is from exact theory")
-        name_below([angle], 4)
+    angle, error = panels
+    truth = exact(scene, times, run.phi0).phi
+    printed = footnote_8_as_printed(scene, times, run.phi0)
+    angle.plot(times, np.degrees(truth), label="exact theory, eq. (52)", **THEORY)
+    angle.plot(times, np.degrees(run.phi), label="MuJoCo", **SIMULATED)
+    angle.plot(times, np.degrees(printed), label="footnote 8 as printed", **PRINTED)
+    angle.axhline(math.degrees(scene.equilibrium()), label="equilibrium, eq. (53)", **REFERENCE)
+    error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
+    error.plot(times, np.degrees(printed - truth), **PRINTED)
+    label(angle, "", "φ, beer's surface to the incline [°]", "The swing")
+    label(error, "time t [s]", "φ less that of theory [°]", "How far each is from exact theory")
+    name_below([angle], 4)
 
 
-def draw_roll_down(path: pathlib.Path) -> None:
+def draw_roll_down(panels: Sequence[Axes]) -> None:
     """Draw the roll-down of frozen beer: how far it turns, and how hard the incline would have to push."""
     times = np.linspace(0, 1, 1001)
     run = simulate(frozen(), times[-1], math.pi, integrator=DOP853, times=times)
     scene, parts = run.scene, exact(run.scene, times, math.pi).rolls_until()
     rolls, pulled = times <= parts, times >= parts
-    title, subtitle = "Frozen beer let go on top rolls down in jerks", f"{in_words(scene)}; let go at φ = 180°"
-    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
-        angle, normal = panels
-        even = scene.acceleration() / scene.can.radius * times**2 / 2
-        angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
-        printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
-        angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **PRINTED)
-        for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, _in_weights(run))):
-            axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)
-            axes.plot(times[pulled], values[pulled], label="the same, if the incline could pull the can", **UNPHYSICAL)
-            axes.axvline(parts, **REFERENCE)
-            axes.set_xlim(0, times[-1])
-        normal.axhline(0, **REFERENCE)
-        note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
-        label(angle, "", "φ − 180° [°]", "How far the can has turned")
-        label(
-            normal, "time t [s]", "normal force / weight", "How hard the incline pushes; below 0 it would have to pull"
-        )
-        name_below(panels, 2)
+    angle, normal = panels
+    even = scene.acceleration() / scene.can.radius * times**2 / 2
+    angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
+    printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
+    angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **PRINTED)
+    for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, _in_weights(run))):
+        axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)
+        axes.plot(times[pulled], values[pulled], label="the same, if the incline could pull the can", **UNPHYSICAL)
+        axes.axvline(parts, **REFERENCE)
+        axes.set_xlim(0, times[-1])
+    normal.axhline(0, **REFERENCE)
+    note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
+    label(angle, "", "φ − 180° [°]", "How far the can has turned")
+    label(normal, "time t [s]", "normal force / weight", "How hard the incline pushes; below 0 it would have to pull")
+    name_below(panels, 2)
 
 
 def _in_weights(run: Trajectory) -> np.ndarray:
@@ -110,72 +100,48 @@ def _in_weights(run: Trajectory) -> np.ndarray:
     return run.forces.normal / (run.scene.mass * run.scene.gravity)
 
 
-def draw_slip_and_hop(path: pathlib.Path) -> None:
+def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     """Draw the friction that frozen beer's rolling down needs, and how a can with less of it slips and hops."""
     contact = LIFT_OFF()
     times = np.linspace(0, 1, 1001)
     rolling = exact(contact.scene, times, math.pi)
     parts = rolling.rolls_until()
-    title = f"On an incline with μ = {_MU:g}, the can slips before it hops"
-    subtitle = f"{in_words(contact.scene)}; let go at φ = 180°"
-    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
-        friction, moved = panels
-        needed = np.where((rolling.forces.needed < 2.5) & (times < parts), rolling.forces.needed, np.nan)
-        friction.plot(times, needed, label="needed to roll, exact theory", color="black")
-        friction.axhline(_MU, **REFERENCE)
-        note(friction, f"all that there is: μ = {_MU:g}", (0, _MU), (6, 8))
-        moved.plot(contact.time, 1e3 * contact.slip, color=COLOURS[1], label="slid instead of rolled, MuJoCo")
-        moved.plot(contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo")
-        for axes in panels:
-            axes.axvline(parts, **REFERENCE)
-            axes.set_xlim(0, times[-1])
-        note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
-        label(friction, "", "friction / normal force", "Friction that rolling needs", ylim=(0, 2.2))
-        label(moved, "time t [s]", "distance [mm]", "What the can does")
-        name_below(panels, 2)
+    friction, moved = panels
+    needed = np.where((rolling.forces.needed < 2.5) & (times < parts), rolling.forces.needed, np.nan)
+    friction.plot(times, needed, label="needed to roll, exact theory", color="black")
+    friction.axhline(FRICTION, **REFERENCE)
+    note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))
+    moved.plot(contact.time, 1e3 * contact.slip, color=COLOURS[1], label="slid instead of rolled, MuJoCo")
+    moved.plot(contact.time, 1e3 * contact.lift, color=COLOURS[0], label="height above the incline, MuJoCo")
+    for axes in panels:
+        axes.axvline(parts, **REFERENCE)
+        axes.set_xlim(0, times[-1])
+    note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
+    label(friction, "", "friction / normal force", "Friction that rolling needs", ylim=(0, 2.2))
+    label(moved, "time t [s]", "distance [mm]", "What the can does")
+    name_below(panels, 2)
 
 
-def contact_at_equilibrium(part: float) -> Trajectory:
-    """Return one second in contact from the equilibrium, at a friction coefficient of `part` times tan(alpha)."""
-    scene = frozen()
-    return simulate(scene, 1.0, scene.equilibrium(), rolling="contact", friction=part * math.tan(scene.incline))
-
-
-def draw_friction(path: pathlib.Path) -> None:
-    """Draw how far a can slides at its equilibrium, with friction coefficients about tan(alpha)."""
-    runs = {part: contact_at_equilibrium(part) for part in (1.02, 0.98, 0.85, 0.7)}
-    scene = runs[0.7].scene
-    title = "A can at its equilibrium stays if μ is more than tan α"
-    subtitle = f"{in_words(scene)}, tan α = {math.tan(scene.incline):.3f}"
-    with chart(path, width=7.5, height=5, title=title, subtitle=subtitle) as (axes,):
-        for part, run in runs.items():
-            axes.plot(run.time, 1e3 * np.abs(run.u - run.u[0]), label=f"μ = {part:g} tan α")
-        label(axes, "time t [s]", "distance down the incline, MuJoCo [mm]")
-        name_below([axes], 4)
-
-
-def draw_period(path: pathlib.Path) -> None:
+def draw_period(panels: Sequence[Axes]) -> None:
     """Draw periods over amplitudes, and between which angles frozen beer swings."""
     scenes = {"beer sliding": sliding(), "pendulum in a wheel": pendulum(), "beer frozen": frozen()}
-    title = "The wider a swing, the slower, and how wide it can be"
-    subtitle = f"half-full massless can with sliding and with frozen beer, {in_words(pendulum())}"
-    with chart(path, 1, 2, width=12, height=5.2, title=title, subtitle=subtitle) as (period, swing):
-        for name, scene in scenes.items():
-            rest, (_, high) = scene.equilibrium(), scene.separatrix()
-            amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 60))
-            small = 2 * math.pi / scene.frequency()
-            theory = [scene.period(amplitude) / small for amplitude in amplitudes]
-            (line,) = period.plot(np.degrees(amplitudes), theory, label=name)
-            few = (high - rest) * np.array([0.2, 0.4, 0.6, 0.8, 0.9])
-            measured = [simulate(scene, 4, rest + amplitude, integrator=DOP853).frequency() for amplitude in few]
-            period.plot(np.degrees(few), 2 * math.pi / np.array(measured) / small, "o", color=line.get_color())
-            period.axvline(math.degrees(high - rest), color=line.get_color(), linewidth=1, linestyle=":")
-        period.plot([], [], "o", color=GREY, label="MuJoCo (lines: exact theory)")
-        period.plot([], [], ":", color=GREY, linewidth=1, label="widest swing: its period is infinite")
-        xlabel, ylabel = "amplitude, downhill from the equilibrium [°]", "period / period of small swings"
-        label(period, xlabel, ylabel, f"Periods on an incline of {in_degrees(INCLINE)}", ylim=(0.9, 2.6), xlim=(0, 185))
-        _draw_range(swing)
-        name_below([period, swing], 3)
+    period, swing = panels
+    for name, scene in scenes.items():
+        rest, (_, high) = scene.equilibrium(), scene.separatrix()
+        amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 60))
+        small = 2 * math.pi / scene.frequency()
+        theory = [scene.period(amplitude) / small for amplitude in amplitudes]
+        (line,) = period.plot(np.degrees(amplitudes), theory, label=name)
+        few = (high - rest) * np.array([0.2, 0.4, 0.6, 0.8, 0.9])
+        measured = [simulate(scene, 4, rest + amplitude, integrator=DOP853).frequency() for amplitude in few]
+        period.plot(np.degrees(few), 2 * math.pi / np.array(measured) / small, "o", color=line.get_color())
+        period.axvline(math.degrees(high - rest), color=line.get_color(), linewidth=1, linestyle=":")
+    period.plot([], [], "o", color=GREY, label="MuJoCo (lines: exact theory)")
+    period.plot([], [], ":", color=GREY, linewidth=1, label="widest swing: its period is infinite")
+    xlabel, ylabel = "amplitude, downhill from the equilibrium [°]", "period / period of small swings"
+    label(period, xlabel, ylabel, f"Periods on an incline of {in_degrees(INCLINE)}", ylim=(0.9, 2.6), xlim=(0, 185))
+    _draw_range(swing)
+    name_below([period, swing], 3)
 
 
 def _draw_range(axes: Axes) -> None:
@@ -195,29 +161,6 @@ def _draw_range(axes: Axes) -> None:
     label(axes, "incline α [°]", ylabel, about, ylim=(-190, 190), yticks=range(-180, 181, 60))
 
 
-def draw_normal(path: pathlib.Path) -> None:
-    """Draw the normal force that rolling hoops need."""
-    angles = np.linspace(1, 179, 400)
-    ratios = ((1e-3, "1/1000"), (RATIO, "1/20"), (1 / 13, "1/13"), (0.2, "1/5"))
-    title = "Why a light hoop hops: the ground would have to pull it"
-    with chart(path, width=7.5, height=5.4, title=title, subtitle=_HOOP) as (axes,):
-        for (ratio, name), colour in zip(ratios, COLOURS, strict=False):
-            values = hopping.normal(ratio, math.pi - np.radians(angles))
-            negative = np.flatnonzero(values < 0)
-            end = negative[0] if len(negative) else len(angles)
-            axes.plot(angles[:end], values[:end], color=colour, label=f"theory, M/m = {name}")
-            axes.plot(angles[end:], values[end:], ":", color=colour)
-        axes.plot([], [], label="after it would have hopped", **UNPHYSICAL)
-        axes.axhline(0, **REFERENCE)
-        axes.axvline(90, **REFERENCE)
-        note(axes, "weight level\nwith the axis", (90, 2.6), (-6, 0), ha="right")
-        note(axes, "the ground pushes", (0, 0), (0, 8))
-        note(axes, "the ground would have to pull", (0, 0), (0, -9))
-        ylabel = "normal force / weight on the rim, N / m g"
-        label(axes, _FROM_TOP, ylabel, ylim=(-1.2, 4), xticks=range(0, 181, 30))
-        name_below([axes], 3)
-
-
 def skids(ratios: np.ndarray, mu: float) -> tuple[np.ndarray, np.ndarray]:
     """Return ratios M/m and the angles from the top at which a hoop skids [degrees], with a gap (NaN) at a jump."""
     angles = np.degrees([hopping.slip(float(ratio), mu) for ratio in ratios])
@@ -233,7 +176,7 @@ def skids(ratios: np.ndarray, mu: float) -> tuple[np.ndarray, np.ndarray]:
     return ratios, angles
 
 
-def draw_lift_off(path: pathlib.Path) -> None:
+def draw_lift_off(panels: Sequence[Axes]) -> None:
     """Draw where a hoop lifts off and where it skids, over its mass."""
     # The angle of lift-off rises like a square root just below 1/13, so that the points are denser there.
     ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 60), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
@@ -241,34 +184,16 @@ def draw_lift_off(path: pathlib.Path) -> None:
     found = [fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP).takeoff() for ratio in few]
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
-    title = "Before a hoop lifts off, it skids"
-    with chart(path, width=7.5, height=5.6, title=title, subtitle=_HOOP) as (axes,):
-        axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
-        axes.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
-        for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
-            axes.plot(*skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
-        axes.axhline(90, **REFERENCE)
-        axes.axvline(1 / 13, **REFERENCE)
-        note(axes, "Littlewood: 90°", (0.01, 90), (4, -8))
-        note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
-        axes.set_xscale("log")
-        label(axes, "mass of the hoop / weight on its rim, M / m", _FROM_TOP)
-        ticks(axes.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05))
-        name_below([axes], 2)
-
-
-def draw_skid(path: pathlib.Path) -> None:
-    """Draw how a pushed hoop skids and hops, over time."""
-    run = SKID()
-    starts = exact(run.scene, run.time, run.phi0, run.phi_dot0).rolls_until(MU)
-    title = "A pushed hoop skids, then hops"
-    subtitle = f"{in_words(run.scene, {'load'})}, M/m = 1/20, μ = {MU:g}; pushed at {run.phi_dot0:g} rad/s"
-    with chart(path, 2, 1, width=7.5, height=7, title=title, subtitle=subtitle) as panels:
-        slid, high = panels
-        slid.plot(run.time, 1e3 * run.slip, label="MuJoCo", **SIMULATED)
-        high.plot(run.time, 1e3 * run.lift, **SIMULATED)
-        for axes in panels:
-            axes.axvline(starts, label="theory: from here on it skids", color=GREY, linestyle="--", linewidth=1.2)
-        label(slid, "", "distance [mm]", "How far it has slid instead of rolled")
-        label(high, "time t [s]", "height [mm]", "How high it is above the ground")
-        name_below(panels, 2)
+    (axes,) = panels
+    axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
+    axes.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
+    for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
+        axes.plot(*skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
+    axes.axhline(90, **REFERENCE)
+    axes.axvline(1 / 13, **REFERENCE)
+    note(axes, "Littlewood: 90°", (0.01, 90), (4, -8))
+    note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
+    axes.set_xscale("log")
+    label(axes, "mass of the hoop / weight on its rim, M / m", "angle of the weight from the top [°]")
+    ticks(axes.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05))
+    name_below([axes], 2)

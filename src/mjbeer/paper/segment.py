@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.build import build
-from mjbeer.paper.row import Bound, Misprint, Row, Terms, Witness
+from mjbeer.paper.claim import Bound, Claim, Misprint, Terms, Witness
 from mjbeer.theory.can import ALUMINIUM, LENGTH, RADIUS, THICKNESS, Can
 from mjbeer.theory.load import BEER, Load, Segment, segment
 from mjbeer.theory.named import sliding
@@ -107,56 +107,56 @@ _ROUNDING = Bound(1e-13, "rounding")
 _DIGIT = "half a unit of the last digit"
 
 # fmt: off
-ROWS = (
-    Row("(7)", "b/a of a half cylinder", _HALF, _CLOSED, lambda half: (4 / (3 * math.pi), -half.offset)),
-    Row("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED,
+CLAIMS = (
+    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, lambda half: (4 / (3 * math.pi), -half.offset)),
+    Claim("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED,
         lambda half: (0.5, -half.inertia, -(half.offset**2))),
-    Row("(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED,
+    Claim("(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED,
         lambda half: (0.5 - (4 / (3 * math.pi)) ** 2, -half.inertia)),
-    Row("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), lambda half: (0.32, -half.inertia)),
-    Row("(30)", "m_can", _SHELL, _ROUNDING,
+    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), lambda half: (0.32, -half.inertia)),
+    Claim("(30)", "m_can", _SHELL, _ROUNDING,
         lambda shell: (2 * math.pi * RADIUS * THICKNESS * (LENGTH + RADIUS) * ALUMINIUM, -shell[0])),
-    Row("(31)", "I_can", _SHELL, _ROUNDING,
+    Claim("(31)", "I_can", _SHELL, _ROUNDING,
         lambda shell: (math.pi * RADIUS**3 * THICKNESS * (2 * LENGTH + RADIUS) * ALUMINIUM, -shell[1])),
-    Row("(31)", "I_can/(m_can a^2)", _SHELL, _ROUNDING,
+    Claim("(31)", "I_can/(m_can a^2)", _SHELL, _ROUNDING,
         lambda shell: ((2 * LENGTH + RADIUS) / (2 * (LENGTH + RADIUS)), -shell[1] / (shell[0] * RADIUS**2))),
-    Row("(31)", "I_can = 0.89 m_can a^2", _SHELL, Bound(5.6e-3, _DIGIT),
+    Claim("(31)", "I_can = 0.89 m_can a^2", _SHELL, Bound(5.6e-3, _DIGIT),
         lambda shell: (0.89, -shell[1] / (shell[0] * RADIUS**2))),
-    Row("(32)", "h/a", Witness("chord of a circle", _segments), _CLOSED, _chord),
-    Row("(34)", "mass of the beer",
+    Claim("(32)", "h/a", Witness("chord of a circle", _segments), _CLOSED, _chord),
+    Claim("(34)", "mass of the beer",
         Witness(_QUADRATURE, lambda: np.array([Load.segment(fill=fill).mass for fill in FILLS])), _CLOSED,
         lambda mass: (RADIUS**2 * LENGTH * BEER * area_33(_segments().half_angle), -mass)),
-    Row("(33)", "area, middle form", _FILLED, _CLOSED, lambda at: (
+    Claim("(33)", "area, middle form", _FILLED, _CLOSED, lambda at: (
         math.pi / 2 - np.cos(at.half_angle) * np.sin(at.half_angle) - np.arcsin(np.cos(at.half_angle)), -at.area)),
-    Row("(33)", "area, last form", _FILLED, _CLOSED, lambda at: (area_33(at.half_angle), -at.area)),
-    Row("(35)", "b, with A", _FILLED, _CLOSED,
+    Claim("(33)", "area, last form", _FILLED, _CLOSED, lambda at: (area_33(at.half_angle), -at.area)),
+    Claim("(35)", "b, with A", _FILLED, _CLOSED,
         lambda at: (2 * np.sin(at.half_angle) ** 3 / (3 * area_33(at.half_angle)), -at.offset)),
-    Row("(35)", "b, last form", _FILLED, _CLOSED, lambda at: (
+    Claim("(35)", "b, last form", _FILLED, _CLOSED, lambda at: (
         4 * np.sin(at.half_angle) ** 3 / (3 * (2 * at.half_angle - np.sin(2 * at.half_angle))), -at.offset)),
-    Row("(36)", "I_axis, second line", _FILLED, _CLOSED, lambda at: (_integral_36(at.half_angle), -_axial(at))),
-    Row("(36)", "I_axis, last form", _FILLED, _CLOSED, lambda at: (eq_36(at.half_angle), -_axial(at))),
-    Row("(37)", "I_cm", _FILLED, _CLOSED, lambda at: (eq_37(at.half_angle), -at.inertia)),
-    Row("(36)", "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8", _FILLED, _CLOSED,
+    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, lambda at: (_integral_36(at.half_angle), -_axial(at))),
+    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, lambda at: (eq_36(at.half_angle), -_axial(at))),
+    Claim("(37)", "I_cm", _FILLED, _CLOSED, lambda at: (eq_37(at.half_angle), -at.inertia)),
+    Claim("(36)", "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8", _FILLED, _CLOSED,
         lambda at: (middle_36(at.half_angle), -_axial(at)),
         Misprint(0.23, lambda at: (middle_36(at.half_angle, 8), -_axial(at)),
             "The beer's inertia about the can's axis, third line",
             r"\frac{2\rho_{\text{beer}}a^4l}{3}\Bigl(\frac{3\beta}{4}-\frac{3\sin2\beta}{8}"
             r"+\frac{\sin2\beta\,\sin^2\!\beta}{<8|4>}\Bigr)")),
-    Row("(38)", "centre of mass of can and beer", Witness("MuJoCo, subtree_com", _centre_of_mass), _ROUNDING,
+    Claim("(38)", "centre of mass of can and beer", Witness("MuJoCo, subtree_com", _centre_of_mass), _ROUNDING,
         lambda found: (found[1], -found[0])),
-    Row("figure of (36)", "k is 1/2 at beta = pi/2 and at pi",
+    Claim("figure of (36)", "k is 1/2 at beta = pi/2 and at pi",
         Witness(_QUADRATURE, lambda: _segments((0.5, 1.0))), _CLOSED, lambda at: (np.full(2, 0.5), -_axial(at)),
         quote="k decreases from 1 … to 1/2 at β = π/2 …, then dips slightly and returns to k = 1/2 at β = π"),
-    Row("figure of (36)", "k is 1 for a film (fill 1e-5)", Witness(_QUADRATURE, partial(segment, 1e-5)),
+    Claim("figure of (36)", "k is 1 for a film (fill 1e-5)", Witness(_QUADRATURE, partial(segment, 1e-5)),
         Bound(1e-4, "the film's height"), lambda film: (1.0, -_axial(film)),
         quote="decreases from 1 (for a point mass at distance a from the axis)"),
-    Row("figure of (36)", "in between k dips, to 0.456 at 115 degrees", _THOUSAND,
+    Claim("figure of (36)", "in between k dips, to 0.456 at 115 degrees", _THOUSAND,
         Bound(2e-3, f"{_DIGIT}; the paper gives no number"), lambda at: (0.456, -_axial(at).min()),
         quote="then dips slightly"),
-    Row("figure of (37)", "k rises all the way: it is never below what it was", _THOUSAND, _ROUNDING,
+    Claim("figure of (37)", "k rises all the way: it is never below what it was", _THOUSAND, _ROUNDING,
         lambda at: (at.inertia, -np.maximum.accumulate(at.inertia)),
         quote="as angle β increases from 0 to π, k increases"),
-    Row("figure of (37)", "k goes from 0 by 0.32 at beta = pi/2 to 0.5",
+    Claim("figure of (37)", "k goes from 0 by 0.32 at beta = pi/2 to 0.5",
         Witness(_QUADRATURE, lambda: _segments((1e-5, 0.5, 1.0))), Bound(1e-3, _DIGIT),
         lambda at: (np.array([0.0, 0.32, 0.5]), -at.inertia),
         quote="k increases from 0 … to 0.32 at β = π/2 …, and then continues to increase to 0.5 at β = π"),

@@ -1,13 +1,11 @@
-"""The paper's stories: its scenarios, each with a plot and a caption, and films of what moves."""
+"""The paper's stories: its scenarios as data, each with a plot, a caption and perhaps a film of what moves."""
 
-import math
 import pathlib
-import re
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 
+from matplotlib.axes import Axes
 from rich.console import Console
 
 from mjbeer.drawing import opengl, studio
@@ -16,13 +14,13 @@ from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.studio import Filmed, Plotted
 from mjbeer.output import files
-from mjbeer.paper import plots_frozen, plots_sliding, real_beer
-from mjbeer.paper.hopping import MU
-from mjbeer.theory.scene import INCLINE
+from mjbeer.output.plots import chart
+from mjbeer.paper import plots_frozen, plots_sliding
+from mjbeer.paper.plots_sliding import SWING
+from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
 
 SIZE = 960, 540, 25
 """Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""
-_BLUE, _RED = (0.1, 0.35, 0.6), (0.75, 0.2, 0.1)
 
 
 @dataclass(frozen=True)
@@ -31,134 +29,181 @@ class Story:
 
     name: str
     """Name of its files, without an ending."""
+    title: str
+    subtitle: str
+    """Of which scene the plot is."""
     caption: str
     """What the plot and the film show."""
-    draw: Callable[[pathlib.Path], None]
-    """Writes the plot to a path, with .svg appended."""
+    size: tuple[int, int, float, float]
+    """Rows and columns of the plot's panels, and its width and height [inches]."""
+    draw: Callable[[Sequence[Axes]], None]
+    """Draws into the panels."""
     film: Film | None = None
+
+    def plot(self, path: pathlib.Path) -> None:
+        """Write the plot to a path, with .svg appended.
+
+        Raises:
+          OutputError: if the file cannot be written.
+        """
+        with chart(path, *self.size, self.title, self.subtitle) as panels:
+            self.draw(panels)
 
 
 def _let_go() -> Sequence[Runner]:
     """Return two cans: in one the beer does not swing, in the other it does."""
     still, swinging = (plots_sliding.let_go(degrees, 0.65) for degrees in (0.0, 60.0))
     return [
-        Runner("let go at φ = 60°", swinging, _RED, note="swings"),
-        Runner("let go at φ = 0°", still, _BLUE, note="does not swing"),
+        Runner("let go at φ = 60°", swinging, (0.75, 0.2, 0.1), note="swings"),
+        Runner("let go at φ = 0°", still, (0.1, 0.35, 0.6), note="does not swing"),
     ]
 
 
-def _with_friction() -> Sequence[Runner]:
-    """Return two cans at their equilibrium: on one incline the friction is just enough, on the other it is not."""
-    enough, little = (plots_frozen.contact_at_equilibrium(part) for part in (1.02, 0.7))
-    return [
-        Runner(f"μ = {0.7 * math.tan(INCLINE):.2f}", little, _RED, note="30 % less than tan α"),
-        Runner(f"μ = {1.02 * math.tan(INCLINE):.2f}", enough, _BLUE, note="2 % more than tan α"),
-    ]
-
-
-_PLOTS: dict[str, Callable[[pathlib.Path], None]] = {
-    "trivial": plots_sliding.draw_trivial,
-    "hesitation": plots_sliding.draw_hesitation,
-    "release": plots_sliding.draw_release,
-    "looping": plots_sliding.draw_looping,
-    "ripples": plots_sliding.draw_ripples,
-    "accelerations": plots_sliding.draw_accelerations,
-    "inertia": plots_sliding.draw_inertia,
-    "tilt": plots_sliding.draw_tilt,
-    "pendulum": plots_sliding.draw_pendulum,
-    "rocking": plots_frozen.draw_rocking,
-    "roll-down": plots_frozen.draw_roll_down,
-    "slip-and-hop": plots_frozen.draw_slip_and_hop,
-    "friction": plots_frozen.draw_friction,
-    "steepest-incline": plots_sliding.draw_steepest,
-    "period": plots_frozen.draw_period,
-    "hopping": plots_frozen.draw_normal,
-    "lift-off": plots_frozen.draw_lift_off,
-    "skid": plots_frozen.draw_skid,
-    "real-beer": real_beer.draw_first_metre,
-    "liquids": real_beer.draw_liquids,
-}
-"""What draws the plot of each story, in the paper's order. Their captions are in captions.md."""
-_FILMS: dict[str, Film] = {
-    "trivial": Race(
-        "Whether its beer swings or not, a can gets equally far",
-        _let_go,
-        length=0.36,
-        speed=0.1,
-        told=str,  # the story has a caption
-        still=0.2,
-        strips=("phi", "u"),
-    ),
-    "hesitation": Take(
-        plots_sliding.HESITATION,
-        speed=0.1,
-        look=Look("A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost")),
-    ),
-    "release": Take(
-        partial(plots_sliding.level_start, 40.0, periods=2.0),
-        speed=0.1,
-        look=Look("Let go with its surface level, beer swings", ("phi", "ahead"), ("phi", "ghost")),
-    ),
-    "looping": Take(
-        plots_sliding.LOOPING,
-        speed=0.1,
-        look=Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces")),
-    ),
-    "rocking": Take(
-        plots_frozen.ROCKING,
-        speed=0.5,
-        look=Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths")),
-    ),
-    "slip-and-hop": Take(
-        plots_frozen.PARTING,
-        speed=0.04,
-        still=0.9,
-        look=Look("Frozen beer rolls down, slips and hops", ("slip", "lift"), ("forces", "skid"), "close", "μ = 1"),
-    ),
-    "friction": Race(
-        "With too little friction a can slides off its equilibrium",
-        _with_friction,
-        length=0.3,
-        speed=0.2,
-        told=str,
-        still=0.7,
-        facts=f"tan α = {math.tan(INCLINE):.2f}",
-        strips=("slip",),
-    ),
-    "skid": Take(
-        plots_frozen.SKID,
-        speed=0.08,
-        still=0.24,
-        look=Look(
-            "A pushed hoop skids before it hops",
-            ("slip", "lift"),
-            ("forces", "skid"),
-            facts=f"μ = {MU:g}",
+STORIES = (
+    Story(
+        "trivial",
+        "However the beer swings, its centre of mass accelerates down the incline evenly",
+        in_words(sliding()),
+        "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls down with "
+        "exactly g sin α. Beer that is let go at 60° swings, and its can hesitates. The centre of mass of the "
+        "beer moves down in the same way in both.",
+        (1, 3, 12, 4.6),
+        plots_sliding.draw_trivial,
+        Race(
+            "Whether its beer swings or not, a can gets equally far",
+            _let_go,
+            length=0.36,
+            speed=0.1,
+            told=str,  # the story has a caption
+            still=0.2,
+            strips=("phi", "u"),
         ),
     ),
-}
-"""The films of the stories that have one."""
-
-
-def stories() -> list[Story]:
-    """Return all stories, in the paper's order."""
-    told = re.findall(r"## (.+)\n\n((?:.+\n)+)", _read("captions.md"))
-    captions = {name: " ".join(words.split()) for name, words in told}
-    return [Story(name, captions[name], draw, _FILMS.get(name)) for name, draw in _PLOTS.items()]
-
-
-def _read(name: str) -> str:
-    return pathlib.Path(__file__).with_name(name).read_text(encoding="utf-8")
+    Story(
+        "hesitation",
+        "The can hesitates once in every swing of its beer",
+        f"{in_words(sliding())}; beer let go at φ₀ = {in_degrees(SWING)}",
+        "The can hesitates once in every swing of the beer. Its distance less ½ g sin α t² is b sin φ, and "
+        "swings with the beer. Eq. (25) as printed has b cos φ instead, which is a smaller ripple at twice "
+        "the frequency. It is drawn without its constant, and from the same start.",
+        (1, 1, 7.5, 5),
+        plots_sliding.draw_hesitation,
+        Take(
+            plots_sliding.HESITATION,
+            speed=0.1,
+            look=Look("A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost")),
+        ),
+    ),
+    Story(
+        "looping",
+        "Beer that loops in its can does not turn evenly",
+        in_words(sliding()),
+        "The beer loops in its can. The plots show how far it is ahead of an even rotation, over one turn. By "
+        "eqs. (26) and (28) it is ahead in one half of the turn and behind in the other. In truth there is a "
+        "second ripple, twice in a turn, which remains however fast the beer spins. Fast beer lifts its can "
+        "off the incline: a free can stays on it up to 47 rad/s at the bottom. The corrected formula is of "
+        "first order, and only near the truth when the beer is slow.",
+        (1, 2, 11, 5.2),
+        plots_sliding.draw_looping,
+        Take(
+            plots_sliding.LOOPING,
+            speed=0.1,
+            look=Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces")),
+        ),
+    ),
+    Story(
+        "accelerations",
+        "The fuller the can, the faster it runs down, unless its beer is frozen",
+        "beer that does not swing; the same on every incline",
+        "The acceleration of a can whose beer does not swing, from nearly empty to full. It grows from that "
+        "of the empty can, which is half of g sin α for a hoop, to nearly g sin α. A can of frozen beer is "
+        "slower: a full one has two thirds of g sin α. The dashed line leaves out the jerks of frozen beer, "
+        "as if its mass were centred on the axis.",
+        (1, 1, 7.5, 5.4),
+        plots_sliding.draw_accelerations,
+    ),
+    Story(
+        "pendulum",
+        "A wheel with a pendulum: a wide swing, and how the bob's mass changes small ones",
+        in_words(pendulum(), {"load"}),
+        "A wheel with a pendulum. Left: a wide swing. Right: small swings, and their two limits. A light bob "
+        "swings as if its pivot accelerated at half of g sin α. Under a heavy bob the wheel swings instead, "
+        "the faster the heavier the bob. The report has a film of it among its scenes.",
+        (1, 2, 12, 5.4),
+        plots_sliding.draw_pendulum,
+    ),
+    Story(
+        "rocking",
+        "A can of frozen beer rocks about its equilibrium and stays",
+        f"{in_words(frozen())}; let go at φ = 0",
+        "A can with frozen beer is let go at φ = 0. It rocks about its equilibrium and does not roll off. "
+        "Footnote 8's equation as printed has ½ a b in place of a b, and gives another swing.",
+        (2, 1, 7.5, 7),
+        plots_frozen.draw_rocking,
+        Take(
+            plots_frozen.ROCKING,
+            speed=0.5,
+            look=Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths")),
+        ),
+    ),
+    Story(
+        "roll-down",
+        "Frozen beer let go on top rolls down in jerks",
+        f"{in_words(frozen())}; let go at φ = 180°",
+        "The figure of A.3: the same can, let go with the beer on top. It rolls down in jerks, a little "
+        "faster than a solid cylinder. From 0.834 s on the incline would have to pull the can for it to keep "
+        "rolling. What comes after that is dotted.",
+        (2, 1, 7.5, 7),
+        plots_frozen.draw_roll_down,
+    ),
+    Story(
+        "slip-and-hop",
+        "On an incline with μ = 1, the can slips before it hops",
+        f"{in_words(frozen())}; let go at φ = 180°",
+        "The same can on an incline with μ = 1. Rolling needs more and more friction. At 0.72 s it needs more "
+        "than there is, and the can slips by less than a millimetre. At 0.83 s the can begins to slip far, "
+        "and then it hops, 7 mm high.",
+        (2, 1, 7.5, 7),
+        plots_frozen.draw_slip_and_hop,
+        Take(
+            plots_frozen.PARTING,
+            speed=0.04,
+            still=0.9,
+            look=Look("Frozen beer rolls down, slips and hops", ("slip", "lift"), ("forces", "skid"), "close", "μ = 1"),
+        ),
+    ),
+    Story(
+        "period",
+        "The wider a swing, the slower, and how wide it can be",
+        f"half-full massless can with sliding and with frozen beer, {in_words(pendulum())}",
+        "The paper leaves open how long wide swings take. The period grows with the amplitude, and is "
+        "infinite at the end of the widest swing. On an incline the frozen can swings differently to either "
+        "side, and rolls off downhill.",
+        (1, 2, 12, 5.2),
+        plots_frozen.draw_period,
+    ),
+    Story(
+        "lift-off",
+        "Before a hoop lifts off, it skids",
+        "hoop of mass M with a weight m on its rim, level ground; rolling from rest",
+        "The angles at which a hoop that starts from rest lifts off and at which it skids, over its mass. "
+        "Littlewood's 90° are right for a massless hoop. With any finite friction the hoop skids first. A "
+        "hoop just too heavy to skid at 80° grips until after 90°: this is why one line has a gap.",
+        (1, 1, 7.5, 5.6),
+        plots_frozen.draw_lift_off,
+    ),
+)
+"""All stories, in the paper's order."""
 
 
 def plots(folder: pathlib.Path) -> list[Plotted]:
     """Return the plots of the stories, to be drawn into a folder."""
-    return [Plotted(story.draw, folder / story.name) for story in stories()]
+    return [Plotted(story.plot, folder / story.name) for story in STORIES]
 
 
 def films(folder: pathlib.Path) -> list[Filmed]:
     """Return the films of the stories, to be drawn into a folder."""
-    filmed = [(story.film, folder / f"{story.name}.mp4") for story in stories() if story.film is not None]
+    filmed = [(story.film, folder / f"{story.name}.mp4") for story in STORIES if story.film is not None]
     return [Filmed(film, path, *SIZE) for film, path in filmed]
 
 
@@ -174,11 +219,12 @@ def told(folder: pathlib.Path, films: bool, note: str = "") -> Generator[None]:
     files.make_folder(folder)
     with files.whole(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
-        files.write(folder / "letters.svg", _read("letters.svg"))
+        letters = pathlib.Path(__file__).with_name("letters.svg")
+        files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))
         yield
         lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
         lines += [f"Films: {note}", ""] if note else []
-        for story in stories():
+        for story in STORIES:
             lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
             lines += [f"[Film]({story.name}.mp4)", ""] if films and story.film is not None else []
         summary.write_text("\n".join(lines), encoding="utf-8")

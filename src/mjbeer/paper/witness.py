@@ -12,7 +12,7 @@ from mjbeer.model.build import build
 from mjbeer.model.numbers import mass_unit
 from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
 from mjbeer.model.state import places
-from mjbeer.paper.row import Bound, Motion, Witness
+from mjbeer.paper.claim import Bound, Motion, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
@@ -22,7 +22,7 @@ from mjbeer.theory.scene import INCLINE, Scene
 from mjbeer.theory.trajectory import Trajectory
 
 
-def watch(
+def simulate_motion(
     scene: Scene, rolling: Rolling, duration: float, phi0: float, phi_dot0: float = 0.0, samples: int = 101
 ) -> Motion:
     """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it.
@@ -31,10 +31,10 @@ def watch(
     of the paper's theory.
     """
     times = np.linspace(0, duration, samples)
-    return examine(simulate(scene, duration, phi0, phi_dot0, rolling, DOP853, timestep=5e-4, times=times))
+    return measure_motion(simulate(scene, duration, phi0, phi_dot0, rolling, DOP853, timestep=5e-4, times=times))
 
 
-def examine(run: Trajectory) -> Motion:
+def measure_motion(run: Trajectory) -> Motion:
     """Return what MuJoCo computes at each sample of a simulated motion.
 
     s is read from the position of the load's centre of mass, and accelerations are those of mj_forward.
@@ -117,31 +117,31 @@ def swing(amplitude: float = 2.0, incline: float = INCLINE) -> Motion:
 
     At 2 rad every term of an equation matters; 1 rad is clearly not small, and 1e-3 rad is.
     """
-    return watch(sliding(incline), "reduced", 1.0, amplitude)
+    return simulate_motion(sliding(incline), "reduced", 1.0, amplitude)
 
 
 @cache
 def metal() -> Motion:
     """Return a second of beer that slides in the 12-oz can of sheet metal, let go at 2 rad."""
-    return watch(sliding(can=Can.sheet_metal()), "equality", 1.0, 2.0)
+    return simulate_motion(sliding(can=Can.sheet_metal()), "equality", 1.0, 2.0)
 
 
 @cache
 def wheel() -> Motion:
     """Return a second of a pendulum in a wheel, let go at 2 rad."""
-    return watch(pendulum(), "equality", 1.0, 2.0)
+    return simulate_motion(pendulum(), "equality", 1.0, 2.0)
 
 
 @cache
 def rolling_down(scene: Scene | None = None) -> Motion:
     """Return the first 0.8 s of a can with frozen beer that rolls down, let go with the beer on top."""
-    return watch(scene or frozen(), "equality", 0.8, math.pi)
+    return simulate_motion(scene or frozen(), "equality", 0.8, math.pi)
 
 
 @cache
 def resting(scene: Scene, rolling: Rolling = "equality") -> Motion:
     """Return a second that starts at the equilibrium; a balanced load starts at phi = 0."""
-    return watch(scene, rolling, 1.0, scene.equilibrium() if scene.load.offset else 0.0)
+    return simulate_motion(scene, rolling, 1.0, scene.equilibrium() if scene.load.offset else 0.0)
 
 
 @cache

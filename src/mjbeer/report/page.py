@@ -4,7 +4,6 @@ import base64
 import math
 import pathlib
 import re
-import statistics
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -14,18 +13,19 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from mjbeer import paper
+from mjbeer.checks import Result
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Plotted
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
-from mjbeer.paper.row import Finding, Row
+from mjbeer.paper.claim import Claim
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
-from mjbeer.studies.benchmark import diagrams, tables
+from mjbeer.studies.benchmark import benchmark_tables, work_precision
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.rows import machine
-from mjbeer.studies.stability import stiff_maps
-from mjbeer.studies.validation.run import Validation
+from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.study import machine
+from mjbeer.studies.validation.validate import Validation
 
 _SMALL = 1e-3
 """A smaller share is a power of ten and not a percentage."""
@@ -58,10 +58,10 @@ def plots(folder: pathlib.Path) -> list[Plotted]:
     """Return the plots of the page that are not those of the stories, by the names of files in a folder."""
     benchmark = Benchmark.load(SHIPPED)
     scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
-    drawn = {f"error-{case}": partial(diagrams.draw, scene) for case, scene in scenes.items()}
+    drawn = {f"error-{case}": partial(work_precision.draw, scene) for case, scene in scenes.items()}
     return [
         Plotted(draw, folder / name, in_memory=True)
-        for name, draw in (drawn | stiff_maps.figures(stiff_maps.load())).items()
+        for name, draw in (drawn | stability_maps.figures(stability_maps.load())).items()
     ]
 
 
@@ -86,8 +86,9 @@ def html(
     )
     environment.filters |= {"mathml": mathml, "power": power, "share": share, "marked": _marked, "data": _data}
     environment.filters["inline"] = _inline
-    benchmark, maps = Benchmark.load(SHIPPED), stiff_maps.load()
-    scenes = {name: _scene(name, films.get(name)) for name in FILMS}
+    made = "mjbeer paper" + " --films" * (not quick)
+    benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
+    scenes, summary = {name: _scene(name, films.get(name)) for name in FILMS}, stability_maps.summary(maps).values()
     return environment.get_template("page.html").render(
         sketch=pathlib.Path(stories.__file__).with_name("letters.svg").read_text(encoding="utf-8"),
         races=[scenes.pop(name) for name in RACES],
@@ -95,30 +96,23 @@ def html(
         not_drawn=not_drawn,
         errors=[plots[f"error-{case}"] for case in benchmark.cases],
         benchmark=benchmark,
-        costs=[tables.others(benchmark), *(tables.cheapest(benchmark, case) for case in benchmark.cases)],
+        costs=benchmark_tables.tables(benchmark),
         slower=_range(benchmark, "MuJoCo RK4"),
         heyoka=_range(benchmark, "heyoka"),
         maps=maps,
         figures=[
-            Shown(name, plots[name].title, figure.caption, maps["command"], plots[name])
-            for name, figure in stiff_maps.FIGURES.items()
+            Shown(f"stability-{name}", figure.title, figure.caption, maps["command"], plots[f"stability-{name}"])
+            for name, figure in stability_maps.FIGURES.items()
         ],
-        runs=sum(len(cells) for each in maps["maps"] for cells in each["measured"]),
-        same=statistics.fmean(each["same"] for each in maps["maps"]),
+        runs=round(sum(of["runs"] for of in summary)),
+        same=sum(of["as predicted"] for of in summary) / sum(of["runs"] for of in summary),
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
-        quoted=[row for row in paper.rows() if row.quote and not row.misprint],
-        findings=len(validation.findings),
+        quoted=[row for row in paper.claims() if row.quote and not row.misprint],
+        findings=len(validation.audit),
         stories=[
-            Shown(
-                each.name,
-                plots[each.name].title,
-                each.caption,
-                "mjbeer paper" + " --films" * (not quick),
-                plots[each.name],
-                told.get(each.name),
-            )
-            for each in stories.stories()
+            Shown(each.name, each.title, each.caption, made, plots[each.name], told.get(each.name))
+            for each in stories.STORIES
         ],
         validation=validation,
         tables=validation.tables(document=True),
@@ -167,15 +161,13 @@ def _inline(plot: Picture) -> Markup:
 
 def _range(benchmark: Benchmark, name: str) -> str:
     """Return the least and the largest run time of another tool over that of mjbeer's best setting, at equal error."""
-    table = tables.others(benchmark)
-    ratios = [cell for row in table.rows if (cell := row[table.columns.index(name)]) != "-"]
-    return f"{min(ratios, key=float)} to {max(ratios, key=float)}"
+    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(benchmark, name)))
 
 
-def _misprints(validation: Validation) -> list[tuple[Finding, Row]]:
+def _misprints(validation: Validation) -> list[tuple[Result, Claim]]:
     """Return the findings of what is wrong in the paper, each with its row."""
-    rows = {(row.equation, row.quantity): row for row in paper.rows() if row.misprint}
-    named = [((finding.equation, finding.quantity), finding) for finding in validation.findings]
+    rows = {(row.equation, row.quantity): row for row in paper.claims() if row.misprint}
+    named = [((result.group, result.name), result) for result in validation.audit]
     return [(finding, rows[name]) for name, finding in named if name in rows]
 
 

@@ -10,7 +10,7 @@ from mjbeer.drawing import opengl, studio
 from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.report import films, page
-from mjbeer.studies.validation.run import Validation, validate
+from mjbeer.studies.validation.validate import Validation, validate
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,11 @@ _OVER_DISTANCE = 3.2
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
 _ASIDE = 4e-14
 """Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding; it shows beside
-a separatrix how much that matters. In contact it is `state.START_DEPTH`, as no two models would have the same depth."""
+a separatrix how much that matters. A larger one could hide an error, as it may move the motion the other way."""
+_DEPTH = 0.5
+"""Depth at which a can in contact starts in the uneven run, over that in the run: the distance then has half of the
+error that this depth causes. That of softness falls to 0.62 or to 0.38 of itself. Half is between them, so that the
+distance is not much too small either where the two errors are of opposite sign."""
 _COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
 _TURN = 2.0
@@ -277,15 +281,18 @@ def second(run: Run) -> tuple[float, float]:
 
     Both are relative beyond 1 rad; the first is infinite if the second run diverges. This has uneven timesteps and
     begins a little aside. Constraints that are tuned to the timestep are harder in it, so that its distance from the
-    first run includes the effect of their softness; that of the starts includes the effect of rounding.
+    first run includes the effect of their softness; that of the starts includes the effect of rounding, and of the
+    depth at which a can in contact starts.
     """
     scene, setting, motion = run.scene, run.setting, run.spread
     prepared = Prepared(scene, setting, uneven=True)
     lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint=setting.rolling != "contact")
-    beside = state.START_DEPTH if setting.rolling == "contact" else _ASIDE
-    aside = max(beside, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
+    aside = max(_ASIDE, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
+    begin = prepared.start(run.phi0 + aside, run.phi_dot0)
+    if setting.rolling == "contact":
+        begin[state.places(prepared.model)["lift"]] *= _DEPTH
     try:
-        states = prepared.solve(prepared.start(run.phi0 + aside, run.phi_dot0), motion.time).states
+        states = prepared.solve(begin, motion.time).states
     except DivergenceError:
         return math.inf, lost
     start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]

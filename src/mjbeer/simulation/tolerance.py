@@ -43,7 +43,7 @@ includes the effect of a small change of the start, which is large beside a sepa
 _PUSH = 2e-15
 """Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows how much a small change of the energy
 on the way matters, as for a swing that comes near a barrier's top, where the start does not."""
-_NUDGED = 3e-12
+_NUDGED = 1e-12
 """Tolerance below which the nudge of Gauss-Jackson is as much smaller, as it would be all of the distance."""
 _ROUNDING = 0.3
 """Effect of rounding over that of a whole nudge of Gauss-Jackson, at most but for one of twenty random motions beside a
@@ -174,8 +174,7 @@ class Solver:
         compared = slice((len(times) - 1) % stride, None, stride)  # with the last one
         some_times = np.ascontiguousarray(times[compared])
         share = 1.0 if self._rounded else min(1.0, tolerance / _NUDGED)
-        by_chance = _SAFETY_BY_CHANCE if tolerance <= _ASYMPTOTIC[0] else 1.0
-        safety = max((_BRIEF if self._rounded else 1.0) * by_chance, _ROUNDING / share)
+        safety = max(_BRIEF if self._rounded else 1.0, _ROUNDING / share)
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
         timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
         own = pendulum_time(self._scene, phi0, _PRECISION * tolerance)

@@ -8,31 +8,30 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, exact, hoop, simulate, sliding
-from mjbeer.model import looks
-from mjbeer.studies.rows import Result, Row
-from mjbeer.studies.validation import motions
-from mjbeer.studies.validation.run import Validation, rows
+from mjbeer.checks import Check, Result
+from mjbeer.studies.validation import motion_checks as motions
+from mjbeer.studies.validation.validate import Validation, checks
 from mjbeer.theory import exact as theory
 from mjbeer.theory import trajectory
 
-ROWS = {f"{row.name} - {row.by}": row for row in rows()}
+CHECKS = {f"{check.name} - {check.by}": check for check in checks()}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("row", ROWS.values(), ids=ROWS)
-def test_row(row: Row) -> None:
-    result = row.result()
+@pytest.mark.parametrize("check", CHECKS.values(), ids=CHECKS)
+def test_check(check: Check) -> None:
+    result = check.result()
     assert result.passed, f"{result.error} > {result.bound} {result.unit}"
 
 
-def test_rows_are_told_apart() -> None:
-    assert len(ROWS) == len(rows())
+def test_checks_are_told_apart() -> None:
+    assert len(CHECKS) == len(checks())
 
 
-def test_rows_can_be_written() -> None:
+def test_checks_can_be_written() -> None:
     """A bound that NumPy computed would make the verdict one of its own, which JSON does not have."""
-    results = [Result(row.group, row.name, row.by, row.bound, row.unit, row.reason, 0.0) for row in ROWS.values()]
-    assert len(json.loads(Validation(results, []).json())["checks"]) == len(ROWS)
+    results = [Result(row.group, row.name, row.by, row.bound, row.unit, row.reason, 0.0) for row in CHECKS.values()]
+    assert len(json.loads(Validation(results, []).json())["checks"]) == len(CHECKS)
 
 
 def test_a_wrong_motion_is_found_out() -> None:
@@ -62,7 +61,7 @@ def test_a_wrong_prediction_is_found_out(
 ) -> None:
     right = getattr(motions, name)
     monkeypatch.setattr(motions, name, lambda *words: factor * right(*words))
-    assert not next(row for told, row in ROWS.items() if told.startswith(quantity)).result().passed
+    assert not next(row for told, row in CHECKS.items() if told.startswith(quantity)).result().passed
 
 
 def test_energy_that_obeys_the_other_law_is_found_out() -> None:
@@ -70,9 +69,3 @@ def test_energy_that_obeys_the_other_law_is_found_out() -> None:
     free = sliding(0.0, can=Can.hoop(mass=1e5))
     assert (motions._drift(free, "RK4", 10)[1] - 1).max() > 0.05
     assert abs(motions._drift_exponent(free, "Euler", 32)) > 0.02
-
-
-def test_a_mesh_of_another_fill_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = looks.beer
-    monkeypatch.setattr(looks, "beer", lambda fill, *rest: right(fill * 1.01, *rest))
-    assert min(motions.mesh_errors(0.5)) > 1e-3

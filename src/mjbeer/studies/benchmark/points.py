@@ -1,25 +1,67 @@
-"""What a benchmark measured: points on curves, the study that has them all, and the front of those that none beats."""
+"""What a benchmark measures: cases, points on curves, and the front of those that none beats."""
 
-import csv
-import io
+import json
 import math
 import pathlib
-import statistics
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-import mujoco
 import numpy as np
 
-from mjbeer.model.build import specify
+from mjbeer.checks import finite
+from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Rolling, Setting
-from mjbeer.studies.rows import Study
+from mjbeer.theory.can import Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
 
 COMMAND = "mjbeer benchmark"
-SHIPPED = pathlib.Path(__file__).with_name("study.jsonl")
+SHIPPED = pathlib.Path(__file__).with_name("study.json")
 """The benchmark that comes with mjbeer: errors to six digits, least run times."""
+INTERVAL, _SAMPLES = 32e-3, 65
+"""Time between two samples [s], and their number with both ends. It is a power of two times every timestep tried with
+MuJoCo's integrators, so that all runs have the same samples without interpolation."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene and the start of its motion, at rest."""
+
+    name: str
+    scene: Scene
+    phi0: float
+    """Initial phi [rad]."""
+    story: str
+    """The case in a few words, for titles."""
+
+    @property
+    def times(self) -> np.ndarray:
+        """The times of the samples [s]."""
+        return INTERVAL * np.arange(_SAMPLES)
+
+    def truth(self) -> Trajectory:
+        """Return the exact motion at the times of the samples."""
+        return exact(self.scene, self.times, self.phi0)
+
+
+_ALL = (
+    Case("sliding", sliding(), 1.0, "beer that slides in a massless can, from 1 rad"),
+    Case("sliding-metal", sliding(can=Can.sheet_metal()), 1.0, "beer that slides in a metal can, from 1 rad"),
+    Case("frozen", frozen(), 0.0, "frozen beer, rocking from its surface along the incline"),
+    Case("frozen-wide", frozen(), 1.0, "frozen beer, rocking widely from 1 rad"),
+    Case("pendulum", pendulum(), 1.0, "a pendulum on the axle of a wheel, from 1 rad"),
+    Case("hoop", hoop(), 0.5, "a light hoop with a heavy bar on its rim, from 0.5 rad"),
+    Case("stiff", sliding(damping=1.0), 1.0, "beer that hardly slides in a massless can, from 1 rad"),
+    Case("stiffer", sliding(damping=100.0), 1.0, "beer that is nearly frozen to a massless can, from 1 rad"),
+)
+CASES = {case.name: case for case in _ALL}
+"""All cases; in the last two damping brings can and load together ten thousand times a second, or a million times,
+which explicit methods have to follow."""
+DEFAULT = ("sliding", "sliding-metal", "frozen", "frozen-wide", "pendulum")
+"""The cases that the benchmark measures if none is named."""
 TIMESTEP, TOLERANCE = "timestep", "tolerance"
 CHOSEN = "mjbeer"
 """The method of runs to a tolerance, which choose their integrator and its steps."""
@@ -34,41 +76,28 @@ USUAL: dict[str, Rolling] = {
 MuJoCo's default diagonal softens the two by different factors."""
 
 
-def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
-    """Return a model as people usually write it, with MuJoCo's defaults wherever there are any."""
-    spec, stock = specify(scene, USUAL[name], integrator="Euler", timestep=2e-3), mujoco.MjSpec().option
-    spec.option.enableflags, spec.option.impratio, spec.option.cone = stock.enableflags, stock.impratio, stock.cone
-    spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
-    for constraint in (*spec.equalities, *spec.pairs):
-        constraint.solref, constraint.solimp = (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2)
-    if name == "equality, hinge first":
-        for equality in spec.equalities:
-            equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
-    return spec.compile()
-
-
 @dataclass(frozen=True, order=True)
 class Curve:
     """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
 
-    way: str
+    model: str
     """A way of rolling, the name of a setting as people usually write it (USUAL), or the name of another tool."""
     method: str
     """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
-    knob: str = TIMESTEP
+    parameter: str = TIMESTEP
     """What is varied along the curve: "timestep" [s] or "tolerance"."""
 
     @property
     def label(self) -> str:
         """The name of the curve, unlike that of any other."""
-        method = f"{self.method} to a tolerance" if self.method and self.knob == TOLERANCE else self.method
-        return ", ".join(part for part in (self.way, method) if part)
+        method = f"{self.method} to a tolerance" if self.method and self.parameter == TOLERANCE else self.method
+        return ", ".join(part for part in (self.model, method) if part)
 
     def setting(self, value: float) -> Setting:
-        """Return the setting of mjbeer for a `value` of the knob: a timestep [s] or a tolerance [rad]."""
-        if self.knob == TOLERANCE:
-            return replace(Setting(), rolling=self.way, tolerance=value)
-        return replace(Setting(), rolling=self.way, integrator=self.method, timestep=value)
+        """Return the setting of mjbeer for a `value` of the parameter: a timestep [s] or a tolerance [rad]."""
+        if self.parameter == TOLERANCE:
+            return replace(Setting(), rolling=self.model, tolerance=value)
+        return replace(Setting(), rolling=self.model, integrator=self.method, timestep=value)
 
 
 @dataclass
@@ -76,22 +105,16 @@ class Point:
     """A setting of a case with what was measured with it; errors are against exact theory."""
 
     case: str
-    way: str
+    model: str
     method: str
-    knob: str
+    parameter: str
     value: float
     """Timestep [s] or tolerance."""
     phi_max: float = math.inf
-    phi_end: float = math.inf
     u_max: float = math.inf
-    u_end: float = math.inf
-    """Errors of phi and of u/a, with a the can's radius, at most over the run and at its end [rad]."""
-    slip_max: float | None = None
-    """Largest slip [radii]."""
-    energy_drift: float | None = None
-    """The largest change of energy over the largest kinetic energy of the swing."""
-    share: float | None = None
-    """Share of the force of a hard constraint that the solver applied."""
+    """Largest errors of phi and of u/a, with a the can's radius [rad]."""
+    evaluations: int | None = None
+    """Evaluations of accelerations in a run; None where a tool does not tell."""
     setup: float | None = None
     """Time to build the model and for all else that is done once [s]."""
     failure: str | None = None
@@ -102,7 +125,7 @@ class Point:
     @property
     def curve(self) -> Curve:
         """The curve that the point is on."""
-        return Curve(self.way, self.method, self.knob)
+        return Curve(self.model, self.method, self.parameter)
 
     @property
     def error(self) -> float:
@@ -117,15 +140,8 @@ class Point:
     @property
     def setting(self) -> str:
         """The setting in a few words: its method, and its timestep [ms] or its tolerance."""
-        knob = f"{self.value:g}" if self.knob == TOLERANCE else milliseconds(self.value)
-        return f"{self.method} {'to ' if self.knob == TOLERANCE else ''}{knob}".strip()
-
-    def known(self) -> dict[str, Any]:
-        """Return what was measured but for the run times, without what is unknown or infinite, which JSON lacks."""
-        values = asdict(self)
-        for name in ("case", "way", "method", "knob", "times"):
-            del values[name]
-        return {name: value for name, value in values.items() if value is not None and value != math.inf}
+        knob = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
+        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{knob}".strip()
 
 
 def milliseconds(time: float) -> str:
@@ -137,14 +153,9 @@ def milliseconds(time: float) -> str:
 class Benchmark:
     """A study of error against run time; its points are in the order in which they were measured."""
 
-    ERRORS, TIMES, SWEEPS = "errors", "run times", "sweeps"
-    """The groups of its rows: a ladder with its errors, a round of timing, and the times of many scenes."""
-
     settings: dict[str, Any]
     machine: dict[str, Any]
     points: list[Point]
-    sweeps: list[dict[str, Any]]
-    """What `sweeps.compare` found; empty if sweeps were not timed."""
 
     @classmethod
     def load(cls, path: pathlib.Path) -> "Benchmark":
@@ -153,23 +164,21 @@ class Benchmark:
         Raises:
           ParameterError: if the file is missing, or is no benchmark of this version.
         """
-        return cls.of_study(Study.load(path, COMMAND))
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+            points = [
+                Point(**{name: value for name, value in each.items() if value is not None})
+                for each in content["points"]
+            ]
+            return cls(content["settings"], content["machine"], points)
+        except (OSError, ValueError, TypeError, KeyError) as error:
+            raise ParameterError(f"{path} was not written by `{COMMAND}`: {error}") from error
 
-    @classmethod
-    def of_study(cls, study: Study) -> "Benchmark":
-        """Return the benchmark whose rows are in a study."""
-        points = []
-        for ladder in study.of(cls.ERRORS):
-            curve = {name: ladder.values[name] for name in ("way", "method", "knob")}
-            rungs = [Point(ladder.by, **curve, **rung) for rung in ladder.values["points"]]
-            ran = [point for point in rungs if point.failure is None]
-            for timed in study.of(cls.TIMES):
-                if timed.by == ladder.by:
-                    for point, time in zip(ran, timed.values[ladder.name], strict=True):
-                        point.times.append(time)
-            points += rungs
-        sweeps = [way for result in study.of(cls.SWEEPS) for way in result.values["ways"]]
-        return cls(study.settings, study.machine, points, sweeps)
+    def json(self) -> str:
+        """Return the study as JSON, with a line a point."""
+        about = json.dumps({"command": COMMAND, "settings": self.settings, "machine": self.machine})
+        points = (json.dumps(finite(asdict(point)), allow_nan=False) for point in self.points)
+        return f'{about[:-1]}, "points": [\n' + ",\n".join(points) + "\n]}\n"
 
     def of(self, case: str) -> list[Point]:
         """Return the points of a case that have an error and a run time."""
@@ -180,21 +189,8 @@ class Benchmark:
         """The cases of the points, in their order."""
         return list(dict.fromkeys(point.case for point in self.points))
 
-    def csv(self) -> str:
-        """Return CSV with a line for each point: setting, errors, least and median run time; empty where unknown."""
-        names = [column.name for column in fields(Point) if column.name != "times"]
-        text = io.StringIO()
-        writer = csv.DictWriter(text, [*names, "error", "time_min", "time_median", "repeats"], lineterminator="\n")
-        writer.writeheader()
-        for point in self.points:
-            known = {"case": point.case, **asdict(point.curve), **point.known(), "repeats": len(point.times)}
-            if point.times:
-                known |= {"error": point.error, "time_min": point.time, "time_median": statistics.median(point.times)}
-            writer.writerow(known)
-        return text.getvalue()
 
-
-def front(points: Iterable[Point]) -> list[Point]:
+def pareto_front(points: Iterable[Point]) -> list[Point]:
     """Return the points than which no other has both less error and less run time, fastest first."""
     best: list[Point] = []
     for point in sorted(points, key=lambda point: (point.time, point.error)):
@@ -210,17 +206,8 @@ def cheapest(points: Iterable[Point], error: float) -> Point | None:
 
 def time_for(points: Iterable[Point], error: float) -> float:
     """Return the run time [s] for an `error` [rad], interpolated on the front as a power law, or infinity."""
-    best = front(points)
+    best = pareto_front(points)
     if not best or best[-1].error > error:
         return math.inf
     errors, times = [-math.log(point.error) for point in best], [math.log(point.time) for point in best]
     return math.exp(np.interp(-math.log(error), errors, times))
-
-
-def error_for(points: Iterable[Point], time: float) -> float:
-    """Return the error [rad] for a run `time` [s], interpolated as in `time_for`; infinite if no point is that fast."""
-    best = front(points)
-    if not best or best[0].time > time:
-        return math.inf
-    errors, times = [math.log(point.error) for point in best], [math.log(point.time) for point in best]
-    return math.exp(np.interp(math.log(time), times, errors))

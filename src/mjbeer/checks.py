@@ -1,0 +1,97 @@
+"""What is measured, against what, with which bound, and why: of models, of the paper, and of how runs end."""
+
+import json
+import math
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+
+_AS_STATED = 0.05
+"""Largest relative difference between the measured error of what is wrong and the stated one, which has two digits."""
+
+
+@dataclass(frozen=True)
+class Result:
+    """What was measured, beside its bound."""
+
+    group: str
+    """The part of a study that it belongs to, or the equation of the paper."""
+    name: str
+    """What was measured."""
+    by: str = ""
+    """The scene and the setting, or the witness, that it was measured with."""
+    bound: float = math.inf
+    """Largest error that passes, in `unit`; infinite where nothing is judged."""
+    unit: str = ""
+    reason: str = ""
+    """Which error dominates; the bound follows from it."""
+    error: float | None = None
+    """Size of the deviation from what is expected, in `unit`; None if there is none, or none that is finite."""
+    values: dict[str, Any] = field(default_factory=dict)
+    """What else was measured, as JSON has it. What the paper has wrong has its error as "printed", and the one that it
+    must have as "expected_error"."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether the error is within its bound, which NaN never is, and what is wrong misses by what is stated."""
+        if (expected := self.values.get("expected_error")) is not None:
+            printed = self.values["printed"]
+            if printed is None or not abs(printed / expected - 1) <= _AS_STATED:
+                return False
+        return self.bound == math.inf or (self.error is not None and self.error <= self.bound)
+
+    def known(self) -> dict[str, Any]:
+        """Return the fields as JSON has them: without what is empty, and with None for what is not finite."""
+        return finite({name: value for name, value in asdict(self).items() if value not in ("", {}, math.inf)})
+
+    def summary_line(self) -> str:
+        """Return the result in a line, such as one that failed."""
+        by = f" ({self.by})" if self.by else ""
+        error = "-" if self.error is None else f"{self.error:.1e}"
+        line = f"{self.group}: {self.name}{by}: error {error}, at most {self.bound:.1e} {self.unit}".strip()
+        if "expected_error" in self.values:
+            line += f"; as printed {self.values['printed']:.2g}, expected {self.values['expected_error']:.2g}"
+        return line
+
+
+def finite(content: Any) -> Any:
+    """Return content for JSON, in which infinity and NaN are None."""
+    if isinstance(content, dict):
+        return {name: finite(value) for name, value in content.items()}
+    if isinstance(content, (list, tuple)):
+        return [finite(value) for value in content]
+    return None if isinstance(content, float) and not math.isfinite(content) else content
+
+
+def line(content: Any) -> str:
+    """Return content as a line of JSON."""
+    return json.dumps(finite(content), allow_nan=False) + "\n"
+
+
+@dataclass(frozen=True)
+class Check:
+    """A quantity to be measured; the fields are those of `Result`, but for the function that measures it."""
+
+    group: str
+    name: str
+    measure: Callable[[], float | dict[str, Any]]
+    """Returns the deviation with its sign, or values as JSON has them, among which may be the deviation as "error"."""
+    by: str = ""
+    bound: float = math.inf
+    unit: str = ""
+    reason: str = ""
+
+    def result(self) -> Result:
+        """Measure the quantity."""
+        measured = self.measure()
+        values = dict(measured) if isinstance(measured, dict) else {"error": measured}
+        deviation = values.pop("error", None)
+        error = None if deviation is None else abs(float(deviation))
+        return Result(self.group, self.name, self.by, self.bound, self.unit, self.reason, error, values)
+
+
+def observed_order(steps: np.ndarray, errors: np.ndarray) -> float:
+    """Return the observed order of convergence: the slope of log(error) over log(step)."""
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -1,0 +1,152 @@
+"""The tables of a benchmark, and the folder that it writes: the study, a diagram, and a summary."""
+
+import math
+import pathlib
+
+from mjbeer.model.setting import ROLLINGS
+from mjbeer.output import files
+from mjbeer.output.terminal import Table
+from mjbeer.studies.benchmark import points, work_precision
+from mjbeer.studies.benchmark.other_tools import WHOLE
+from mjbeer.studies.benchmark.points import Benchmark, Point, milliseconds
+
+COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
+"""The errors [rad] at which run times are compared with that of the best setting."""
+OTHERS = ("MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka")
+"""What is compared with mjbeer's best reduced setting."""
+_NOTES = """
+The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
+least of the rounds. What is done once, to build and compile a model or to compile equations, is not in it; whole calls
+and study.json have it. SciPy calls equations in interpreted Python; all else is compiled. Errors are against exact
+theory.
+
+![Work-precision diagram](work_precision.svg)
+"""
+
+
+def write(study: Benchmark, folder: pathlib.Path) -> None:
+    """Write study.json, the diagram work_precision.svg and, as the last, summary.md.
+
+    Raises:
+      OutputError: if a file cannot be written.
+    """
+    (folder / "summary.md").unlink(missing_ok=True)  # an earlier one would not match the study
+    files.write(folder / "study.json", study.json())
+    work_precision.draw(study, folder / "work_precision")
+    machine = study.machine
+    versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
+    absent = [f"\n{name} is absent: {reason}" for name, reason in study.settings["absent"].items()]
+    lines = [
+        "# mjbeer: error against run time\n",
+        f"{machine['processor']}, {machine['system']}, Python {machine['python']}; {versions}.",
+        *absent,
+        _NOTES,
+        *(table.markdown() for table in tables(study)),
+    ]
+    files.write(folder / "summary.md", "\n".join(lines))
+
+
+def tables(study: Benchmark) -> list[Table]:
+    """Return the tables of a study, in the order in which they are shown."""
+    return [*(cheapest(study, case) for case in study.cases), others(study), whole_calls(study)]
+
+
+def cheapest(study: Benchmark, case: str) -> Table:
+    """Return the fastest setting of a case for each error and way of rolling, with its run time and evaluations."""
+    found = study.of(case)
+    ways = [way for way in ROLLINGS if any(point.model == way for point in found)]
+    rows = []
+    for level in points.LEVELS:
+        best = [points.cheapest([point for point in found if point.model == way], level) for way in ways]
+        cells = ["not reached" if each is None else f"{each.setting}: {milliseconds(each.time)}" for each in best]
+        rows.append((f"{level:.0e} rad", *cells))
+    return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
+
+
+def _by(study: Benchmark, case: str, name: str) -> list[Point]:
+    """Return the points of a case on the curve of one of `OTHERS`."""
+    curve = ("reduced", "RK4") if name == "MuJoCo RK4" else (name, "")
+    return [point for point in study.of(case) if (point.model, point.method) == curve]
+
+
+def ratio(study: Benchmark, case: str, name: str, error: float) -> float | None:
+    """Return the run time of one of `OTHERS` over that of mjbeer's best reduced setting, at equal error [rad].
+
+    It is None if one of the two does not reach the error.
+    """
+    best = points.time_for((point for point in study.of(case) if point.model == "reduced"), error)
+    found = points.time_for(_by(study, case, name), error) / best
+    return found if 0 < found < math.inf else None
+
+
+def span(study: Benchmark, name: str) -> tuple[float, float]:
+    """Return the least and the largest of these ratios over all cases and `COMPARED` errors."""
+    found = [ratio(study, case, name, error) for case in study.cases for error in COMPARED]
+    known = [each for each in found if each is not None]
+    return min(known, default=math.nan), max(known, default=math.nan)
+
+
+def others(study: Benchmark) -> Table:
+    """Return run times of RK4 and of other tools over that of the best reduced setting, at equal error.
+
+    In brackets are evaluations of accelerations, of the fastest setting that keeps the error.
+    """
+    rows = []
+    for case in study.cases:
+        reduced = [point for point in study.of(case) if point.model == "reduced"]
+        for level in COMPARED:
+            cells = [milliseconds(points.time_for(reduced, level)) + _evaluations(reduced, level)]
+            for name in OTHERS:
+                found = ratio(study, case, name, level)
+                cells.append("-" if found is None else two_digits(found) + _evaluations(_by(study, case, name), level))
+            rows.append((f"{case}, {level:.0e} rad", *cells))
+    title = "Run time of others over that of the best reduced setting (under 1 they are faster), and evaluations"
+    return Table(title, ("error", "best reduced", *OTHERS), rows)
+
+
+def whole_calls(study: Benchmark) -> Table:
+    """Return the times of whole calls: of `mjbeer.simulate` to a tolerance, and of other tools with all set-up counted.
+
+    mjbeer's goes from the scene to a trajectory that judges itself. Of SciPy the fastest setting counts that keeps the
+    error, which nobody knows beforehand; heyoka compiles each scene's equations anew.
+    """
+    rows = []
+    for case in study.cases:
+        for error in COMPARED[:3]:
+            whole = [point for point in study.of(case) if point.model == WHOLE and math.isclose(point.value, error)]
+            if not whole:
+                continue
+            cells = [milliseconds(whole[0].time), f"{whole[0].error:.1e}"]
+            rivals = [point for name in OTHERS[1:4] for point in _by(study, case, name)]
+            best = points.cheapest(rivals, error)
+            cells += (
+                ["-", "-"]
+                if best is None
+                else [
+                    f"{milliseconds(best.time)} ({best.model.removeprefix('SciPy ')})",
+                    two_digits(best.time / whole[0].time),
+                ]
+            )
+            compiled = points.cheapest(_by(study, case, "heyoka"), error)
+            known = compiled is not None and compiled.setup is not None
+            cells.append(f"{milliseconds(compiled.setup)} + {milliseconds(compiled.time)}" if known else "-")
+            rows.append((f"{case}, {error:.0e} rad", *cells))
+    columns = (
+        "tolerance",
+        "mjbeer.simulate",
+        "its error [rad]",
+        "SciPy's best",
+        "over mjbeer's",
+        "heyoka, compiling + run",
+    )
+    return Table("Whole calls, with all set-up", columns, rows)
+
+
+def two_digits(value: float) -> str:
+    """Return a positive number with two digits."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def _evaluations(found: list[Point], error: float) -> str:
+    best = points.cheapest(found, error)
+    return "" if best is None or best.evaluations is None else f" ({best.evaluations:,})"

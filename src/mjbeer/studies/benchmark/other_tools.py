@@ -1,0 +1,217 @@
+"""Other tools that compute the motion of a scene: SciPy and heyoka, on equations of motion that are written by hand.
+
+A frozen load has the state (phi, phi_dot), and u = a phi; a sliding one (u, phi, u_dot, phi_dot). With
+p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and M_e = m + m_can + I_can/a^2,
+
+    frozen:   phi_ddot = (slope + p cos(phi) - (q + chord/4 phi_dot^2) sin(phi))
+                         / (base + chord/2 - chord/2 cos(phi)),                               eq. (52)
+    sliding:  phi_ddot = (p cos(phi) - (q + swing phi_dot^2 cos(phi)) sin(phi)) / (base + swing sin^2(phi)),
+              u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),                  eqs. (46), (47)
+
+with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine. Damping c between can and
+load is a torque c w with w = u_dot/a - phi_dot. It adds c w (1 - m b/(M_e a) cos(phi)) to the numerator of phi_ddot,
+and -c w/(M_e a) to u_ddot.
+"""
+
+import importlib
+import math
+import warnings
+from collections.abc import Callable, Generator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mjbeer.exceptions import DivergenceError, UnsupportedError
+from mjbeer.model.setting import Setting
+from mjbeer.simulation.run import integrate as simulate
+from mjbeer.theory.scene import Scene
+
+Rates = Callable[[float, Sequence[Any]], tuple[Any, ...]]
+Motion = tuple[np.ndarray, np.ndarray, int | None]
+"""phi [rad] and u [m], with one entry for each sample, and how often accelerations were evaluated, if that is known."""
+Integrate = Callable[[], Motion]
+"""A function that integrates a motion from its start at every call. It raises DivergenceError if the tool fails."""
+Function = Callable[[Any], Any]
+WHOLE = "mjbeer.simulate"
+"""The name of whole calls of mjbeer, which are timed like another tool."""
+_FINEST = 2.3e-14  # solve_ivp replaces an rtol below 100 eps, with a warning
+_MOST_EVALUATIONS = 1_000_000  # of a run of solve_ivp, which has no limit of its own; runs over seconds need thousands
+_MOST_STEPS = 100_000  # of odeint between two samples; its default is 500
+_MOST_TAYLOR_STEPS = 1_000_000  # without a limit heyoka may never end; a run over seconds takes hundreds
+
+
+def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math.cos) -> Rates:
+    """Return the function f(t, state) that gives the rates of change of a scene's state [rad, m, and per s].
+
+    Pass the state as plain floats: with NumPy's scalars the function takes four times as long. With the `sin` and `cos`
+    of a library of symbols, it returns symbols.
+
+    Raises:
+      UnsupportedError: if the scene has drag, or damping that is not proportional to the slip rate.
+    """
+    if scene.drag or any(scene.damping_law.coefficients[1:]):
+        raise UnsupportedError("the equations written by hand have linear damping alone: leave out drag and the rest")
+    form, mass, radius = scene.oscillator, scene.effective_mass, scene.can.radius
+    p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
+    slope, half, quarter, middle = form.slope, form.chord / 2, form.chord / 4, form.base + form.chord / 2
+    steady, share, damping = scene.drive / mass, scene.load.moment / mass, scene.damping_law.linear
+
+    def frozen(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
+        phi, phi_dot = state
+        s, c = sin(phi), cos(phi)
+        return phi_dot, (slope + p * c - (q + quarter * (phi_dot * phi_dot)) * s) / (middle - half * c)
+
+    def sliding(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
+        _u, phi, u_dot, phi_dot = state
+        s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
+        phi_ddot = (p * c - (q + form.swing * square * c) * s) / (form.base + form.swing * (s * s))
+        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
+
+    def damped(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
+        _u, phi, u_dot, phi_dot = state
+        s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
+        torque = damping * (u_dot / radius - phi_dot)
+        turned = p * c - (q + form.swing * square * c) * s + torque * (1 - share / radius * c)
+        phi_ddot = turned / (form.base + form.swing * (s * s))
+        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square) - torque / (mass * radius), phi_ddot
+
+    return frozen if scene.attachment == "frozen" else damped if damping else sliding
+
+
+def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:
+    """Return the initial state, in the order of `right_hand_side`, with u and u_dot from `Scene.start`."""
+    if scene.attachment == "frozen":
+        return phi0, phi_dot0
+    u, u_dot = scene.start(phi0, phi_dot0)
+    return u, phi0, u_dot, phi_dot0
+
+
+def coordinates(scene: Scene, states: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return phi [rad] and u [m] of states with one row for each sample."""
+    if scene.attachment == "frozen":
+        return states[:, 0], scene.can.radius * states[:, 0]
+    return states[:, 1], states[:, 0]
+
+
+class OtherTool(NamedTuple):
+    """A tool that computes the motion of a scene, with the ladder of its tolerances, finest last."""
+
+    name: str
+    tolerances: tuple[float, ...]
+    set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate]
+    """Takes scene, phi0 [rad], phi_dot0 [rad/s], times of samples [s] and tolerance. Equations, models and compilation
+    are done there, so that only calls of what it returns need be timed."""
+
+
+def _solve_ivp(
+    method: str, scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float
+) -> Integrate:
+    from scipy.integrate import solve_ivp
+
+    rates, begin = right_hand_side(scene), start(scene, phi0, phi_dot0)
+    span, allowed = (0.0, float(times[-1])), {"rtol": max(tolerance, _FINEST), "atol": tolerance}
+
+    def integrate() -> Motion:
+        remaining = iter(range(_MOST_EVALUATIONS))
+
+        def count_and_evaluate(time: float, state: np.ndarray) -> tuple[float, ...]:
+            next(remaining)
+            return rates(time, state.tolist())
+
+        try:
+            with _warnings_as_errors():
+                solution = solve_ivp(count_and_evaluate, span, begin, method=method, t_eval=times, **allowed)
+        except StopIteration:
+            raise DivergenceError(
+                f"SciPy {method}: {_MOST_EVALUATIONS} evaluations did not reach {span[1]:g} s"
+            ) from None
+        if not solution.success:
+            raise DivergenceError(f"SciPy {method}: {solution.message}")
+        return *coordinates(scene, solution.y.T), int(solution.nfev)
+
+    return integrate
+
+
+def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
+    from scipy.integrate import odeint
+
+    rates, begin = right_hand_side(scene), start(scene, phi0, phi_dot0)
+    settings = {"rtol": tolerance, "atol": tolerance, "tfirst": True, "mxstep": _MOST_STEPS}
+
+    def integrate() -> Motion:
+        with _warnings_as_errors():
+            states, told = odeint(
+                lambda time, state: rates(time, state.tolist()), begin, times, full_output=True, **settings
+            )
+        return *coordinates(scene, states), int(told["nfe"][-1])
+
+    return integrate
+
+
+@contextmanager
+def _warnings_as_errors() -> Generator[None]:
+    """Turn SciPy's warnings into DivergenceErrors: if odeint fails, it only warns, and still returns numbers."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            yield
+    except (Warning, ValueError, OverflowError) as error:  # the last two: a state is too large for a sine
+        raise DivergenceError(f"SciPy: {error}") from error
+
+
+def _heyoka(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
+    """Taylor's method, compiled for the equations of one scene and one tolerance (github.com/bluescarni/heyoka.py)."""
+    import heyoka
+
+    begin, grid = np.array(start(scene, phi0, phi_dot0)), times.tolist()  # it reads a list faster than an array
+    variables = heyoka.make_vars(*(f"x{index}" for index in range(len(begin))))
+    rates = right_hand_side(scene, heyoka.sin, heyoka.cos)(0.0, variables)
+    heyoka.llvm_state.set_diskcache_enabled(False)  # the time of set-up must not depend on what ran before
+    heyoka.llvm_state.clear_memcache()
+    equations = list(zip(variables, rates, strict=True))
+    integrator = heyoka.taylor_adaptive(equations, begin.tolist(), tol=tolerance, compact_mode=False)
+
+    def integrate() -> Motion:
+        integrator.time, integrator.state[:] = 0.0, begin
+        outcome, _, _, _, _, states = integrator.propagate_grid(grid, max_steps=_MOST_TAYLOR_STEPS)
+        if outcome != heyoka.taylor_outcome.time_limit:
+            raise DivergenceError(f"heyoka: {outcome} at {integrator.time:g} s")
+        return *coordinates(scene, states), None  # it has no evaluations, but Taylor series of each step
+
+    return integrate
+
+
+def _whole_call(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
+    def integrate() -> Motion:
+        run = simulate(scene, phi0, phi_dot0, Setting(tolerance=tolerance), times)
+        return run.phi, run.u, None
+
+    return integrate
+
+
+def _decades(first: int, last: int) -> tuple[float, ...]:
+    return tuple(float(f"1e-{digits}") for digits in range(first, last + 1))
+
+
+OTHER_TOOLS = {
+    tool.name: tool
+    for tool in (
+        OtherTool("SciPy DOP853", _decades(3, 13), partial(_solve_ivp, "DOP853")),
+        OtherTool("SciPy LSODA", _decades(3, 13), partial(_solve_ivp, "LSODA")),
+        OtherTool("SciPy odeint", _decades(3, 13), _odeint),  # the method of LSODA, in a compiled loop
+        OtherTool("heyoka", _decades(3, 16), _heyoka),
+        OtherTool(WHOLE, _decades(3, 12), _whole_call),
+    )
+}
+"""All other tools by their names, whether they can be imported here or not."""
+
+
+def absent() -> dict[str, str]:
+    """Return the names of the other tools that cannot be imported here, each with the reason, on one line."""
+    try:
+        importlib.import_module("heyoka")  # optional; in a checkout `pip install ".[peers]"` installs it
+    except Exception as error:  # a package that lacks a library of the system may raise anything
+        return {"heyoka": " ".join(str(error).split()) or type(error).__name__}
+    return {}

@@ -1,1 +1,0 @@
-"""Many scenes in one call: it imports `theory`, `model`, `simulation` and `output`."""

@@ -1,0 +1,240 @@
+"""Checks of cans that are free in space: the slosh in a standing one, and a lying one that rolls."""
+
+import math
+from collections.abc import Iterator
+from functools import cache, partial
+
+import mujoco
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from mjbeer.checks import Check
+from mjbeer.model.build import build
+from mjbeer.model.engine import quiet
+from mjbeer.model.free import attach, transverse_inertia
+from mjbeer.model.setting import MujocoIntegrator
+from mjbeer.studies import attached_can
+from mjbeer.theory.can import Can
+from mjbeer.theory.exact import exact
+from mjbeer.theory.named import frozen, sliding
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
+
+_METAL = Can.sheet_metal()
+_FILLS = (0.1, 0.3, 0.5, 0.7, 0.9)
+SHARES = (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 2.0, 4.0)
+"""Frequencies of shaking, over that of the first mode; the next ones have 1.7, 2.2, 2.5 and 2.9."""
+_ANGLE = 1e-3
+"""Tilt of the pendulums that are let go [rad]."""
+_ROUNDED = 1.05
+"""Factor on the errors that theory gives, as their bound: two digits of it are shown."""
+_THROWN = 100
+_GAIN = 0.1
+"""Largest energy that a thrown can may gain over that which it had: a rigid can gains 0.05 at 5 ms."""
+
+
+def checks() -> Iterator[Check]:
+    """Yield the checks of standing and of lying cans."""
+    for fill in _FILLS:
+        yield Check(
+            "standing",
+            "frequencies of 3 modes, by the eigenvalues of M and K",
+            partial(_eigenvalues, water(3, fill, damping_ratio=0.0)),
+            f"{fill:.0%} full, held",
+            1e-9,
+            "relative",
+            "rounding",
+        )
+    yield Check(
+        "standing",
+        f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
+        lambda: let_go(water(damping_ratio=0.0))[0],
+        "half full, held, RK4, 1 ms",
+        5e-9,
+        "relative",
+        "RK4: (omega h)^4/120, 2.5e-9",
+    )
+    yield Check(
+        "standing",
+        "logarithmic decrement",
+        lambda: let_go(water())[1],
+        "half full, held, RK4, 1 ms",
+        1e-5,
+        "relative",
+        "breaking waves, which take the square of the angle: 4e-6; and the rates at crossings between samples",
+    )
+    for modes in (1, 2, 3, 5):
+        can = water(modes)
+        for place, name in ((0, "force under shaking"), (2, "moment under pitching")):
+            yield Check(
+                "standing",
+                f"{name} at 8 frequencies, 0.2 to 4 of the first, against the infinite series",
+                lambda can=can, place=place: np.abs(reaction_errors(can)[place]).max(),
+                f"half full, {modes} mode{'s' * (modes > 1)}",
+                float(_ROUNDED * np.abs(left_out(can)[place]).max()),
+                "relative",
+                "the modes left out, whose share the bound is",
+            )
+    for timestep in (2e-3, 5e-3):
+        for modes in (1, 3):
+            yield Check(
+                "standing",
+                f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy",
+                partial(thrown, water(modes), timestep),
+                f"half full, {modes} mode{'s' * (modes > 1)}, implicitfast, {1e3 * timestep:g} ms",
+                0,
+                "",
+                "stable or not",
+            )
+    for name, scene, phi0 in (
+        ("frozen", frozen(math.radians(8), can=_METAL), 2.0),
+        ("sliding", sliding(math.radians(8), can=_METAL), 1.0),
+    ):
+        yield Check(
+            "lying",
+            "phi over 2 s",
+            lambda scene=scene, phi0=phi0: lying(scene, phi0)[0],
+            f"{name}, metal can, free in space, RK4, 0.5 ms",
+            1e-6,
+            "rad",
+            "softness of the contact",
+        )
+        yield Check(
+            "lying",
+            "turn about the vertical over 2 s of a can that starts askew on level ground",
+            lambda scene=scene, phi0=phi0: lying(Scene(scene.can, scene.load, 0.0, scene.attachment), phi0, 0.5)[1],
+            f"{name}, metal can, free in space, RK4, 0.5 ms",
+            1e-9,
+            "rad",
+            "rounding",
+        )
+
+
+def water(modes: int = 1, fill: float = 0.5, damping_ratio: float | None = None) -> Standing:
+    """Return a can of water."""
+    return standing("water", fill, modes=modes, damping_ratio=damping_ratio)
+
+
+def _eigenvalues(can: Standing) -> float:
+    """Return the largest relative error of omega^2 = K/M; K is the torque of weight at an angle over its sine."""
+    model = build(can, free=False)
+    data, inertia, angle, errors = mujoco.MjData(model), np.zeros((model.nv, model.nv)), 0.5, []
+    for mode, omega in enumerate(can.frequencies(), 1):
+        data.qpos[:] = model.qpos0
+        data.joint(f"slosh{mode}").qpos = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
+        mujoco.mj_forward(model, data)
+        mujoco.mj_fullM(model, data, inertia)
+        place = model.joint(f"slosh{mode}").dofadr[0] + 1
+        stiffness = data.qfrc_bias[place] / math.sin(angle)
+        errors.append(math.sqrt(stiffness / inertia[place, place]) / omega - 1)
+    return max(errors, key=abs)
+
+
+@cache
+def let_go(can: Standing) -> tuple[float, float]:
+    """Return the relative errors of frequency and decrement of the first mode, let go in a can that is held."""
+    model = build(can, free=False)
+    data, rows_, omega, ratio = mujoco.MjData(model), [], can.frequencies()[0], can.damping_ratios()[0]
+    data.joint("slosh1").qpos = [math.cos(_ANGLE / 2), 0, math.sin(_ANGLE / 2), 0]
+    while data.time * omega < 64:
+        mujoco.mj_forward(model, data)
+        rows_.append((data.time, data.joint("slosh1").qpos[2], data.joint("slosh1").qvel[1]))
+        mujoco.mj_step(model, data)
+    times, sines, rates = np.array(rows_).T
+    way = CubicHermiteSpline(times, 2 * np.arcsin(sines), rates)
+    crossings = way.roots(extrapolate=False)
+    cycles = (len(crossings) - 1) / 2
+    root = math.sqrt(1 - ratio**2)
+    measured = 2 * math.pi * cycles / (crossings[-1] - crossings[0]) / (omega * root)
+    speeds = np.abs(way(crossings, 1))
+    decrement = math.log(speeds[0] / speeds[-1]) / cycles
+    expected = 2 * math.pi * ratio / root
+    return measured / (1 - _ANGLE**2 / 16) - 1, decrement / expected - 1 if ratio > 0 else decrement
+
+
+def response(can: Standing, omega: float) -> Reaction:
+    """Return the reaction of MuJoCo's model without its shell, by its inertia and its stiffness at rest."""
+    spec = mujoco.MjSpec()
+    spec.option.gravity = [0, 0, -can.gravity]
+    rig = spec.worldbody.add_body(name="rig", mass=1.0, inertia=[1.0] * 3, explicitinertial=True)
+    rig.add_joint(name="x", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1, 0, 0])
+    rig.add_joint(name="theta", type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 1, 0])
+    attach(spec, can, pos=[0, 0, -can.height / 2], free=False, body="rig")
+    model = spec.compile()
+    data, inertia = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, inertia)
+    used = [0, 1, *(model.joint(f"can-slosh{mode}").dofadr[0] + 1 for mode in range(1, can.modes + 1))]
+    stiffness, step = np.zeros((model.nv, model.nv)), 1e-4
+    for place in used:
+        forces = []
+        for side in (step, -step):
+            mujoco.mj_resetData(model, data)
+            way = np.zeros(model.nv)
+            way[place] = side
+            mujoco.mj_integratePos(model, data.qpos, way, 1.0)
+            mujoco.mj_forward(model, data)
+            forces.append(data.qfrc_bias.copy())
+        stiffness[:, place] = (forces[0] - forces[1]) / (2 * math.sin(step))
+    # The rig and the shell are rigid: a mass, and a moment about the liquid's middle.
+    shell, above = can.can, (can.can.length - can.height) / 2
+    across = transverse_inertia(shell) + shell.mass * above**2
+    inertia[:2, :2] -= [[1 + shell.mass, shell.mass * above], [shell.mass * above, 1 + across]]
+    stiffness[1, 1] += shell.mass * can.gravity * above
+    dynamic = (stiffness - omega**2 * inertia)[np.ix_(used, used)] / -(omega**2)
+    found = dynamic[:2, :2] - dynamic[:2, 2:] @ np.linalg.solve(dynamic[2:, 2:], dynamic[2:, :2])
+    return Reaction(found[0, 0], found[0, 1], found[1, 1])
+
+
+@cache
+def reaction_errors(can: Standing) -> np.ndarray:
+    """Return the relative errors of force, coupling and moment at each of `SHARES`, shape (3, shares)."""
+    omegas = np.array(SHARES) * can.frequencies(1)[0]
+    found = np.array([response(can, float(omega)) for omega in omegas]).T
+    return found / np.array(can.reaction(omegas)) - 1
+
+
+@cache
+def left_out(can: Standing) -> np.ndarray:
+    """Return what theory says of those errors: modes left out that stay at their pivots instead of moving."""
+    many, omegas = SERIES, np.array(SHARES)[:, None] * can.frequencies(1)[0]
+    omega, mass = (each[can.modes :] for each in (can.frequencies(many), can.slosh_masses(many)))
+    pivot = can.pivots(many)[can.modes :] - can.height / 2
+    length = can.gravity / omega**2
+    bob, moving = pivot - length, mass * omegas**2 / (omega**2 - omegas**2)
+    arm = bob + can.gravity / omegas**2
+    missing = [
+        moving,
+        moving * arm - mass * length,
+        moving * arm**2 - mass * (pivot**2 - bob**2) - mass * length * can.gravity / omegas**2,
+    ]
+    return -np.sum(missing, axis=-1) / np.array(can.reaction(omegas[:, 0]))
+
+
+def thrown(can: Standing, timestep: float, integrator: MujocoIntegrator = "implicitfast", count: int = _THROWN) -> int:
+    """Return how many cans diverge or gain energy, thrown with some 1 m/s and 5 rad/s from 0.3 m for a second."""
+    model = build(can, integrator=integrator, timestep=timestep)
+    model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    data, random, failed = mujoco.MjData(model), np.random.default_rng(0), 0
+    for _ in range(count):
+        mujoco.mj_resetData(model, data)
+        turn = random.normal(size=4)
+        data.joint("free").qpos = [0, 0, 0.3, *turn / np.linalg.norm(turn)]
+        data.joint("free").qvel = random.normal(size=6) / math.sqrt(3) * [1, 1, 1, 5, 5, 5]
+        with quiet():
+            mujoco.mj_forward(model, data)
+            start = lowest = float(data.energy.sum())
+            gain = 0.0
+            for _ in range(round(1 / timestep)):
+                mujoco.mj_step(model, data)
+                energy = float(data.energy.sum())
+                lowest, gain = min(lowest, energy), max(gain, energy - lowest)
+        failed += not gain <= _GAIN * start or any(warning.number for warning in data.warning)
+    return failed
+
+
+@cache
+def lying(scene: Scene, phi0: float, yaw: float = 0.0) -> tuple[float, float]:
+    """Return the largest error of phi [rad] of a free can over 2 s, and the largest turn of its axis."""
+    times, phi, drift = attached_can.roll(scene, phi0, 2.0, yaw=yaw)
+    return float(np.abs(phi - exact(scene, times, phi0).phi).max()), drift

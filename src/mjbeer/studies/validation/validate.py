@@ -1,0 +1,95 @@
+"""validate(): measure every check against theory and every claim of the paper; the tables of both."""
+
+import json
+from dataclasses import dataclass
+
+from rich.console import Console
+
+from mjbeer import paper
+from mjbeer.checks import Check, Result, finite
+from mjbeer.output.terminal import Table, progress_bar
+from mjbeer.paper.claim import CONFIRMED, CORRECTED, LIMIT
+from mjbeer.studies.study import FAILED, PASSED, machine, table
+from mjbeer.studies.validation import damped_checks, motion_checks, standing_checks
+
+_WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
+"""The verdicts of the audit, short enough for a terminal."""
+
+
+@dataclass(frozen=True)
+class Validation:
+    """The results of a validation."""
+
+    results: list[Result]
+    """Results of the checks against exact theory."""
+    audit: list[Result]
+    """Results of the claims of the paper."""
+
+    @property
+    def failures(self) -> list[str]:
+        """A line for each check and each claim that failed."""
+        return [result.summary_line() for result in (*self.results, *self.audit) if not result.passed]
+
+    @property
+    def passed(self) -> bool:
+        """Whether all passed."""
+        return not self.failures
+
+    @property
+    def sentence(self) -> str:
+        """How many checks and how many claims passed."""
+        checks, claims = (sum(result.passed for result in listed) for listed in (self.results, self.audit))
+        total = len(self.results), len(self.audit)
+        return f"{checks} of {total[0]} checks and {claims} of {total[1]} claims of the paper passed"
+
+    def tables(self, document: bool = False) -> list[Table]:
+        """Return the tables of the checks and of the audit, for a terminal or a document."""
+        return [table("Validation against exact theory", self.results, document), audit(self.audit, document)]
+
+    def json(self) -> str:
+        """Return the results as JSON, with the versions of the packages that were used."""
+        listed = {
+            name: [vars(result) | {"passed": result.passed} for result in results]
+            for name, results in (("checks", self.results), ("audit", self.audit))
+        }
+        content = {"versions": machine()["versions"], "passed": self.passed, **listed}
+        return json.dumps(finite(content), indent=2, allow_nan=False) + "\n"
+
+
+def checks() -> list[Check]:
+    """Return all checks of the validation, in the order of its table."""
+    motions = (motion_checks.checks, damped_checks.checks, motion_checks.models, motion_checks.extremes)
+    return [check for chapter in (*motions, standing_checks.checks) for check in chapter()]
+
+
+def validate(console: Console | None) -> Validation:
+    """Measure every check and every claim, and return the results; `console` shows a progress bar."""
+    listed, claims = checks(), paper.claims()
+    results, audited = [], []
+    with progress_bar(console, len(listed) + len(claims)) as begin:
+        for check in listed:
+            begin(f"{check.name} ({check.by})")
+            results.append(check.result())
+        for claim in claims:
+            begin(f"{claim.equation} {claim.quantity}")
+            audited.append(claim.measure())
+    return Validation(results, audited)
+
+
+def audit(results: list[Result], document: bool = False) -> Table:
+    """Return the table of the audit; a `document` also has the witnesses, and what dominates each error."""
+    lines = []
+    for result in results:
+        printed, right = result.values.get("printed"), f"{result.error:.1e}"
+        errors = (right, "") if printed is None else (f"{printed:.2g}", right)
+        bound, verdict = f"{result.bound:.1e}", result.values["verdict"]
+        if document:
+            line = verdict, result.by, *errors, bound + ("" if result.passed else FAILED), result.reason
+        else:
+            line = _WORDS[verdict], *errors, bound, PASSED[result.passed]
+        lines.append((result.group, result.name, *line))
+    title, columns = "The paper, equation by equation", ("equation", "quantity", "verdict")
+    if document:
+        columns += ("witness", "error, printed", "error, right", "at most", "what dominates")
+        return Table(title, columns, lines, left=(0, 1, 2, 3, 7))
+    return Table(title, (*columns, "printed", "right", "at most", "claim"), lines, left=(0, 1, 2, 6))

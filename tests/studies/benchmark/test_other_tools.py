@@ -1,0 +1,116 @@
+"""The equations written by hand against the theory's, and every other tool that is there against exact theory."""
+
+import importlib
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
+from mjbeer.exceptions import DivergenceError, UnsupportedError
+from mjbeer.studies.benchmark import other_tools
+from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, WHOLE, OtherTool
+from mjbeer.studies.benchmark.points import CASES, Case
+from mjbeer.theory.damping import Damping
+from tests.support.scenes import METAL
+
+pytestmark = pytest.mark.slow
+
+# A tolerance holds for one step, of which there are some hundreds, and for metres, of which a radian of rolling has
+# 0.03. Measured: up to 75 times the tolerance (LSODA).
+GLOBAL = 300
+# The error over that tolerance is not constant: steps are few, and methods change their order. Measured: 0.90 to 1.13.
+SLOPE = 0.2
+# Where damping is stiff, LSODA loses some digits more: measured up to 500 times the tolerance.
+STIFF_GLOBAL = 1000
+TIMES = np.linspace(0, 1.024, 65)
+STARTS = {
+    "sliding": (sliding(), 1.0, 0.0),
+    "sliding, metal can": (sliding(can=METAL), 1.0, 2.0),
+    "frozen": (frozen(), 0.0, 0.0),
+    "frozen, metal can": (frozen(can=METAL), -0.5, 1.0),
+    "pendulum": (pendulum(), 1.0, 0.0),
+}
+EPS = float(np.finfo(float).eps)
+
+
+@pytest.mark.parametrize("scene", [sliding(drag=0.1), sliding(damping=Damping(0.1, 0.2))])
+def test_other_losses_are_refused(scene: Scene) -> None:
+    with pytest.raises(UnsupportedError, match="linear damping alone"):
+        other_tools.right_hand_side(scene)
+
+
+def params(names: Iterable[str]) -> list[Any]:
+    """Parameters of a test of tools; for those that are absent it is skipped, with the reason."""
+    absent = other_tools.absent()
+    marks = {name: [pytest.mark.skip(f"{name} is absent: {reason}")] for name, reason in absent.items()}
+    return [pytest.param(OTHER_TOOLS[name], id=name, marks=marks.get(name, ())) for name in names]
+
+
+BARE = params([name for name in OTHER_TOOLS if name != WHOLE])
+
+
+def error(tool: OtherTool, scene: Scene, phi0: float, phi_dot0: float, tolerance: float) -> float:
+    """The larger of the errors of phi and u/a, against exact theory, in the second of two runs."""
+    run = tool.set_up(scene, phi0, phi_dot0, TIMES, tolerance)
+    (first, *_), (phi, u, _) = run(), run()
+    assert first is not phi
+    assert (first == phi).all()
+    truth = exact(scene, TIMES, phi0, phi_dot0)
+    return max(np.abs(phi - truth.phi).max(), np.abs(u - truth.u).max() / scene.can.radius)
+
+
+@pytest.mark.parametrize("start", STARTS.values(), ids=STARTS.keys())
+@pytest.mark.parametrize("tool", BARE)
+def test_tolerances_lead_to_exact_theory(tool: OtherTool, start: tuple[Scene, float, float]) -> None:
+    coarse, fine = 1e-4, 1e-10
+    first, last = error(tool, *start, coarse), error(tool, *start, fine)
+    assert last <= GLOBAL * fine
+    assert math.log(first / last) / math.log(coarse / fine) == pytest.approx(1, abs=SLOPE)
+
+
+@pytest.mark.parametrize("tool", params(["SciPy LSODA", "SciPy odeint", "heyoka"]))
+@pytest.mark.parametrize("case", [CASES["stiff"], CASES["stiffer"]], ids=["stiff", "stiffer"])
+def test_stiff_cases_lead_to_exact_theory(tool: OtherTool, case: Case) -> None:
+    assert error(tool, case.scene, case.phi0, 0.0, 1e-7) <= STIFF_GLOBAL * 1e-7
+
+
+def test_a_whole_call_is_that_of_simulate() -> None:
+    phi, u, _ = OTHER_TOOLS[WHOLE].set_up(sliding(), 1.0, 0.0, TIMES, 1e-9)()
+    run = simulate(sliding(), float(TIMES[-1]), 1.0, tolerance=1e-9, times=TIMES)
+    assert (phi == run.phi).all()
+    assert (u == run.u).all()
+
+
+# What the tools themselves say of phi = 1/(1 - t), which is infinite after 1 s.
+FAILURES = {
+    "SciPy DOP853": "step size is less than spacing between numbers",
+    "SciPy LSODA": "LSODA: 10000 evaluations did not reach 1.024 s",
+    "SciPy odeint": r"(Excess work done|Illegal input detected|Repeated error test failures)",
+    "heyoka": r"heyoka: .*err_nf_state.* at (0\.99|1)",
+}
+
+
+@pytest.mark.parametrize("tool", BARE)
+def test_a_failure_is_raised(
+    tool: OtherTool, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    blow_up = lambda _, state: (state[0] * state[0], 0 * state[0])  # noqa: E731
+    monkeypatch.setattr(other_tools, "right_hand_side", lambda *_: blow_up)
+    monkeypatch.setattr(other_tools, "_MOST_EVALUATIONS", 10_000)
+    run = tool.set_up(frozen(), 1.0, 0.0, TIMES, 1e-6)
+    for _ in range(2):
+        with pytest.raises(DivergenceError, match=FAILURES[tool.name]):
+            run()
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("broken", [ImportError("cannot open libfmt.so.11"), OSError("no such driver")], ids=str)
+def test_what_cannot_be_imported_is_absent_and_says_why(broken: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(_: str) -> None:
+        raise broken
+
+    monkeypatch.setattr(importlib, "import_module", fail)
+    assert other_tools.absent() == {"heyoka": str(broken)}

@@ -1,0 +1,135 @@
+"""The benchmark on short ladders: orders, floors, failures. Nothing is asserted of times."""
+
+import itertools
+import json
+import math
+import pathlib
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from mjbeer.cli.app import main
+from mjbeer.exceptions import ParameterError
+from mjbeer.studies.benchmark import other_tools, timing, work_precision
+from mjbeer.studies.benchmark.points import CASES, INTERVAL, Benchmark, Curve, Point
+from mjbeer.studies.benchmark.timing import climb, conduct, ladders
+from tests.support import stubs
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def measured() -> Benchmark:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        stubs.benchmark(monkeypatch)
+        return conduct(["frozen"], False, None)
+
+
+def on(found: Benchmark, *curve: str) -> list[Point]:
+    return [each for each in found.points if each.curve == Curve(*curve)]
+
+
+@pytest.mark.parametrize(
+    ("errors", "floored"),
+    [
+        (1e-2 * 16.0 ** -np.arange(8), False),
+        (np.maximum(1e-2 * 16.0 ** -np.arange(8), 6e-9), True),
+        ([2.0, 1.9, 2.1, 2.0, 1.8, 1.0, 0.1], False),  # motions that lost their phase
+        ([1e-2, 1e-9, 1e-9, 1e-9], False),  # too few
+    ],
+)
+def test_a_floor_is_where_errors_stop_falling(errors: Sequence[float], floored: bool) -> None:
+    rungs = [Point("frozen", "reduced", "RK4", "timestep", 16e-3 / 2**k, error) for k, error in enumerate(errors)]
+    for rung in rungs:
+        rung.u_max = rung.phi_max
+    assert timing._floored(rungs) is floored
+
+
+def test_a_ladder_ends_at_its_floor() -> None:
+    assert len(climb(CASES["frozen"], Curve("reduced", "DOP853"), [16e-3 / 2**k for k in range(10)])) < 10
+
+
+def test_every_point_is_whole(measured: Benchmark) -> None:
+    """Evaluations are those of the method: RK4 has four a step."""
+    assert {each.curve: len(on(measured, *vars(each.curve).values())) for each in measured.points} == {
+        curve: len(values) for curve, values in stubs.LADDERS.items()
+    }
+    for point in measured.points:
+        assert point.failure is None, point
+        assert point.error < math.inf
+        assert len(point.times) == 2
+        assert point.time > 0
+        assert point.setup is not None
+        known = point.parameter == "timestep" or point.model.startswith("SciPy")
+        assert (point.evaluations is not None) == known
+    steps = [round(CASES["frozen"].times[-1] / each) for each in stubs.STEPS]
+    assert [each.evaluations for each in on(measured, "reduced", "RK4")] == [4 * count for count in steps]
+    few, *_, many = (each.evaluations or 0 for each in on(measured, "reduced", "DOP853"))
+    assert 12 * CASES["frozen"].times[-1] / 64e-3 * 0.9 < few < many
+
+
+def test_what_is_written_is_read(measured: Benchmark, tmp_path: pathlib.Path) -> None:
+    (tmp_path / "study.json").write_text(measured.json())
+    assert Benchmark.load(tmp_path / "study.json") == measured
+    (tmp_path / "study.json").write_text(json.dumps({"points": []}))
+    with pytest.raises(ParameterError, match=r"study\.json was not written by `mjbeer benchmark`"):
+        Benchmark.load(tmp_path / "study.json")
+
+
+def test_a_setting_that_fails_is_a_point_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the timesteps of DOP853 the coarsest ones diverge, and the ladder goes on to those that do not."""
+    curve = Curve("reduced", "DOP853")
+    stubs.benchmark(monkeypatch, {curve: ladders(CASES["hoop"].scene)[curve]})
+    done = conduct(["hoop"], False, None)
+    failed = [each for each in done.points if each.failure]
+    assert failed
+    assert all(math.isinf(each.error) and not each.times for each in failed)
+    assert min(each.error for each in done.of("hoop")) < 1e-10
+
+
+def test_a_tool_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, lost = CASES["frozen"], np.where(CASES["frozen"].times > 1, np.nan, 0)
+    for result in ((lost, 0 * case.times, 1), (0 * case.times, lost, 1)):
+        careless = other_tools.OtherTool("heyoka", (1e-3,), lambda *_, result=result: lambda: result)
+        monkeypatch.setitem(other_tools.OTHER_TOOLS, "heyoka", careless)
+        ((point, rung),) = climb(case, Curve("heyoka", "", "tolerance"), [1e-3])
+        assert (point.failure, rung) == ("heyoka: the motion did not stay finite", None)
+
+
+def test_a_tool_that_is_absent_is_in_the_summary_with_the_reason(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert "heyoka" not in {curve.model for curve in ladders(CASES["frozen"].scene, missing=["heyoka"])}
+    stubs.benchmark(monkeypatch, stubs.FEW)
+    reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
+    monkeypatch.setattr(work_precision, "draw", lambda study, path: None)
+    monkeypatch.setattr(other_tools, "absent", lambda: {"heyoka": reason})
+    assert main(["benchmark", "frozen", "--output", str(tmp_path)]) == 0
+    assert f"\nheyoka is absent: {reason}\n" in (tmp_path / "summary.md").read_text()
+
+
+def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:
+    with pytest.raises(ParameterError, match=r"scene must be one of 'sliding', .*; got 'bottle'"):
+        conduct(["bottle"], True, None)
+    for name, case in CASES.items():
+        found = ladders(case.scene)
+        assert {each.model for each in found} >= {"reduced", *other_tools.OTHER_TOOLS}
+        assert ("equality" in {each.model for each in found}) == (name not in ("sliding", "stiff", "stiffer"))
+        steps = found[Curve("reduced", "RK4")]
+        assert (steps[0], steps[-1]) == (16e-3, 16e-3 / 2**9)
+        assert all(a == 2 * b for a, b in itertools.pairwise(steps))
+        assert all(INTERVAL % each == 0 for each in steps)
+
+
+def test_the_command_writes_everything(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stubs.benchmark(monkeypatch)
+    assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
+    names = {each.name for each in (tmp_path / "new").iterdir()}
+    assert names == {"study.json", "summary.md", ".lock", "work_precision.svg"}
+    summary = (tmp_path / "new" / "summary.md").read_text()
+    for text in ("cheapest setting for an error", "SciPy odeint", "Whole calls"):
+        assert text in summary
+    assert "cheapest setting" in capsys.readouterr().out

@@ -1,0 +1,349 @@
+"""A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact theory."""
+
+import contextlib
+import math
+import pathlib
+import subprocess
+import sys
+import time
+import warnings
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray
+
+import mjbeer
+from mjbeer import Can, LiquidWarning, Scene, Trajectory, frozen, liquid, pendulum, simulate, sliding
+from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.output import processes
+from mjbeer.studies import sweep as room
+from mjbeer.studies.sweep import BEYOND, DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
+
+INCLINES, FILLS = np.radians([3.0, 11.0, 20.0]), np.array([0.2, 0.5, 0.7, 0.95])
+
+
+def sweep_of_sliding(make: Callable[..., Scene] = sliding, duration: float = 1.0, **others: Any) -> xarray.Dataset:
+    return mjbeer.sweep(make, duration, 1.0, **({"tolerance": 1e-6, "incline": INCLINES, "fill": FILLS} | others))
+
+
+def metal(incline: float, fill: float) -> Scene:
+    return sliding(incline, fill, Can.sheet_metal())
+
+
+def made_of_u(u: float) -> Scene:
+    return sliding(u)
+
+
+def highest(trajectory: Trajectory) -> float:
+    return float(trajectory.phi.max())
+
+
+def broken(trajectory: Trajectory) -> float:
+    raise ZeroDivisionError(f"no {trajectory.scene.attachment} can do that")
+
+
+def named(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function with a name, which others may have, too."""
+    alike: Any = partial(function)
+    alike.__name__ = name
+    return alike
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "setting",
+    [
+        {"tolerance": 1e-6},
+        {"integrator": "DOP853", "timestep": 0.02},
+        {"integrator": "RK4", "timestep": 3e-3},
+        {"integrator": "Euler", "rolling": "contact", "friction": 0.4},
+        {"tolerance": 1e-8, "rolling": "equality"},
+        {"tolerance": 1e-6, "damping": 10.0, "drag": 1e-3},  # so stiff that other methods take over
+        {"integrator": "discrete", "timestep": 2e-3, "damping": 1e-4},
+    ],
+)
+def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, Any]) -> None:
+    lost = {name: setting[name] for name in ("damping", "drag") if name in setting}
+    make, setting = partial(sliding, can=Can.sheet_metal(), **lost), {k: v for k, v in setting.items() if k not in lost}
+    swept = mjbeer.sweep(make, 0.3, 0.7, phi_dot0=[0.0, 2.0], incline=INCLINES[:2], fill=[0.3], **setting)
+    assert (tuple(swept.dims), swept["phi"].shape) == (("incline", "fill", "phi_dot0"), (2, 1, 2))
+    for (row, _, rate), status in np.ndenumerate(swept["status"].values):
+        single = simulate(make(INCLINES[row], 0.3), 0.3, 0.7, float(swept["phi_dot0"][rate]), times=[0.3], **setting)
+        found = {name: array.values[row, 0, rate] for name, array in swept.items()}
+        assert status == (BEYOND if single.rolling_warnings or single.liquid_warnings else WELL)
+        for name in ("phi", "u", "phi_dot", "u_dot"):
+            assert found[name] == getattr(single, name)[-1]
+        assert (found["error"], found["trusted"]) == (single.error_estimate, single.trusted)
+        assert (found["energy_drift"], found["friction_needed"]) == (single.energy_drift, single.record.needed)
+        assert (found["lowest_normal"], found["parting_time"]) == (single.record.lowest_normal, single.record.fails_at)
+
+
+def test_a_run_ends_at_the_first_timestep_after_the_duration_as_in_simulate() -> None:
+    swept = mjbeer.sweep(frozen, 0.1, 0.7, integrator="RK4", timestep=3e-3, fill=[0.5])
+    assert swept["phi"][0] == simulate(frozen(), 0.1, 0.7, timestep=3e-3).phi[-1]
+
+
+def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
+    alone = sweep_of_sliding(executor=ThreadPoolExecutor(1))
+    assert alone.identical(sweep_of_sliding(executor=ThreadPoolExecutor(5)))
+    monkeypatch.setattr(room, "_PIECE", 0.0)  # then each piece ends after its first scene
+    assert alone.identical(sweep_of_sliding())
+
+
+@pytest.mark.slow
+def test_the_result_is_the_same_in_processes() -> None:
+    with processes.pool(2) as pool:
+        assert sweep_of_sliding(quantity=highest).identical(sweep_of_sliding(quantity=highest, executor=pool))
+        with pytest.raises(ParameterError, match="must be defined at the top of a module to be sent to processes"):
+            mjbeer.sweep(lambda incline: sliding(incline, 0.4), 0.1, 1.0, incline=INCLINES, executor=pool)
+
+
+@pytest.mark.costly
+def test_the_result_is_the_same_on_a_dask_cluster(monkeypatch: pytest.MonkeyPatch) -> None:
+    distributed = pytest.importorskip("distributed")
+    here = sweep_of_sliding()
+    monkeypatch.setattr(room, "integrate", lambda *_: pytest.fail("it ran in this process"))
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        assert len(client.ncores()) == 2
+        assert here.identical(sweep_of_sliding(executor=client.get_executor()))
+
+
+def test_a_period_is_that_of_exact_theory() -> None:
+    """A turning point is off by 1.5e-8 rad of phase, and by the tolerance over the swing."""
+    fills, starts = np.linspace(0.1, 0.75, 7), np.array([-2.0, -1.0, -0.3, 0.4, 0.8, 1.5, 2.0])
+    swept = mjbeer.sweep(sliding, 2.0, starts, tolerance=1e-6, paired=True, quantity="period", fill=fills)
+    assert dict(swept.sizes) == {"scene": 7}
+    for fill, phi0, period in zip(fills, starts, swept["period"].values, strict=True):
+        scene = sliding(fill=fill)
+        assert period == pytest.approx(scene.period(phi0 - scene.equilibrium()), rel=1e-5 / min(1, abs(phi0)))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill \(height of .*\) must be in \(0, 1\], got 1.5"),
+        ({"fil": [0.5]}, "make is <function sliding.*>: got an unexpected keyword argument 'fil'"),
+        ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
+        ({"duration": 1e9}, "too many timesteps of 0.001 s for a sweep: at most 1,000,000,000$"),
+        ({"quantity": highest, "duration": 2e3}, "at most 1,000,000, at each of which a measured quantity has"),
+        ({"quantity": "perod"}, "quantity must be one of 'phi', .*'period', .*; got 'perod'"),
+        ({"quantity": [highest, named("highest", broken)]}, "quantity 'highest' is there already"),
+        ({"quantity": named("fill", highest), "fill": [0.5]}, "quantity 'fill' is there already"),
+        ({"make": made_of_u, "u": [0.1]}, "a quantity has the name of the parameter 'u'"),
+        ({"output": "map.txt"}, "name must end in .nc, got 'map.txt'"),
+        ({"make": dict}, "make must return a scene, got <class 'dict'>, which returns {}"),
+        ({"paired": True, "fill": [0.5], "incline": [0.1, 0.2]}, "one length: fill has 1, incline has 2"),
+        ({"paired": True, "fill": [0.5, 2.0], "incline": [0.1, 0.2]}, r"fill\[1\] = 2, incline\[1\] = 0.2: fill"),
+        (
+            {"fill": np.linspace(0.1, 0.9, 10**5), "incline": np.linspace(0, 1, 10**5)},
+            r"at most 10,000,000 scenes, got 10,000,000,000 \(fill has 100000, incline has 100000\): cut it into",
+        ),
+    ],
+)
+def test_what_is_not_allowed_is_refused_before_anything_runs(
+    arguments: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(room, "integrate", lambda *_: pytest.fail("something ran"))
+    with pytest.raises(ParameterError, match=message):
+        mjbeer.sweep(**({"make": sliding, "duration": 0.1, "phi0": 1.0} | arguments))
+
+
+def test_a_combination_that_is_not_possible_is_told_and_the_others_are_there() -> None:
+    swept = mjbeer.sweep(pendulum, 0.1, 1.0, tolerance=1e-6, offset=[0.01, 0.05], radius=[0.03, 0.06])
+    assert swept["status"].values.tolist() == [[WELL, WELL], [REFUSED, WELL]]
+    assert swept.failed.startswith("scene 2 (offset[1] = 0.05, radius[0] = 0.03): load offset must be 0, or between")
+    assert swept["phi"].isnull().values.tolist() == [[False, False], [True, False]]
+
+
+@pytest.mark.parametrize("paired", [False, True])
+def test_an_error_that_make_raises_ends_no_other_scene(paired: bool) -> None:
+    def picky(fill: float) -> Scene:
+        return sliding(fill=fill) if fill < 0.6 else {}["too full"]
+
+    swept = mjbeer.sweep(picky, 0.1, 1.0, tolerance=1e-6, fill=[0.2, 0.5, 0.7], paired=paired)
+    assert swept["status"].values.tolist() == [WELL, WELL, REFUSED]
+    assert swept.failed == "scene 2 (fill[2] = 0.7): KeyError: 'too full'"
+
+
+def test_what_goes_wrong_inside_of_a_run_is_listed(monkeypatch: pytest.MonkeyPatch) -> None:
+    beside = mjbeer.sweep(frozen, 5.0, [1.0, math.pi], tolerance=1e-14, incline=[0.0])
+    assert NOT_REACHED in beside["status"]
+    assert "is not reached" in beside.failed
+    wild = mjbeer.sweep(frozen, 5.0, 1.0, [0.0, 1e6], integrator="Euler", timestep=0.5, incline=0.1)
+    assert wild["status"][1] == DIVERGED
+    assert "diverged at t" in wild.failed
+    monkeypatch.setattr(room, "integrate", lambda *_: 1 / 0)
+    assert mjbeer.sweep(sliding, 0.1, 1.0).failed == "scene 0 (): ZeroDivisionError: division by zero"
+
+
+def test_a_quantity_without_a_value_leaves_the_others() -> None:
+    tilted = {"incline": np.radians([5.0, 40.0]), "quantity": ["period", highest, broken]}
+    swept = mjbeer.sweep(frozen, 1.5, 1.0, tolerance=1e-6, **tilted)
+    assert swept["status"].values.tolist() == [NO_VALUE, NO_VALUE]
+    assert swept["period"].notnull().values.tolist() == [True, False]
+    assert np.isnan(swept["broken"]).all()
+    assert np.isfinite(swept["phi"]).all()
+    assert swept["highest"][0] == simulate(frozen(math.radians(5)), 1.5, 1.0, tolerance=1e-6).phi.max()
+    assert "broken: ZeroDivisionError: no frozen can do that" in swept.failed
+
+
+def test_units_and_the_call_are_attributes() -> None:
+    swept = sweep_of_sliding(phi_dot0=0.5)
+    assert (swept.phi.attrs["units"], swept.incline.attrs["units"]) == ("rad", "rad")
+    assert (swept.make, swept.tolerance, swept.phi0, swept.phi_dot0) == ("mjbeer.theory.named.sliding", 1e-6, 1.0, 0.5)
+    assert swept.phi.sel(fill=0.5).dims == ("incline",)
+
+
+def test_what_liquids_warn_of_is_said_once_and_nothing_global_is_touched() -> None:
+    seen = set()
+
+    def honey(fill: float) -> Scene:
+        seen.add(warnings.showwarning)
+        return liquid("honey", fill=fill)
+
+    with warnings.catch_warnings(record=True, action="always") as told:
+        show = warnings.showwarning
+        swept = mjbeer.sweep(honey, 0.01, 1.0, tolerance=1e-6, fill=[0.4, 0.5, 0.6])
+    assert seen == {show}
+    assert len(told) == 1
+    assert [(each.category, each.filename) for each in told] == [(LiquidWarning, __file__)]
+    assert "it coats the can" in str(told[0].message)
+    with pytest.warns(LiquidWarning) as again:
+        single = simulate(honey(0.5), 0.01, 1.0, tolerance=1e-6, times=[0.01])
+    assert again[0].filename == __file__
+    assert swept["u"][1] == single.u[-1]
+
+
+class Interrupting(Executor):
+    """Does the work at once, and is interrupted when it is to do some piece."""
+
+    _max_workers = 2
+
+    def __init__(self, at: int) -> None:
+        self.left = at
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        self.left -= 1
+        if self.left < 0:
+            raise KeyboardInterrupt
+        done: Future[Any] = Future()
+        done.set_result(function(*arguments, **named))
+        return done
+
+
+class Busy(Interrupting):
+    """Does one piece at once; those after it wait for a worker."""
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
+        self.given = [*getattr(self, "given", []), Future() if self.left == 0 else super().submit(function, *arguments)]
+        return self.given[-1]
+
+
+def test_an_interruption_between_two_pieces_leaves_no_work_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    executor = Busy(1)
+
+    def interrupt(_: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(room, "progress_bar", lambda *_: contextlib.nullcontext(interrupt))
+    with pytest.raises(KeyboardInterrupt):
+        sweep_of_sliding(executor=executor)
+    done, *waiting = executor.given
+    assert done.done()
+    assert [each.cancelled() for each in waiting] == [True] * 3
+
+
+@pytest.fixture
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Everything that is simulated."""
+    ran, integrate = [], room.integrate
+    monkeypatch.setattr(room, "integrate", lambda *arguments: (ran.append(arguments), integrate(*arguments))[1])
+    return ran
+
+
+def test_an_interrupted_sweep_goes_on_where_it_was(tmp_path: pathlib.Path, counted: list[Any]) -> None:
+    """What failed is told again; the first scene is simulated again, to see that it is the same."""
+    path, others = tmp_path / "map.nc", {"quantity": broken}
+    whole = sweep_of_sliding(**others)
+    with pytest.raises(KeyboardInterrupt):
+        sweep_of_sliding(**others, executor=Interrupting(5), output=path)
+    done = int((xarray.load_dataset(path, engine="scipy")["status"] != NOT_YET).sum())
+    assert 0 < done < whole["status"].size
+    for left in (whole["status"].size - done, 0):
+        del counted[:]
+        assert sweep_of_sliding(**others, output=path).identical(whole)
+        assert len(counted) == left + 1
+    assert xarray.load_dataset(path, engine="scipy").identical(whole)
+
+
+@pytest.mark.slow
+def test_a_sweep_that_is_killed_loses_no_more_than_the_last_seconds(tmp_path: pathlib.Path) -> None:
+    """Killed as soon as its file has some more scenes, again and again, it gets on."""
+    path, before = tmp_path / "map.nc", 0
+    code = (
+        "import mjbeer; mjbeer.sweep(mjbeer.sliding, 2.0, 1.0, timestep=1e-4, fill=[0.1, 0.3, 0.5, 0.7, 0.8, 0.9], "
+        f"output={str(path)!r}, progress=False)"
+    )
+
+    def done() -> int:
+        return int((xarray.load_dataset(path, engine="scipy")["status"] != NOT_YET).sum()) if path.exists() else 0
+
+    for _ in range(2):
+        process = subprocess.Popen([sys.executable, "-c", code])
+        while done() <= before and process.poll() is None:
+            time.sleep(0.05)
+        process.kill()
+        process.wait()
+        assert done() > before
+        before = done()
+
+
+def edited(incline: float, fill: float) -> Scene:
+    """Make other scenes than `sliding`, as a function does that was edited."""
+    return sliding(incline, fill, gravity=9.82)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("other", "differs"),
+    [
+        ({"duration": 0.5}, "another sweep, whose duration differ"),
+        ({"phi_dot0": 1.0}, "another sweep, whose phi_dot0 differ"),
+        ({"fill": FILLS[:2]}, "another sweep, whose fill, quantities differ"),
+        ({"tolerance": 1e-7}, "another sweep, whose tolerance differ"),
+        ({"quantity": "period"}, "another sweep, whose quantities differ"),
+        ({"make": metal}, "another sweep, whose make differ"),
+        ({"make": edited}, "other results than this call, at incline.0. = 0.0523599, fill.0. = 0.2"),
+    ],
+)
+def test_a_file_of_another_sweep_is_refused(
+    other: dict[str, Any], differs: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(edited, "__module__", sliding.__module__)
+    monkeypatch.setattr(edited, "__qualname__", "sliding")
+    path = tmp_path / "map.nc"
+    sweep_of_sliding(output=path)
+    before = path.read_bytes()
+    with pytest.raises(ParameterError, match=f"map.nc has {differs}.* or overwrite=True"):
+        sweep_of_sliding(**({"output": path} | other))
+    assert path.read_bytes() == before
+    again = sweep_of_sliding(**({"output": path, "overwrite": True} | other))
+    assert xarray.load_dataset(path, engine="scipy").identical(again)
+
+
+def test_what_is_no_sweep_is_not_overwritten(tmp_path: pathlib.Path, counted: list[Any]) -> None:
+    path = tmp_path / "map.nc"
+    path.write_text("my notes")
+    with pytest.raises(ParameterError, match=r"was not written by `mjbeer\.sweep`"):
+        sweep_of_sliding(output=path)
+    assert path.read_text() == "my notes"
+    with pytest.raises(OutputError):
+        sweep_of_sliding(output=path / "map.nc")
+    assert not counted

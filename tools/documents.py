@@ -1,0 +1,343 @@
+"""Writes what a program can write in the documents anew: `make tables`.
+
+It stands between `<!-- made: NAME -->` and `<!-- end -->`, and `MADE` has what makes it. `docs/stability.json` has the
+counts of a stability study: it is the totals.json that `mjbeer stability` writes.
+"""
+
+import json
+import math
+import pathlib
+import re
+import sys
+import textwrap
+import warnings
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from mjbeer import LiquidWarning, liquid, paper
+from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS
+from mjbeer.output.terminal import Table
+from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, LIMIT, MISPRINT
+from mjbeer.studies.benchmark import benchmark_tables
+from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
+from mjbeer.studies.predictions import linear_stability, soft_constraint
+from mjbeer.studies.stability import search, stability_maps
+from mjbeer.studies.stability.judge import NOBODY, SERIES, SILENT, THEORY, VERDICTS
+from mjbeer.studies.validation.validate import checks
+from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
+from mjbeer.theory.named import frozen
+
+CHECKOUT = pathlib.Path(__file__).parents[1]
+sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "docs" / "figures")]
+import real_beer  # noqa: E402 - beside the figures that it draws
+
+from tests.support import soft_rows as rows  # noqa: E402
+
+DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
+COUNTS = CHECKOUT / "docs" / "stability.json"
+MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
+GENTLE, USUAL = math.radians(2), math.radians(10)
+
+
+def anew(text: str) -> str:
+    """Return the text of a document with everything between its marks made anew."""
+    return MARKED.sub(lambda found: f"{found[1]}{MADE[found['name']]().strip()}\n{found[3]}", text)
+
+
+def counts() -> dict[str, Any]:
+    """Return the counts that the documents show."""
+    return json.loads(COUNTS.read_text(encoding="utf-8"))
+
+
+def table(columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
+    """Return a table as Markdown."""
+    return Table("", columns, lines, left).markdown(title=False)
+
+
+def prose(text: str) -> str:
+    """Return sentences in lines of the documents' width."""
+    return textwrap.fill(text, 130)
+
+
+def ratios(name: str) -> str:
+    """Return the range of the run times of another tool over mjbeer's, at equal error; the page has the same."""
+    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(Benchmark.load(SHIPPED), name)))
+
+
+def of_maps(*families: str) -> tuple[int, int, float]:
+    """Return the number of maps and of their runs, and the share [%] of runs that end as theory says."""
+    found = [of for name, of in stability_maps.summary(stability_maps.load()).items() if name.startswith(families)]
+    runs = sum(of["runs"] for of in found)
+    return round(sum(of["maps"] for of in found)), round(runs), 100 * sum(of["as predicted"] for of in found) / runs
+
+
+def holds() -> str:
+    """What holds, with the numbers that programs know."""
+    wrong = Counter(row.misprint.kind for row in paper.claims() if row.misprint)
+    (maps, runs, same), random = of_maps(""), counts()["kinds"]["all"]
+    return table(
+        ("", ""),
+        [
+            (
+                "**accuracy**",
+                f"{len(checks())} checks, nearly all against exact theory, each with a bound and its reason: periods "
+                "to 1e-12, trajectories to a tolerance of 1e-10 rad ([validation](docs/validation.md))",
+            ),
+            (
+                "**run time**",
+                f"on the same reduced model, at the same error, MuJoCo's RK4 takes {ratios('MuJoCo RK4')} times as "
+                "long as mjbeer's best setting; "
+                f"heyoka, which compiles equations derived by hand, takes {ratios('heyoka')} times as long "
+                "([error against run time](docs/benchmark.md))",
+            ),
+            (
+                "**stability**",
+                f"of {runs:,} short runs in {maps} maps, {same:.4g} % end as linear theory allows; of "
+                f"{ended(random):,} random runs, {random.get(SILENT, 0)} were wrong without saying so "
+                "([stability](docs/stability.md))",
+            ),
+            (
+                "**the paper**",
+                f"its 61 equations are audited in {len(paper.claims())} rows; {sum(wrong.values())} hold only after a "
+                f"correction: {wrong[MISPRINT]} misprints, {wrong[CONSEQUENCE]} consequences of one, and "
+                f"{wrong[APPROXIMATION]} approximations that leave out too much ([the physics](docs/physics.md))",
+            ),
+        ],
+        left=(0, 1),
+    )
+
+
+def misprints() -> str:
+    """What is wrong in the paper, and by how much."""
+    found = [(row.equation, row.misprint) for row in paper.claims() if row.misprint]
+    kinds = {MISPRINT: "", CONSEQUENCE: " (follows)", APPROXIMATION: " (approximation)"}
+    lines = [(name, each.about + kinds[each.kind], f"{each.expected_error:.2g}") for name, each in found]
+    return table(("equation", "what is wrong in it", "misses by"), lines, left=(0, 1))
+
+
+def validity() -> str:
+    """What is true only within limits, and by how much it misses beyond them."""
+    found = [(row, row.limit) for row in paper.claims() if row.verdict == LIMIT and row.limit]
+    lines = [(row.equation, row.quantity.partition(":")[0], f"{limit.expected_error:.2g}") for row, limit in found]
+    return table(("where", "claim", "beyond, misses by"), lines, left=(0, 1))
+
+
+def causes() -> str:
+    """The causes of errors in the validation, each without its particulars, with the bounds that follow."""
+    found: dict[tuple[str, str], list[float]] = {}
+    for row in checks():
+        found.setdefault(
+            (re.split("[:;,]", row.reason)[0].replace("as above", "RK4's own error"), row.unit), []
+        ).append(row.bound)
+    lines = []
+    for (reason, unit), bounds in found.items():
+        span = sorted({min(bounds), max(bounds)})
+        lines.append((reason, str(len(bounds)), f"{' to '.join(f'{each:.2g}' for each in span)} {unit}".strip()))
+    return table(("what dominates the error", "checks", "error at most"), lines)
+
+
+def cheapest() -> str:
+    """The cheapest settings for frozen beer."""
+    return benchmark_tables.cheapest(Benchmark.load(SHIPPED), "frozen").markdown(title=False)
+
+
+def others() -> str:
+    """Run times of other tools at one error; the page has all."""
+    shown = benchmark_tables.others(Benchmark.load(SHIPPED))
+    return table(shown.columns, shown.rows)
+
+
+def whole_calls() -> str:
+    """Times of whole calls."""
+    shown = benchmark_tables.whole_calls(Benchmark.load(SHIPPED))
+    return table(shown.columns, shown.rows)
+
+
+def ranges() -> str:
+    """Two sentences on RK4 and heyoka."""
+    return prose(
+        f"At the same error MuJoCo's own RK4 takes {ratios('MuJoCo RK4')} times as long as mjbeer's best setting, and "
+        f"heyoka {ratios('heyoka')} times as long."
+    )
+
+
+def steps() -> str:
+    """The largest stable timesteps that theory predicts."""
+    methods = ("Euler", "discrete", "RK4", DOP853)
+
+    def spring(method: str) -> float:
+        return math.inf if method == "discrete" else linear_stability.stable_limit(method)
+
+    bounded: dict[str, Callable[[str], float]] = {
+        "swing by gravity: ωh below": linear_stability.stable_limit,
+        "swing by a joint's spring: ωh below": spring,
+        "equality, ζ = 1: h/τ below": rows.stable_ratio,
+        "equality, ζ = 0.1: h/τ below": lambda method: rows.stable_ratio(method, 0.1),
+        "friction of a contact: h/τ below": rows.stable_slip,
+        "direct `solref`, B = 2√K: h√K below": lambda method: rows.stable_timestep(
+            method, soft_constraint.direct(1.0, 2.0, 0.9)
+        ),
+        "swing within 1 % for ten periods: ωh below": linear_stability.accurate_limit,
+    }
+    lines = [
+        (name, *("no limit" if (most := limit(each)) == math.inf else f"{most:.2g}" for each in methods))
+        for name, limit in bounded.items()
+    ]
+    return table(("", "Euler, implicit, implicitfast", "discrete", "RK4", "DOP853 around MuJoCo"), lines)
+
+
+def agreement() -> str:
+    """How the maps came out, and how near their borders in gravity are to the limit of a swing."""
+    maps, runs, same = of_maps("solref", "direct", "gravity")
+    worst = 0.0
+    for each in stability_maps.load()["maps"]:
+        for value, (border, _) in zip(each["values"], each["boundaries"], strict=True):
+            # At the shortest timestep there is no border to measure: all runs explode.
+            if each["family"] == "gravity" and border and border > each["timesteps"][0]:
+                limit = linear_stability.stable_limit(each["integrator"])
+                worst = max(worst, abs(border * frozen(0.0, gravity=value).frequency() / limit - 1))
+    return prose(
+        f"{maps} maps of timestep and stiffness have {runs:,} short runs, of which {same:.4g} % end as theory says. In "
+        f"gravity the measured borders are within {100 * worst:.2g} % of the limit of ωh."
+    )
+
+
+def damped() -> str:
+    """How damped runs of a millisecond a step end, by damping."""
+    maps = {each["name"]: each for each in stability_maps.load()["maps"]}
+    words = ("explodes", "inaccurate", "accurate")
+    lines = []
+    for name in (*INTEGRATORS, DOP853):
+        cells = []
+        for rolling in ROLLINGS:
+            of = maps[f"damping, {rolling}, {name}"]
+            step = min(range(len(of["timesteps"])), key=lambda at: abs(math.log(of["timesteps"][at] / 1e-3)))
+            ended = []
+            for damping in (0.01, 0.1, 1.0):
+                value = min(range(len(of["values"])), key=lambda at: abs(math.log(of["values"][at] / damping)))
+                ended.append(words[int(of["measured"][value][step])])
+            cells.append(ended[0] if len(set(ended)) == 1 else ", ".join(ended))
+        lines.append((name, *cells))
+    return table(("1 ms", *ROLLINGS), lines, left=(0, 1, 2, 3))
+
+
+def damped_runs() -> str:
+    """How the runs in the maps of damping ended."""
+    maps = [each for each in stability_maps.load()["maps"] if each["family"] == "damping"]
+    count = Counter("".join("".join(each["measured"]) for each in maps))
+    found = stability_maps.summary({"maps": maps})
+    contact = found.pop("damping, contact")["worst"]
+    worst = max(of["worst"] for of in found.values())
+    return prose(
+        f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are inaccurate and "
+        f"{count['2']:,} accurate. Measured and predicted borders agree within {100 * worst:.2g} %, in contact within "
+        f"{100 * contact:.2g} %."
+    )
+
+
+def ended(count: dict[str, int]) -> int:
+    """Return the number of runs."""
+    return sum(count.get(verdict, 0) for verdict in VERDICTS)
+
+
+def kinds() -> str:
+    """How the random runs ended, by kind of model, and what judged them."""
+    shown = next(each for each in search.tables(counts()) if "by model" in each.title)
+    return table(shown.columns, shown.rows)
+
+
+def regions() -> str:
+    """How the random runs ended, by region."""
+    shown = next(each for each in search.tables(counts()) if "by region" in each.title)
+    return table(shown.columns, shown.rows)
+
+
+def honesty() -> str:
+    """How many runs were silent, and what that allows; how often a run said too little of its error."""
+    found, known = counts()["kinds"]["all"], counts()["known"]
+    share = search.bound(found)
+    allows = "" if share is None else f", so that with 95 % confidence fewer than {100 * share:.1g} % are"
+    alone = sum(found.get(judge, 0) for judge in (THEORY, SERIES))
+    silent, above, twice = (found.get(name, 0) for name in (SILENT, search.ABOVE, search.TWICE))
+    return prose(
+        f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone:,} of them were judged "
+        f"by one theory alone, and {found.get(NOBODY, 0)} by none. {above} trusted runs had a larger error than they "
+        f"admit, and {twice} one of more than twice that. Of {ended(known):,} runs of known cases "
+        f"{known.get(SILENT, 0)} were silent."
+    )
+
+
+def speeds() -> str:
+    """Terminal speeds of liquids in the model of one lump, in brackets where the model does not hold."""
+    lines = []
+    for name in NAMES:
+        used = liquid_in(name, USUAL)
+        cells = []
+        for incline in (GENTLE, USUAL):
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", LiquidWarning)
+                scene = liquid(name, incline)
+            speed = scene.terminal_speed()
+            within = centrifugal(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
+            cells.append(f"{speed:.2g}" if within else f"({speed:.2g})")
+        arc = math.pi * scene.can.radius
+        lines.append((
+            name, f"{LIQUIDS[name].density:.4g}", f"{LIQUIDS[name].viscosity:.2g}", *cells,
+            f"{speed * arc / used.viscosity:.2g}", f"{speed**2 / (scene.can.radius * scene.gravity):.2g}",
+            f"{100 * used.carried:.0f} %",
+        ))  # fmt: skip
+    return table(
+        ("at 20 °C", "density [kg/m³]", "ν [m²/s]", "at 2° [m/s]", "at 10° [m/s]", "Reynolds number", "at the wall [g]",
+         "film could hold"),
+        lines,
+    )  # fmt: skip
+
+
+def metre() -> str:
+    """Mean accelerations over the first metre, over g sin(alpha), with their spread."""
+    lines = []
+    for volume in (1.0, 6.0, 10.0, 20.0, 50.0, 177.0, 350.0):
+        free = real_beer.water_in(volume, GENTLE, friction=0.0)
+        runs = []
+        for friction, drag in ((1.0, 0.0), (1 / real_beer.SPREAD, 0.0), (real_beer.SPREAD, 0.0), (1.0, real_beer.DRAG)):
+            scene = real_beer.water_in(volume, GENTLE, friction, drag)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", LiquidWarning)
+                runs.append(real_beer.let_go(scene, real_beer.times_of(scene)))
+        usual, least, most, air = (f"{real_beer.over_first_metre(run):.2f}" for run in runs)
+        none = free.acceleration() / (free.gravity * math.sin(GENTLE))
+        depth = 2e3 * (free.load.fill or 0) * free.can.radius
+        until = real_beer.lump_until(runs[0])
+        lines.append((f"{volume:g}", f"{depth:.2g}", f"{none:.2f}", usual, f"{most} to {least}", air,
+                      "the whole metre" if until > 1 else f"{until:.1f} m"))  # fmt: skip
+    return table(
+        ("water [mL]", "depth [mm]", "no friction", "friction", "friction doubled to halved", "with air",
+         "model holds for"),
+        lines,
+    )  # fmt: skip
+
+
+MADE: dict[str, Callable[[], str]] = {
+    "holds": holds,
+    "misprints": misprints,
+    "validity": validity,
+    "causes": causes,
+    "cheapest": cheapest,
+    "others": others,
+    "whole-calls": whole_calls,
+    "ranges": ranges,
+    "steps": steps,
+    "agreement": agreement,
+    "damped": damped,
+    "damped-runs": damped_runs,
+    "kinds": kinds,
+    "regions": regions,
+    "honesty": honesty,
+    "speeds": speeds,
+    "metre": metre,
+}
+
+if __name__ == "__main__":
+    for document in DOCUMENTS:
+        document.write_text(anew(document.read_text(encoding="utf-8")), encoding="utf-8")
