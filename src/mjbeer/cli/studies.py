@@ -49,7 +49,7 @@ def validate(given: Namespace) -> int:
 def report(given: Namespace) -> int:
     """Validate, draw the scenes and the paper's stories, and write a page that shows it all.
 
-    The exit status is 1 if a check fails. Without OpenGL or ffmpeg there are no films.
+    The exit status is 1 if a check fails. Without OpenGL there are no films.
     """
     from mjbeer.report.write import write
 
