@@ -66,7 +66,7 @@ def test_the_study_that_comes_with_mjbeer_is_of_this_code(stored: Benchmark) -> 
     for old in stored.points[:: len(stored.points) // 24]:
         if old.failure or not 1e-10 < old.error < 1e-2 or old.method in ("", "GaussJackson"):
             continue
-        if (old.method, old.parameter) == ("mjbeer", "tolerance"):
+        if (old.method, old.parameter) == ("mjbeer", "tolerance") or old.model == "contact":
             continue
         case, new = CASES[old.case], Point(old.case, old.model, old.method, old.parameter, old.value)
         Rung(case, new).measure(case.truth())
