@@ -67,7 +67,7 @@ api: $(LINTERS)
 lint: $(LINTERS)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/ty check src tests
+	$(BIN)/ty check src tests tools
 	$(BIN)/lint-imports
 
 $(PACKAGE): pyproject.toml

@@ -17,7 +17,7 @@ from filelock import FileLock
 
 from mjbeer import Scene, exact
 from mjbeer.model.export import export
-from mjbeer.model.setting import ROLLINGS, supported
+from mjbeer.model.setting import ROLLINGS, Rolling, supported
 from tests.support.scenes import SCENES
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
@@ -101,7 +101,7 @@ def timestep(name: str) -> float:
     return _HOOP if name == "hoop" else _TIMESTEP
 
 
-def cases() -> list[tuple[str, str]]:
+def cases() -> list[tuple[str, Rolling]]:
     """Return all scenes by name, each with every way of rolling that MuJoCo has for it."""
     return [(name, rolling) for name, scene in SCENES.items() for rolling in ROLLINGS if supported(scene, rolling)]
 
@@ -122,8 +122,8 @@ def errors(other: Other, portable: bool = True) -> dict[tuple[str, str], float |
         paths = {}
         for number, (name, rolling) in enumerate(cases()):
             path = paths[name, rolling] = pathlib.Path(folder) / f"{number}.xml"
-            setting = {"timestep": timestep(name), "friction": FRICTION, "portable": portable}
-            export(SCENES[name], path, *START, rolling, **setting)
+            scene, step = SCENES[name], timestep(name)
+            export(scene, path, *START, rolling, timestep=step, friction=FRICTION, portable=portable)
         words = [python, _CONSUMERS, other.word, *paths.values()]
         env = {**os.environ, "JAX_PLATFORMS": "cpu", "MUJOCO_GL": "disable"}
         ran = subprocess.run(words, capture_output=True, text=True, check=False, env=env, cwd=folder)

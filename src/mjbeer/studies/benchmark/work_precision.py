@@ -45,7 +45,7 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
     title, subtitle = "What accuracy costs: mjbeer, MuJoCo, SciPy and heyoka", ""
     if len(cases) == 1:
         title, _, subtitle = stories[0].partition(", ")
-    width, height = (5.5, 6.4) if len(cases) == 1 else (11, 4.4 * rows + 1.5)
+    width, height = (6.2, 6.4) if len(cases) == 1 else (11, 4.4 * rows + 1.5)
     with chart(path, rows, columns, width, height, title, subtitle) as panels:
         for axes in panels[len(cases) :]:
             axes.set_visible(False)
