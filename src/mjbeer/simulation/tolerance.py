@@ -20,6 +20,8 @@ from mjbeer.simulation.stepping import Recorder, Solution
 from mjbeer.theory.equations import stiffness
 from mjbeer.theory.scene import Scene
 
+_LEAST_TOLERANCE = 1e-15
+"""Smallest tolerance [rad] that is tried: below it is what rounding leaves of a single step."""
 _PARTS = np.linspace(0, 1, 33)
 """Times, over the last one, at which runs are compared besides the samples, unless these are as near one another."""
 _COMPARED = 256
@@ -27,13 +29,11 @@ _COMPARED = 256
 for a moment only. The error of the others changes within a part of a swing."""
 _SAFETY = 1.5
 """Error estimate over the distance of two runs of DOP853, the coarser of which errs eight times as much."""
-_LEAST_TOLERANCE = 1e-15
-"""Smallest tolerance [rad] that is tried: below it is what rounding leaves of a single step."""
 _SAFETY_BY_CHANCE = 3.0
 """The same from the third run on, where rounding counts, and for tolerances outside `_ASYMPTOTIC`: two runs may agree
 by chance."""
 _BRIEF = 4.0
-"""How much more that is for Gauss-Jackson and a light wheel, whose load makes much of a moment's error while it passes
+"""The same for Gauss-Jackson and a light wheel, whose load makes much of a moment's error while it passes
 the lowest point: two runs whose errors were the same by chance were 2.8 times as far off as they should have been."""
 _ASYMPTOTIC = (1e-11, 1e-5)
 """Range of tolerances in which rounding or large steps do not hide the method's order."""
@@ -131,14 +131,12 @@ class Solver:
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
-        Each run has a local tolerance of an eighth of that of the run before, and the first starts a nudge from
-        `start`. The error estimate is a multiple of the distance of the last two runs at the samples, and no less than
-        what the drift of energy and momentum implies: over many turns the errors of two runs may be the same by chance.
-        From the third run on a share of the distance before counts if that is larger. None of these shows the effect of
-        rounding; it is estimated by further runs where it may matter, and what an equality loses by its accelerations.
-
-        Of a smooth motion, runs of Gauss-Jackson are tried first. Otherwise all runs are DOP853's.
-        The solution has the record of all steps of the last run, for a coefficient of `friction`.
+        Of a smooth motion, runs of Gauss-Jackson are tried first; otherwise all runs are DOP853's, each with a local
+        tolerance of an eighth of that of the run before. The first starts a nudge from `start`. The error estimate is a
+        multiple of the distance of the last two runs at the samples, and no less than what the drift of energy and
+        momentum implies: over many turns the errors of two runs may be the same by chance. From the third run of DOP853
+        on a share of the distance before counts if that is larger. What an equality loses is estimated by its
+        accelerations. The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
@@ -194,7 +192,7 @@ class Solver:
                 error = max(safety * distance, drift)
                 if error <= tolerance:
                     return Solution(fine, recorder.record, error, GAUSS_JACKSON)
-                timestep *= min(1 / _FINER, (tolerance / (safety * distance)) ** (1 / _ORDER))
+                timestep *= min(1 / _FINER, (tolerance / error) ** (1 / _ORDER))
         except DivergenceError:
             pass
         return None
