@@ -78,16 +78,11 @@ def test_of_two_cans_one_swings_and_the_other_does_not() -> None:
 
 def test_a_jump_is_a_gap_and_no_slope() -> None:
     """At a friction coefficient of 0.8, a hoop of 0.8 % skids before 84 degrees or only after 90."""
-    _, angles = skids(np.geomspace(1e-3, 0.07, 60), MU)
+    angles = skids(np.geomspace(1e-3, 0.07, 300), MU)
     (gap,) = np.flatnonzero(np.isnan(angles))
     assert np.nanmax(np.abs(np.diff(angles))) < 3
     assert angles[gap - 1] < 84
     assert angles[gap + 1] > 90
-
-
-def test_looping_beer_leaves_its_can_down() -> None:
-    (run,) = motions(FILMS["looping"])
-    assert run.forces.normal.min() > 0
 
 
 def test_footnote_8_as_printed_is_another_motion() -> None:

@@ -161,25 +161,17 @@ def _draw_range(axes: Axes) -> None:
     label(axes, "incline α [°]", ylabel, about, ylim=(-190, 190), yticks=range(-180, 181, 60))
 
 
-def skids(ratios: np.ndarray, mu: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return ratios M/m and the angles from the top at which a hoop skids [degrees], with a gap (NaN) at a jump."""
+def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
+    """Return the angles from the top [degrees] at which hoops of ratios M/m skid, with a gap (NaN) at a jump."""
     angles = np.degrees([hopping.slip(float(ratio), mu) for ratio in ratios])
-    jumps = np.flatnonzero(np.abs(np.diff(angles)) > _JUMP)
-    for place in jumps[::-1]:
-        low, high = ratios[place], ratios[place + 1]
-        while high - low > 1e-3 * low:
-            middle = (low + high) / 2
-            before = abs(math.degrees(hopping.slip(float(middle), mu)) - angles[place]) < _JUMP
-            low, high = (middle, high) if before else (low, middle)
-        ends = np.degrees([hopping.slip(float(low), mu), math.nan, hopping.slip(float(high), mu)])
-        ratios, angles = np.insert(ratios, place + 1, [low, low, high]), np.insert(angles, place + 1, ends)
-    return ratios, angles
+    angles[1:][np.abs(np.diff(angles)) > _JUMP] = math.nan
+    return angles
 
 
 def draw_lift_off(panels: Sequence[Axes]) -> None:
     """Draw where a hoop lifts off and where it skids, over its mass."""
     # The angle of lift-off rises like a square root just below 1/13, so that the points are denser there.
-    ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 60), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
+    ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 300), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
     found = [fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP).takeoff() for ratio in few]
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
@@ -188,7 +180,7 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
     axes.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
     for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
-        axes.plot(*skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
+        axes.plot(ratios, skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
     axes.axhline(90, **REFERENCE)
     axes.axvline(1 / 13, **REFERENCE)
     note(axes, "Littlewood: 90°", (0.01, 90), (4, -8))

@@ -1,8 +1,7 @@
 """The paper's stories: its scenarios as data, each with a plot, a caption and perhaps a film of what moves."""
 
 import pathlib
-from collections.abc import Callable, Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
@@ -207,40 +206,28 @@ def films(folder: pathlib.Path) -> list[Filmed]:
     return [Filmed(film, path, *SIZE) for film, path in filmed]
 
 
-@contextmanager
-def told(folder: pathlib.Path, films: bool, note: str = "") -> Generator[None]:
-    """Write letters.svg and, when the block has written plots and perhaps films, stories.md, with a note.
-
-    stories.md of an earlier run goes first.
-
-    Raises:
-      OutputError: if the folder cannot be written to.
-    """
-    files.make_folder(folder)
-    with files.whole(folder / "stories.md") as summary:
-        (folder / "stories.md").unlink(missing_ok=True)
-        letters = pathlib.Path(__file__).with_name("letters.svg")
-        files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))
-        yield
-        lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
-        lines += [f"Films: {note}", ""] if note else []
-        for story in STORIES:
-            lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
-            lines += [f"[Film]({story.name}.mp4)", ""] if films and story.film is not None else []
-        summary.write_text("\n".join(lines), encoding="utf-8")
-
-
 def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     """Write a plot of each story (SVG), its film if asked for (MP4), and stories.md, each whole or not at all.
 
-    Return the line that says which films were asked for and are missing because there is no OpenGL, or "".
+    stories.md of an earlier run goes first. Return the line that says which films were asked for and are missing
+    because there is no OpenGL, or "".
 
     Raises:
       OutputError: if the folder cannot be written to.
       RenderingError: if a film cannot be drawn for another reason, as without ffmpeg.
     """
     orders = films(folder) if filmed else []
-    note = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
-    with told(folder, filmed and not note, note):
-        studio.produce([*([] if note else orders), *plots(folder)], console)
-    return note
+    missing = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
+    files.make_folder(folder)
+    with files.whole(folder / "stories.md") as summary:
+        (folder / "stories.md").unlink(missing_ok=True)
+        letters = pathlib.Path(__file__).with_name("letters.svg")
+        files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))
+        studio.produce([*([] if missing else orders), *plots(folder)], console)
+        lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
+        lines += [f"Films: {missing}", ""] if missing else []
+        for story in STORIES:
+            lines += [f"## {story.name}", "", f"![{story.name}]({story.name}.svg)", "", story.caption, ""]
+            lines += [f"[Film]({story.name}.mp4)", ""] if filmed and not missing and story.film is not None else []
+        summary.write_text("\n".join(lines), encoding="utf-8")
+    return missing

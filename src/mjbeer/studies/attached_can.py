@@ -11,7 +11,7 @@ from mjbeer.theory.scene import Scene
 
 
 def roll(
-    scene: Scene, phi0: float, duration: float, timestep: float = 5e-4, integrator: str = "RK4", yaw: float = 0.0
+    scene: Scene, phi0: float, duration: float, timestep: float = 5e-4, yaw: float = 0.0
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """Return times [s], phi [rad] at each, and the largest sine of the axis's turn out of its own direction.
 
@@ -19,7 +19,7 @@ def roll(
     """
     spec, radius, tilt = mujoco.MjSpec(), scene.can.radius, scene.incline
     spec.option.timestep = timestep
-    spec.option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
+    spec.option.integrator = int(mujoco.mjtIntegrator.mjINT_RK4)
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
     slope = spec.worldbody.add_frame(quat=[math.cos(tilt / 2), 0, math.sin(tilt / 2), 0])
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1]).set_frame(slope)

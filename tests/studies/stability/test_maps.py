@@ -133,9 +133,3 @@ def test_another_file_is_refused(text: str, tmp_path: pathlib.Path) -> None:
     (tmp_path / "maps.json").write_text(text)
     with pytest.raises(ParameterError, match=r"maps\.json was not written by `mjbeer stability`"):
         stability_maps.load(tmp_path / "maps.json")
-
-
-@pytest.mark.parametrize("options", [("--long", "--quick"), ("--long", "--maps"), ("--quick", "--maps")])
-def test_only_one_extent_can_be_asked_for(options: tuple[str, str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["stability", *options]) == 2
-    assert f"{options[0]} and {options[1]} exclude each other" in capsys.readouterr().err

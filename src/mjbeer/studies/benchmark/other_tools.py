@@ -8,9 +8,7 @@ p = depth sin(bottom) and q = depth cos(bottom) of the scene's `Oscillator`, and
     sliding:  phi_ddot = (p cos(phi) - (q + swing phi_dot^2 cos(phi)) sin(phi)) / (base + swing sin^2(phi)),
               u_ddot = A + m b/M_e (cos(phi) phi_ddot - sin(phi) phi_dot^2),                  eqs. (46), (47)
 
-with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine. Damping c between can and
-load is a torque c w with w = u_dot/a - phi_dot. It adds c w (1 - m b/(M_e a) cos(phi)) to the numerator of phi_ddot,
-and -c w/(M_e a) to u_ddot.
+with A the steady acceleration of footnote 4. An evaluation needs one sine and one cosine.
 """
 
 import importlib
@@ -23,10 +21,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mjbeer.exceptions import DivergenceError, UnsupportedError
+from mjbeer.exceptions import DivergenceError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import integrate as simulate
-from mjbeer.theory.scene import Scene
+from mjbeer.theory.scene import Scene, require_no_dissipation
 
 Rates = Callable[[float, Sequence[Any]], tuple[Any, ...]]
 Motion = tuple[np.ndarray, np.ndarray, int | None]
@@ -49,14 +47,13 @@ def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math
     of a library of symbols, it returns symbols.
 
     Raises:
-      UnsupportedError: if the scene has drag, or damping that is not proportional to the slip rate.
+      DissipationError: if the scene has damping or drag.
     """
-    if scene.drag or any(scene.damping_law.coefficients[1:]):
-        raise UnsupportedError("the equations written by hand have linear damping alone: leave out drag and the rest")
-    form, mass, radius = scene.oscillator, scene.effective_mass, scene.can.radius
+    require_no_dissipation(scene, "no equations written by hand")
+    form, mass = scene.oscillator, scene.effective_mass
     p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
     slope, half, quarter, middle = form.slope, form.chord / 2, form.chord / 4, form.base + form.chord / 2
-    steady, share, damping = scene.drive / mass, scene.load.moment / mass, scene.damping_law.linear
+    steady, share = scene.drive / mass, scene.load.moment / mass
 
     def frozen(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         phi, phi_dot = state
@@ -69,15 +66,7 @@ def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math
         phi_ddot = (p * c - (q + form.swing * square * c) * s) / (form.base + form.swing * (s * s))
         return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
 
-    def damped(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
-        _u, phi, u_dot, phi_dot = state
-        s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
-        torque = damping * (u_dot / radius - phi_dot)
-        turned = p * c - (q + form.swing * square * c) * s + torque * (1 - share / radius * c)
-        phi_ddot = turned / (form.base + form.swing * (s * s))
-        return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square) - torque / (mass * radius), phi_ddot
-
-    return frozen if scene.attachment == "frozen" else damped if damping else sliding
+    return frozen if scene.attachment == "frozen" else sliding
 
 
 def start(scene: Scene, phi0: float, phi_dot0: float) -> tuple[float, ...]:

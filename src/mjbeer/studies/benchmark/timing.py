@@ -91,21 +91,20 @@ def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
 def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> dict[Curve, tuple[float, ...]]:
     """Return the curves of a scene, each with its timesteps [s] or tolerances [rad], coarsest first.
 
-    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger one, unless damping
-    would make it explode, and halves it in two rungs, and GaussJackson, whose error falls by four decades in a halving,
-    halves it in four. With `quick`, the ladders of MuJoCo's integrators end earlier, and all others have at most every
-    second rung. Tools whose names are among the `missing` have no curve.
+    MuJoCo's integrators halve their timestep from one rung to the next; DOP853 starts with a larger one and halves it
+    in two rungs, and GaussJackson, whose error falls by four decades in a halving, halves it in four. With `quick`, the
+    ladders of MuJoCo's integrators end earlier, and all others have at most every second rung. Tools whose names are
+    among the `missing` have no curve.
     """
     every = 2 if quick else 1
     steps = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
-    large = tuple((1e-3 if scene.dissipates else 128e-3) / 2 ** (k / 2) for k in range(0, 15, every))
+    large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
     found: dict[Curve, tuple[float, ...]] = {}
     for way in (way for way in ROLLINGS if supported(scene, way)):
         found |= {Curve(way, integrator): steps for integrator in INTEGRATORS}
         found[Curve(way, DOP853)] = large
         found[Curve(way, CHOSEN, TOLERANCE)] = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
-    if not scene.dissipates:
-        found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
+    found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
     found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in USUAL.items() if supported(scene, rolling)}
     others = (tool for tool in OTHER_TOOLS.values() if tool.name not in missing)
     return found | {Curve(tool.name, "", TOLERANCE): tool.tolerances[::every] for tool in others}

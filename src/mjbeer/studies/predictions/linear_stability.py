@@ -82,17 +82,16 @@ def growth(integrator: str, swing: float) -> float:
     return steps * math.log(spectral_radius(amplification(integrator, swing**2)))
 
 
-def error(integrator: str, swing: float, drift: float = 0.0, pace: float = 1.0) -> float:
+def error(integrator: str, swing: float) -> float:
     """Return the largest error, as in `ACCURACY`, of a swing from rest with omega h = `swing` over `ACCURATE_PERIODS`.
 
     For small h it is omega h/2 under semi-implicit Euler, whose ellipse in the phase plane leans, and (omega h)^4/120 a
-    radian under RK4. A model that differs from the scene has its equilibrium off by `drift`, in amplitudes, and `pace`
-    times the scene's frequency.
+    radian under RK4.
     """
     steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
-    states = motion(amplification(integrator, (pace * swing) ** 2), np.array([1.0 - drift, 0.0]), steps)
+    states = motion(amplification(integrator, swing**2), np.array([1.0, 0.0]), steps)
     angles = swing * np.arange(steps + 1)
-    return float(np.hypot(states[:, 0] + drift - np.cos(angles), states[:, 1] / swing + np.sin(angles)).max())
+    return float(np.hypot(states[:, 0] - np.cos(angles), states[:, 1] / swing + np.sin(angles)).max())
 
 
 def stable_limit(integrator: str) -> float:

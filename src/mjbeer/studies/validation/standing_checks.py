@@ -35,79 +35,43 @@ _GAIN = 0.1
 
 def checks() -> Iterator[Check]:
     """Yield the checks of standing and of lying cans."""
+    check = partial(Check, "standing")
     for fill in _FILLS:
-        yield Check(
-            "standing",
+        name, measure = (
             "frequencies of 3 modes, by the eigenvalues of M and K",
-            partial(_eigenvalues, water(3, fill, damping_ratio=0.0)),
-            f"{fill:.0%} full, held",
-            1e-9,
-            "relative",
-            "rounding",
+            partial(_eigenvalues, water(3, fill, 0.0)),
         )
-    yield Check(
-        "standing",
+        yield check(name, measure, f"{fill:.0%} full, held", 1e-9, "relative", "rounding")
+    name, by = (
         f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
-        lambda: let_go(water(damping_ratio=0.0))[0],
         "half full, held, RK4, 1 ms",
-        5e-9,
-        "relative",
-        "RK4: (omega h)^4/120, 2.5e-9",
     )
-    yield Check(
-        "standing",
-        "logarithmic decrement",
-        lambda: let_go(water())[1],
-        "half full, held, RK4, 1 ms",
-        1e-5,
-        "relative",
-        "breaking waves, which take the square of the angle: 4e-6; and the rates at crossings between samples",
-    )
+    reason = "RK4: (omega h)^4/120, 2.5e-9"
+    yield check(name, lambda: let_go(water(damping_ratio=0.0))[0], by, 5e-9, "relative", reason)
+    reason = "breaking waves, which take the square of the angle: 4e-6; and the rates at crossings between samples"
+    yield check("logarithmic decrement", lambda: let_go(water())[1], by, 1e-5, "relative", reason)
     for modes in (1, 2, 3, 5):
-        can = water(modes)
-        for place, name in ((0, "force under shaking"), (2, "moment under pitching")):
-            yield Check(
-                "standing",
-                f"{name} at 8 frequencies, 0.2 to 4 of the first, against the infinite series",
-                lambda can=can, place=place: np.abs(reaction_errors(can)[place]).max(),
-                f"half full, {modes} mode{'s' * (modes > 1)}",
-                float(_ROUNDED * np.abs(left_out(can)[place]).max()),
-                "relative",
-                "the modes left out, whose share the bound is",
-            )
+        can, by = water(modes), f"half full, {modes} mode{'s' * (modes > 1)}"
+        for place, of in ((0, "force under shaking"), (2, "moment under pitching")):
+            name = f"{of} at 8 frequencies, 0.2 to 4 of the first, against the infinite series"
+            bound = float(_ROUNDED * np.abs(left_out(can)[place]).max())
+            measure = lambda can=can, place=place: np.abs(reaction_errors(can)[place]).max()  # noqa: E731
+            yield check(name, measure, by, bound, "relative", "the modes left out, whose share the bound is")
     for timestep in (2e-3, 5e-3):
         for modes in (1, 3):
-            yield Check(
-                "standing",
-                f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy",
-                partial(thrown, water(modes), timestep),
-                f"half full, {modes} mode{'s' * (modes > 1)}, implicitfast, {1e3 * timestep:g} ms",
-                0,
-                "",
-                "stable or not",
-            )
-    for name, scene, phi0 in (
-        ("frozen", frozen(math.radians(8), can=_METAL), 2.0),
-        ("sliding", sliding(math.radians(8), can=_METAL), 1.0),
-    ):
-        yield Check(
-            "lying",
-            "phi over 2 s",
-            lambda scene=scene, phi0=phi0: lying(scene, phi0)[0],
-            f"{name}, metal can, free in space, RK4, 0.5 ms",
-            1e-6,
-            "rad",
-            "softness of the contact",
-        )
-        yield Check(
-            "lying",
+            name = f"thrown cans, of {_THROWN}, that diverge or gain {_GAIN:g} of their energy"
+            by = f"half full, {modes} mode{'s' * (modes > 1)}, implicitfast, {1e3 * timestep:g} ms"
+            yield check(name, partial(thrown, water(modes), timestep), by, 0, "", "stable or not")
+    for attachment, make, phi0 in (("frozen", frozen, 2.0), ("sliding", sliding, 1.0)):
+        tilted, level = make(math.radians(8), can=_METAL), make(0.0, can=_METAL)
+        by, rolls = f"{attachment}, metal can, free in space, RK4, 0.5 ms", partial(lying, tilted, phi0)
+        reason = "softness of the contact"
+        yield Check("lying", "phi over 2 s", lambda rolls=rolls: rolls()[0], by, 1e-6, "rad", reason)
+        name, askew = (
             "turn about the vertical over 2 s of a can that starts askew on level ground",
-            lambda scene=scene, phi0=phi0: lying(Scene(scene.can, scene.load, 0.0, scene.attachment), phi0, 0.5)[1],
-            f"{name}, metal can, free in space, RK4, 0.5 ms",
-            1e-9,
-            "rad",
-            "rounding",
+            partial(lying, level, phi0),
         )
+        yield Check("lying", name, lambda askew=askew: askew(0.5)[1], by, 1e-9, "rad", "rounding")
 
 
 def water(modes: int = 1, fill: float = 0.5, damping_ratio: float | None = None) -> Standing:
