@@ -45,8 +45,8 @@ def test_others_are_compared_at_equal_error_and_whole_calls_with_their_set_up() 
     found += [point(4, 1e-5, "mjbeer.simulate", "", "tolerance"), point(2, 1e-4, "SciPy odeint", "", "tolerance")]
     study = Benchmark({}, {}, found)
     first, *_, last = tables.others(study).rows
-    assert first == ("frozen, 1e-03 rad", "1e+03 ms", "2 (4,096)", "-", "-", "2", "0.5")
-    assert last[1:] == ("not reached", "-", "-", "-", "-", "-")
+    assert first == ("frozen, 1e-03 rad", "1e+03 ms", "2 (4,096)", "-", "2", "0.5")
+    assert last[1:] == ("not reached", "-", "-", "-", "-")
     assert tables.span(study, "MuJoCo RK4") == (2, 2)
     (whole,) = tables.whole_calls(study).rows
     assert whole[1:] == ("4e+03 ms", "1.0e-05", "2e+03 ms (odeint)", "0.5", "1e+04 ms + 500 ms")

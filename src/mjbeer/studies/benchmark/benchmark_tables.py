@@ -12,7 +12,7 @@ from mjbeer.studies.benchmark.points import Benchmark, Point, milliseconds
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which run times are compared with that of the best setting."""
-OTHERS = ("MuJoCo RK4", "SciPy DOP853", "SciPy LSODA", "SciPy odeint", "heyoka")
+OTHERS = ("MuJoCo RK4", "SciPy DOP853", "SciPy odeint", "heyoka")
 """What is compared with mjbeer's best reduced setting."""
 _NOTES = """
 The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
@@ -117,7 +117,7 @@ def whole_calls(study: Benchmark) -> Table:
             if not whole:
                 continue
             cells = [milliseconds(whole[0].time), f"{whole[0].error:.1e}"]
-            rivals = [point for name in OTHERS[1:4] for point in _by(study, case, name)]
+            rivals = [point for name in OTHERS[1:3] for point in _by(study, case, name)]
             best = points.cheapest(rivals, error)
             cells += (
                 ["-", "-"]
