@@ -38,8 +38,6 @@ LADDERS = {
     Curve("SciPy DOP853", "", "tolerance"): (1e-3, 1e-6),
     Curve("mjbeer.simulate", "", "tolerance"): (1e-6,),
 }
-FEW = {Curve("reduced", "RK4"): STEPS[:2], Curve("equality", "RK4"): STEPS[:2]}
-"""For what does not depend on the ladders."""
 
 
 def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[float, ...]] = LADDERS) -> None:

@@ -11,7 +11,6 @@ from mjbeer.studies.benchmark import benchmark_tables as tables
 from mjbeer.studies.benchmark import points, work_precision
 from mjbeer.studies.benchmark.points import CASES, SHIPPED, Benchmark, Point
 from mjbeer.studies.benchmark.timing import Rung
-from tests.support import figures
 
 
 def point(time: float, error: float, model: str = "reduced", method: str = "RK4", parameter: str = "timestep") -> Point:
@@ -78,13 +77,11 @@ def test_the_study_that_comes_with_mjbeer_is_of_this_code(stored: Benchmark) -> 
 
 @pytest.mark.costly
 def test_the_diagram_names_what_it_shows_and_each_point_tells_its_setting(
-    stored: Benchmark, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    stored: Benchmark, tmp_path: pathlib.Path
 ) -> None:
-    seen = figures.saved(monkeypatch)
     work_precision.draw(stored, tmp_path / "all")
     frozen = replace(stored, points=stored.of("frozen"))
     work_precision.draw(frozen, tmp_path / "one")
-    assert [figures.faults(figure) for figure in seen] == [[], []]
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "all.svg").read_text())
     for label in (
         "mjbeer's DOP853",

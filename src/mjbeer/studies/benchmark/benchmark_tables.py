@@ -116,30 +116,18 @@ def whole_calls(study: Benchmark) -> Table:
             whole = [point for point in study.of(case) if point.model == WHOLE and math.isclose(point.value, error)]
             if not whole:
                 continue
-            cells = [milliseconds(whole[0].time), f"{whole[0].error:.1e}"]
-            rivals = [point for name in OTHERS[1:3] for point in _by(study, case, name)]
-            best = points.cheapest(rivals, error)
-            cells += (
-                ["-", "-"]
-                if best is None
-                else [
-                    f"{milliseconds(best.time)} ({best.model.removeprefix('SciPy ')})",
-                    two_digits(best.time / whole[0].time),
-                ]
-            )
+            best = points.cheapest([point for name in OTHERS[1:3] for point in _by(study, case, name)], error)
             compiled = points.cheapest(_by(study, case, "heyoka"), error)
-            known = compiled is not None and compiled.setup is not None
-            cells.append(f"{milliseconds(compiled.setup)} + {milliseconds(compiled.time)}" if known else "-")
-            rows.append((f"{case}, {error:.0e} rad", *cells))
-    columns = (
-        "tolerance",
-        "mjbeer.simulate",
-        "its error [rad]",
-        "SciPy's best",
-        "over mjbeer's",
-        "heyoka, compiling + run",
-    )
-    return Table("Whole calls, with all set-up", columns, rows)
+            scipy = over = heyoka = "-"
+            if best is not None:
+                scipy = f"{milliseconds(best.time)} ({best.model.removeprefix('SciPy ')})"
+                over = two_digits(best.time / whole[0].time)
+            if compiled is not None and compiled.setup is not None:
+                heyoka = f"{milliseconds(compiled.setup)} + {milliseconds(compiled.time)}"
+            mine = milliseconds(whole[0].time), f"{whole[0].error:.1e}"
+            rows.append((f"{case}, {error:.0e} rad", *mine, scipy, over, heyoka))
+    columns = "mjbeer.simulate", "its error [rad]", "SciPy's best", "over mjbeer's", "heyoka, compiling + run"
+    return Table("Whole calls, with all set-up", ("tolerance", *columns), rows)
 
 
 def two_digits(value: float) -> str:

@@ -78,27 +78,24 @@ def batch(first: int, size: int = SIZE) -> dict[str, Any]:
         kinds.setdefault(trial.kind, Counter()).update(names)
         if outcome.verdict == SILENT:
             silent.append({"number": number, "region": region, **asdict(outcome), "trial": repr(trial)})
-    counts = {
-        name: {key: dict(count) for key, count in of.items()} for name, of in (("regions", regions), ("kinds", kinds))
-    }
-    return {"error": len(silent), **counts, "silent": silent}
+    counts = {"regions": regions, "kinds": kinds}
+    plain = {name: {key: dict(count) for key, count in of.items()} for name, of in counts.items()}
+    return {"error": len(silent), **plain, "silent": silent}
 
 
 def totals(results: Iterable[Result]) -> dict[str, Any]:
     """Return the counts of a study's runs, as numbers: of known cases, by region, and by kind of model with all."""
-    known, regions, kinds = Counter[str](), dict[str, Counter[str]](), dict[str, Counter[str]]()
+    known, counted = Counter[str](), {"regions": dict[str, Counter[str]](), "kinds": dict[str, Counter[str]]()}
     for result in results:
         if result.group == KNOWN:
             known.update(run["verdict"] for run in result.values["runs"])
-        for table, name in ((regions, "regions"), (kinds, "kinds")):
-            for key, counts in result.values.get(name, {}).items() if result.group == RANDOM else ():
+        for name, table in counted.items() if result.group == RANDOM else ():
+            for key, counts in result.values[name].items():
                 table.setdefault(key, Counter()).update(counts)
-    kinds = dict(sorted(kinds.items()))
-    kinds["all"] = sum(kinds.values(), Counter())
-    return {
-        "known": dict(known),
-        **{"regions": {k: dict(v) for k, v in regions.items()}},
-        "kinds": {k: dict(v) for k, v in kinds.items()},
+    kinds = dict(sorted(counted["kinds"].items()))
+    counted["kinds"] = kinds | {"all": sum(kinds.values(), Counter())}
+    return {"known": dict(known)} | {
+        name: {key: dict(of) for key, of in each.items()} for name, each in counted.items()
     }
 
 
