@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, frozen, hoop, liquid, pendulum, simulate, sliding
+from mjbeer import Can, frozen, hoop, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import TemplateError
 from mjbeer.simulation.run import Run
 from mjbeer.studies import attached_can
@@ -84,13 +84,6 @@ def test_an_error_in_the_program_is_no_outcome(error: Exception, monkeypatch: py
         judge(Trial(frozen(), 1.0))
 
 
-@pytest.mark.parametrize("scene", [sliding(), frozen(), pendulum(-1.0)])
-def test_both_theories_agree(scene: Scene) -> None:
-    judges, motions, apart = truth(scene, LONG, 1.0, 2.0)
-    assert (judges, len(motions)) == (BOTH, 2)
-    assert apart < 1e-11
-
-
 def test_theories_that_differ_are_silent(monkeypatch: pytest.MonkeyPatch) -> None:
     """Unless rounding explains it, as a ten-billionth of a radian beside a separatrix."""
     top = pendulum(0.0).separatrix()[1]
@@ -98,6 +91,7 @@ def test_theories_that_differ_are_silent(monkeypatch: pytest.MonkeyPatch) -> Non
     assert judges in (BOTH, SERIES)
     assert math.isfinite(apart)
     assert len(motions) > 2
+    assert truth(frozen(), LONG, 1.0, 0.0)[2] < 1e-11
     right = judging.solution
     monkeypatch.setattr(judging, "solution", lambda scene, *rest: right(replace(scene, gravity=9.8101), *rest))
     assert truth(frozen(), LONG, 1.0, 0.0)[2] == math.inf
