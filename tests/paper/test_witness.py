@@ -1,4 +1,4 @@
-"""What MuJoCo says of a motion: consistent with itself, whichever way the can is made to roll; and ripples of loops."""
+"""What MuJoCo says of a motion: near theory, whichever way the can is made to roll; and ripples of loops."""
 
 import math
 
