@@ -106,8 +106,6 @@ def export(
     if portable:  # MJX 3.3 has no energy, and not all flags
         spec.option.disableflags &= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
         spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-        for energy in filter(None, map(spec.sensor, ("potential_energy", "kinetic_energy"))):
-            spec.delete(energy)
     model = spec.compile()
     text = _text(spec)
     files.write(target, _portable(text, model) if portable else text)

@@ -136,10 +136,9 @@ def remove_idle(root: ET.Element) -> None:
 
 
 def remove_energies(root: ET.Element) -> None:
-    """Take the sensors of energy from a tree: MuJoCo counts no constant force that stands for a weight as potential."""
+    """Disable energies in a tree: MuJoCo counts no constant force that stands for a weight as potential."""
     for flag in root.iter("flag"):
         flag.attrib.pop("energy", None)
-    remove(root, "e_potential", "e_kinetic")
 
 
 def _acts(text: str) -> bool:
