@@ -186,12 +186,17 @@ def test_what_cannot_be_written_is_refused(
 # What the viewer shows
 
 
+ENERGIES = "potential_energy", "kinetic_energy"
+
+
 def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[str, float]:
-    """The sensors' values."""
+    """The sensors' values, and MuJoCo's energies if they are enabled."""
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = np.split(state.start(model, scene, phi, phi_dot), 2)
     mujoco.mj_forward(model, data)
-    return {model.sensor(i).name: float(data.sensor(i).data[0]) for i in range(model.nsensor)}
+    found = {model.sensor(i).name: float(data.sensor(i).data[0]) for i in range(model.nsensor)}
+    enabled = model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+    return found | (dict(zip(ENERGIES, data.energy.tolist(), strict=True)) if enabled else {})
 
 
 @pytest.mark.slow

@@ -126,7 +126,8 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
     """Element, attribute and files of each parameter are what mjbeer writes; and all names are there."""
     sections = (OWN / "README.md").read_text().split("\n## ")
     told = {text.partition("\n")[0]: text for text in sections}
-    rows = re.findall(r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", told["Parameters"], re.MULTILINE)
+    table = re.findall(r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", told["Parameters"], re.MULTILINE)
+    rows = [(element, each, files) for element, attributes, files in table for each in attributes.split("`, `")]
     for name, (scene, rolling) in MECHANICS.items():
         written = {(element, attribute) for element, attribute in Numbers.of(scene, Setting(rolling)).parameters}
         here = {(element, attribute) for element, attribute, files in rows if fits(name, files)}

@@ -2,11 +2,6 @@
 
 Its mechanics are those of an MJCF file, into which the numbers of the scene are written. A model that is only stepped
 is a skeleton: joints, masses, forces and what touches. One that is seen has looks too.
-
-- "reduced" has no constraint: its coordinates allow no other motion than rolling without slipping. The can's rotation
-  follows from u, or from phi, and its inertia is added to theirs. There is no error but the integrator's.
-- "equality" and "contact" leave it to MuJoCo's constraint solver to make the can roll. Its constraints are soft; here
-  they are made as hard as is stable under the integrator.
 """
 
 import copy
@@ -85,7 +80,7 @@ def build(
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = compose(scene, setting, visuals)
     add_start(spec, scene, phi0, phi_dot0)
-    model = compile_spec(spec, rigid=setting.rigid)
+    model = compile_spec(spec, rigid=setting.rolling == "equality")
     _warn_of_edits(model if visuals else None, scene, setting)
     return model
 
@@ -135,11 +130,7 @@ def edited(scene: Scene, setting: Setting, seen: mujoco.MjModel | None = None) -
 
 
 def refuse_others(**given: object) -> None:
-    """Refuse what is said of a standing can that has a meaning for a can that rolls on an incline only.
-
-    Raises:
-      ParameterError: if something is not the default.
-    """
+    """Refuse what is said of a standing can that has a meaning for a can that rolls on an incline only."""
     defaults = {name: each.default for name, each in inspect.signature(build).parameters.items()}
     for name, value in given.items():
         if value != defaults[name]:
@@ -147,11 +138,7 @@ def refuse_others(**given: object) -> None:
 
 
 def refuse_held(scene: Scene, free: bool) -> None:
-    """Check that what is no standing can is a scene, and that it is not to be held: its can always rolls.
-
-    Raises:
-      ParameterError: if not.
-    """
+    """Check that what is no standing can is a scene, and that it is not to be held: its can always rolls."""
     require.instance("scene", scene, Scene)
     if not require.boolean("free", free):
         raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
@@ -163,8 +150,7 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
     What is only stepped lacks what is only seen or measured, and what exerts no force. A file that does not move as
     theory says is left whole.
     """
-    made = Numbers.of(scene, setting, visuals)
-    folder = mjcf_folder(setting.mjcf)
+    made, folder = Numbers.of(scene, setting, visuals), mjcf_folder(setting.mjcf)
     path = folder / "mechanics" / f"{made.file}.xml"
     root = mechanics.read(path)
     mechanics.write(root, made.parameters, path)
@@ -174,15 +160,14 @@ def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjS
         if right:
             mechanics.remove_idle(root)
         looks.dress(root, looks.name(scene))
-        mechanics.include(root, folder)
         if made.force or made.unit != 1:
             mechanics.remove_energies(root)
-        spec = mechanics.to_spec(root, path)
-        looks.fit(spec, scene, folder)
-        return spec
-    if right:
+    elif right:
         mechanics.leave_out(root)
-    return mechanics.to_spec(root, path)
+    spec = mechanics.to_spec(root, path)
+    if visuals:
+        looks.fit(spec, scene, folder)
+    return spec
 
 
 def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -> None:
@@ -192,11 +177,7 @@ def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -
 
 
 def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
-    """Return the model that a specification compiles to, in which a joint equality is made `rigid` if asked for.
-
-    Raises:
-      UnsupportedError: if MuJoCo refuses the scene's numbers or an element of the file.
-    """
+    """Return the model that a specification compiles to, in which a joint equality is made `rigid` if asked for."""
     with _compiling, warnings.catch_warnings():
         warnings.filterwarnings("error", _SINGULAR)
         try:
@@ -209,19 +190,14 @@ def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
 
 
 class Stepped:
-    """A model to be stepped, and its data, for one thread at a time; scenes of its kind are written into it in place.
-
-    Raises:
-      UnsupportedError: if MuJoCo cannot have such a model.
-      TemplateError: if its file moves otherwise than theory says.
-    """
+    """A model to be stepped and its data, for one thread at a time; scenes of its kind are written into it in place."""
 
     def __init__(self, made: Numbers) -> None:
         with _compiling:
             if (skeleton := _skeletons.get(made.kind)) is None:
                 if fault := edited(made.scene, made.setting):
                     raise TemplateError(fault)
-                skeleton = compile_spec(compose(made.scene, made.setting), made.setting.rigid)
+                skeleton = compile_spec(compose(made.scene, made.setting), made.setting.rolling == "equality")
                 _skeletons[made.kind] = skeleton
         self.model = copy.copy(skeleton)
         self.data = mujoco.MjData(self.model)
@@ -242,7 +218,7 @@ class Stepped:
             mujoco.mj_setConst(model, data)
         if made.setting.rolling != "reduced":
             model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
-        if made.setting.rigid:
+        if made.setting.rolling == "equality":
             _make_rigid(model)
         if min(min(body.mass, body.inertia) for body in made.bodies.values()) < mujoco.mjMINVAL:
             raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")

@@ -28,8 +28,6 @@ from mjbeer.theory.load import Load
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Attachment, Scene
 
-STATES = 9
-"""Number of states of a run, evenly spread, at which accelerations are compared."""
 _PROBES = {
     "sliding": Scene(
         Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "sliding", 5.0, Damping(1e-3, 1e-4, 1e-5), 0.5
@@ -37,18 +35,9 @@ _PROBES = {
     "frozen": Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "frozen", 5.0),
 }
 """Scenes that need all that is in a file, with other numbers than the paper's; the can is heavy enough for a weight."""
-_ANGLES = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])
-"""Angles at which a model is compared [rad]: no two are each other's mirror image, or a quarter turn apart."""
-_RATES = np.array([2.0, -1.0, 0.5, 3.0, -2.0])
-"""Rates of phi at which it is compared, over that at which an angle of 1 rad passes in a fall through the radius."""
 _ALLOWED = 1e-9
 """Largest difference of phi_ddot from theory's that a model may have, over the accelerations at those rates. With
 the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""
-_SMALL_SWING = 0.1
-"""Smallest acceleration with which a difference is compared, relative to the largest that gravity gives at rest: a
-motion that hardly swings would otherwise divide rounding by nearly nothing."""
-_OF_SLIP = 8 * float(np.finfo(float).eps)
-"""Rounding of a slip rate, over the rates whose difference it is: each is rounded a few times."""
 
 
 @functools.lru_cache(maxsize=64)
@@ -56,9 +45,6 @@ def of_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> s
     """Return what is wrong with a mechanics file, None if nothing is: as it stands, and with other numbers in it.
 
     As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
-
-    Raises:
-      TemplateError: if it cannot be read, or lacks an element.
     """
     path, setting = folder / "mechanics" / f"{attachment}_{rolling}.xml", Setting(rolling)
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
@@ -91,7 +77,8 @@ def of_model(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | Non
     if (found := tuple(places(model))) != joints:
         return f"gives the joints {', '.join(found)}, not {', '.join(joints)}"
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
-    phi, phi_dot, zeros = _ANGLES, rate * _RATES, np.zeros(len(_ANGLES))
+    phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
+    phi_dot, zeros = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0]), np.zeros(len(phi))
     roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
     rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
     lift = zeros - START_DEPTH * radius
@@ -118,7 +105,7 @@ def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, 
     Like a relative error of the energy it is a relative error of the rate, and so of the path of phi. It is no more
     than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
     """
-    chosen = np.linspace(0, len(way.time) - 1, min(STATES, len(way.time))).astype(int)
+    chosen = np.linspace(0, len(way.time) - 1, min(9, len(way.time))).astype(int)  # states, evenly spread
     difference, relative = residual(model, scene, write(model, part(way, chosen)), exact_constraint)
     missing = min(relative * max(record.path, 1.0), difference * float(way.time[-1]) ** 2 / 2)
     return missing / max(1.0, record.turned)
@@ -138,12 +125,13 @@ def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_cons
     found = read(model, scene, slopes, times).phi_dot
     _, right = accelerations(scene, motion.phi, motion.phi_dot, motion.u_dot)
     oscillator = scene.oscillator
-    small = float((_SMALL_SWING * oscillator.depth / oscillator.inertia(motion.phi)).min())
+    # A motion that hardly swings would divide rounding by nearly nothing: the least is a tenth of what gravity gives.
+    small = float((0.1 * oscillator.depth / oscillator.inertia(motion.phi)).min())
     differences = np.abs(found - right)
     if scene.dissipates:  # the rounding of a slip rate makes a torque that brings can and load together, and so is gone
         rates = np.abs(motion.phi_dot) + np.abs(motion.u_dot) / radius
         together = stiffness(scene, motion.phi, motion.phi_dot, motion.u_dot)
-        differences = np.maximum(differences - _OF_SLIP * together * rates, 0.0)
+        differences = np.maximum(differences - 8 * np.finfo(float).eps * together * rates, 0.0)
     largest, difference = max(float(np.abs(right).max()), small), float(differences.max())
     return difference, difference / largest if largest > 0 else 0.0
 

@@ -72,6 +72,4 @@ def library() -> ctypes.CDLL:
 @functools.cache
 def address(name: str) -> int:
     """Return the address of a C function."""
-    value = ctypes.cast(getattr(library(), name), ctypes.c_void_p).value
-    assert value is not None
-    return value
+    return ctypes.cast(getattr(library(), name), ctypes.c_void_p).value or 0

@@ -1,8 +1,4 @@
-"""A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or for others too.
-
-What is shown has everything drawn, sensors to plot, a board for ten seconds of rolling, a camera that goes along with
-the can, and its start as a keyframe.
-"""
+"""A scene made ready for MuJoCo's viewer, and written as one stand-alone MJCF file, for MuJoCo 4 or for others too."""
 
 import math
 import os
@@ -24,15 +20,6 @@ from mjbeer.theory.standing import QUANTITATIVE, Standing
 
 CAMERA = "side"
 """The camera with which the viewer opens. It goes along with the can."""
-_DURATION = 10.0
-"""How long the can may roll before the board ends [s]."""
-_LONGEST = 1e5
-"""Largest length of the board to either side, in radii: graphics compute in single precision, so that further away the
-can would be drawn a percent of its radius beside its place."""
-_FALL = 1.0
-"""Angle at which a standing can leans in its keyframe "fall" [rad]."""
-_DIGITS = 17
-"""Decimal digits from which a double can be read back exactly."""
 PORTABLE = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
@@ -106,8 +93,6 @@ def export(
     if portable:  # MJX 3.3 has no energy, and not all flags
         spec.option.disableflags &= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
         spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-        for energy in filter(None, map(spec.sensor, ("potential_energy", "kinetic_energy"))):
-            spec.delete(energy)
     model = spec.compile()
     text = _text(spec)
     files.write(target, _portable(text, model) if portable else text)
@@ -120,7 +105,8 @@ def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco
     """
     spec = compose(scene, made, visuals=True)
     u = scene.start(phi0, phi_dot0)[0]
-    way = min(farthest(scene, phi0, phi_dot0, _DURATION), _LONGEST * scene.can.radius)
+    # The board is for ten seconds. Beyond 1e5 radii single precision draws a can a percent of its radius off its place.
+    way = min(farthest(scene, phi0, phi_dot0, 10.0), 1e5 * scene.can.radius)
     looks.lengthen(spec, scene, u - way, u + way)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec)
@@ -133,10 +119,7 @@ def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco
 def present_standing(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
     """Return the specification of a standing can to be shown; if it is free, with its keyframes.
 
-    "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, and "fall" leans beyond where cans tip.
-
-    Raises:
-      TemplateError: if a file of MJCF is missing or lacks an element.
+    "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
     spec = compose_free(can, True, free, made.integrator, made.timestep, made.mjcf)
     spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
@@ -145,8 +128,8 @@ def present_standing(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
     upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
     tilt = math.asin(QUANTITATIVE / can.elevations(1)[0])
     turned = [math.cos(tilt / 2), 0.0, math.sin(tilt / 2), 0.0]
-    leaning = [math.cos(_FALL / 2), 0.0, math.sin(_FALL / 2), 0.0]
-    above = can.can.radius * math.sin(_FALL)
+    leaning = [math.cos(0.5), 0.0, math.sin(0.5), 0.0]
+    above = can.can.radius * math.sin(1.0)
     spec.add_key(name=START, qpos=[0, 0, 0, *upright, *rest])
     if can.modes > 0:
         spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
@@ -166,13 +149,13 @@ def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> flo
 
 
 def _text(spec: mujoco.MjSpec) -> str:
-    """Return the specification as XML with `_DIGITS` digits, where MuJoCo by default writes 6."""
+    """Return the specification as XML with 17 digits, which give all doubles back; MuJoCo's default is 6."""
     c = library()
     try:
         before, set_digits = c._mjPRIVATE__get_xml_precision(), c._mjPRIVATE__set_xml_precision
     except AttributeError:
         raise UnsupportedError(f"MuJoCo {mujoco.__version__} cannot write MJCF with all digits; 4.0 can") from None
-    set_digits(_DIGITS)
+    set_digits(17)
     try:
         return spec.to_xml()
     finally:
@@ -185,9 +168,6 @@ def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
     Without it an equality's row is softened by 1/m + 1/I, of slide and hinge, in metres and radians alike. A row about
     angles, roll - u/a, should have 1/(m a^2) + 1/I, and one about distances 1/m + a^2/I: of the two the one is taken
     that is not too soft.
-
-    Raises:
-      UnsupportedError: if not all that load a portable export have the damping and drag.
     """
     if scene.drag > 0 or any(scene.damping_law.coefficients[1:]):
         raise UnsupportedError(

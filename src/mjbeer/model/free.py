@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, UnsupportedError, UntrustedWarning
+from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mechanics, numbers
 from mjbeer.model.setting import INTEGRATORS, Integrator, mjcf_folder
 from mjbeer.theory.can import Can
@@ -31,8 +31,6 @@ _BOB = 1e-3, 0.1
 """Share of a pendulum's inertia that its bob has about itself, at least and over the damping ratio. MuJoCo moves
 nothing without inertia, and with too little of it the damping of a spin is too stiff for RK4. The bob is heavier by as
 much, and nearer to the pivot, so that the motion is exactly the pendulum's."""
-_SPIN = 1e-9
-"""Inertia of the liquid about the can's axis over that about a level one: it has none, as nothing drags it along."""
 _BREAKING = 0.02
 """Damping ratio that a mode has more at the rate omega, growing with the square of the rate: waves break. It is chosen,
 not computed: with it thrown cans are stable at 5 ms. At an elevation of 0.1 R it adds 2e-4."""
@@ -49,8 +47,6 @@ _SPOILING = {
 """What a can does under a flag that disables a stage of MuJoCo's."""
 _PARTS = ("can", "load", "swing", "liquid", *(f"slosh{mode}" for mode in range(1, MOST_MODES + 1)), "slide", "phi")
 """Bodies and joints by which cans differ; the last two are those of a scene that `build` made."""
-_WRITTEN = 1e-6
-"""Relative difference of sizes that were written to MJCF, with 6 digits or more."""
 _FLAGS, _CONES, _KINDS = mujoco.mjtDisableBit, mujoco.mjtCone, mujoco.mjtIntegrator
 
 
@@ -103,7 +99,13 @@ def attach(
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.shown(friction)}")
     lying = isinstance(can, Scene)
     child = _lying(can) if lying else _standing(require.instance("can", can, Standing))
-    _settle(parent.option, child.option, lying)
+    option = parent.option
+    if option.cone == _CONES.mjCONE_PYRAMIDAL:
+        option.cone = child.option.cone
+    if lying and option.impratio == 1:
+        option.impratio = child.option.impratio
+    if lying and option.integrator == _KINDS.mjINT_EULER:
+        option.integrator = child.option.integrator
     reasons = [*_spoilt(parent.option, can), *_bounded(parent.compiler, child)]
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
@@ -170,22 +172,12 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
     kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
     there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
     needed = [each for each in _PARTS if spec.body(each) is not None or spec.joint(each) is not None]
-    size = [shell.radius, shell.length / 2]
-    if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=_WRITTEN, atol=0):
+    size = [shell.radius, shell.length / 2]  # written to MJCF with 6 digits or more
+    if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
         raise ParameterError(
             f"the model must have a can under the prefix {require.shown(prefix)} with radius and half length {size} m "
             f"and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, got {require.shown(can)}"
         )
-
-
-def _settle(option: mujoco.MjOption, own: mujoco.MjOption, lying: bool) -> None:
-    """Change a parent's options that nobody chose to those that a can has in its own file."""
-    if option.cone == _CONES.mjCONE_PYRAMIDAL:
-        option.cone = own.cone
-    if lying and option.impratio == 1:
-        option.impratio = own.impratio
-    if lying and option.integrator == _KINDS.mjINT_EULER:
-        option.integrator = own.integrator
 
 
 def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
@@ -258,12 +250,7 @@ def compose(
     timestep: float,
     mjcf: str | os.PathLike[str] | None = None,
 ) -> mujoco.MjSpec:
-    """Return the specification of a standing can: on the floor if it is `free`, or else held by the world.
-
-    Raises:
-      ParameterError: if the integrator is not one of MuJoCo's, or the timestep is not allowed.
-      TemplateError: if a file of MJCF is missing or lacks an element.
-    """
+    """Return the specification of a standing can: on the floor if it is `free`, or else held by the world."""
     spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free), mjcf_folder(mjcf))
     integrator = require.choice("integrator", integrator, INTEGRATORS)
     spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
@@ -275,17 +262,11 @@ def _standing(
     can: Standing, visuals: bool = True, free: bool = False, folder: pathlib.Path | None = None
 ) -> mujoco.MjSpec:
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
-    folder = folder or mjcf_folder()
-    path = folder / "mechanics" / "standing.xml"
-    root = mechanics.read(path)
-    mechanics.require_same(root, _paper(lying=False), path)
-    mechanics.remove(root, "keyframe")
+    root, path = _read("standing", folder or mjcf_folder())
     if not free:
         mechanics.remove(root, "freejoint", "geom[@name='surface']")
-    body, sensors = root.find(".//body[@name='can']"), root.find("sensor")
-    assert body is not None
-    assert sensors is not None
-    first = [(parent, each) for parent in (body, sensors) for each in parent if "slosh1" in each.get("name", "")]
+    parents = [*root.iterfind(".//body[@name='can']"), *root.iterfind("sensor")]
+    first = [(parent, each) for parent in parents for each in parent if "slosh1" in each.get("name", "")]
     for mode in range(2, can.modes + 1):
         for parent, each in first:
             parent.append(ET.fromstring(ET.tostring(each, encoding="unicode").replace("slosh1", f"slosh{mode}")))
@@ -293,33 +274,39 @@ def _standing(
         for parent, each in first:
             parent.remove(each)
     mechanics.write(root, standing_values(can), path)
-    if not visuals:
-        return mechanics.to_spec(root, path)
-    looks.dress(root, "standing")
-    mechanics.include(root, folder)
+    if visuals:
+        looks.dress(root, "standing")
     spec = mechanics.to_spec(root, path)
-    looks.fit_upright(spec, can, folder)
+    if visuals:
+        looks.fit_upright(spec, can, path.parents[1])
     return spec
 
 
 def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a lying can, which has no free joint yet."""
-    folder = mjcf_folder()
-    path = folder / "mechanics" / "lying.xml"
-    root, values = mechanics.read(path), lying_values(scene)
-    mechanics.require_same(root, _paper(lying=True), path)
-    mechanics.remove(root, "keyframe", "freejoint")
+    values = lying_values(scene)
+    root, path = _read("lying", mjcf_folder())
+    mechanics.remove(root, "freejoint")
     if scene.attachment == "frozen":
         mechanics.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
-    level = {("body incline", "euler"): (0, 0, 0), ("body can", "euler"): (0, 0, 0)}  # what it meets is the parent's
-    mechanics.write(root, {**values, **level}, path)
-    if not visuals:
-        return mechanics.to_spec(root, path)
-    looks.dress(root, looks.name(scene))
-    mechanics.include(root, folder)
+    values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
+    mechanics.write(root, values, path)
+    if visuals:
+        looks.dress(root, looks.name(scene))
     spec = mechanics.to_spec(root, path)
-    looks.fit(spec, scene, folder)
+    if visuals:
+        looks.fit(spec, scene, path.parents[1])
     return spec
+
+
+def _read(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:
+    """Return a mechanics file without keyframes, and its path; numbers that somebody has changed are an error."""
+    path = folder / "mechanics" / f"{name}.xml"
+    root = mechanics.read(path)
+    if edited := mechanics.differences(root, _paper(name)):
+        raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
+    mechanics.remove(root, "keyframe")
+    return root, path
 
 
 def standing_values(can: Standing) -> mechanics.Values:
@@ -330,7 +317,7 @@ def standing_values(can: Standing) -> mechanics.Values:
     """
     shell, half = can.can, can.can.length / 2
     across = transverse_inertia(shell)
-    found: dict[tuple[str, str], tuple[float, ...] | str] = {
+    found: mechanics.Values = {
         ("option", "gravity"): (0, 0, -can.gravity),
         ("geom can", "size"): (shell.radius, half),
         ("geom can", "pos"): (0, 0, half),
@@ -354,22 +341,18 @@ def standing_values(can: Standing) -> mechanics.Values:
         found[f"site {name}_rise", "pos"] = 0, 0, -rise
     mass, first, second = moments
     level = second - first**2 / mass
-    spin = can.mass * shell.radius**2 / 2 if can.modes == 0 else _SPIN * level
+    spin = can.mass * shell.radius**2 / 2 if can.modes == 0 else 1e-9 * level  # nothing drags the liquid along
     return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
 
 
 def lying_values(scene: Scene) -> mechanics.Values:
-    """Return the parameters of a lying can, in whose file the origin is on the axis.
-
-    Raises:
-      UnsupportedError: if MuJoCo cannot move it freely.
-    """
+    """Return the parameters of a lying can, in whose file the origin is on the axis."""
     shell, beer = scene.can, scene.load
     if beer.fill is None:
         raise UnsupportedError(f"a can that is free in space has beer in it, got a load without a fill: {scene!r}")
     if scene.drag > 0:
         raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
-    found: dict[tuple[str, str], tuple[float, ...] | str] = {("geom can", "size"): (shell.radius, shell.length / 2)}
+    found: mechanics.Values = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
         if shell.mass == 0 or shell.inertia == 0:
             raise UnsupportedError(
@@ -386,14 +369,12 @@ def lying_values(scene: Scene) -> mechanics.Values:
 
 
 @functools.cache
-def _paper(lying: bool) -> mechanics.Values:
+def _paper(name: str) -> mechanics.Values:
     """Return the parameters that a file has as it stands."""
-    return lying_values(sliding(can=Can.sheet_metal())) if lying else standing_values(standing())
+    return lying_values(sliding(can=Can.sheet_metal())) if name == "lying" else standing_values(standing())
 
 
-def _inertial(
-    body: str, mass: float, height: float, inertia: tuple[float, ...]
-) -> dict[tuple[str, str], tuple[float, ...] | str]:
+def _inertial(body: str, mass: float, height: float, inertia: tuple[float, ...]) -> mechanics.Values:
     name = f"inertial {body}"
     return {(name, "mass"): (mass,), (name, "pos"): (0, 0, height), (name, "diaginertia"): inertia}
 

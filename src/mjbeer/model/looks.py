@@ -30,8 +30,6 @@ _NEEDED = (("camera", "side"), ("camera", "quarter"), ("camera", "overview"), ("
 _ROLLING = (("geom", "load"), ("geom", "board"), ("geom", "wall"), ("material", "planks"))
 _UPRIGHT = (("geom", "beer"), ("frame", "upright"))
 """The elements that mjbeer addresses by name: in all looks, in those of a can that rolls, and of one that stands."""
-_TOP = 0.1
-"""Thickness of the drawn surface of a standing can, in radii."""
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
 OF_THE_LOAD = ("load", "foam")
@@ -41,17 +39,11 @@ WALL = 0.06
 FOAM, _FOAM_SHARE, _LEAST_FOAM = 0.025, 0.25, 1e-4
 """Thickness of the foam in radii, and its largest one over the depth of the beer and over the room above it; a thinner
 one than the last is not drawn."""
-_LEAST_FILL = 1e-6
-"""Smallest fill that is drawn: a mesh must not be flat, and so little beer cannot be seen."""
 EDGES = 256
 """Number of edges around the arc of the beer. The error of the polygon falls as its square; with 256 edges mass,
 centroid and inertia are within 6e-4 for every fill up to 0.95."""
 _HALF_TURNS = (-20, 980)
 """Where the board of the looks begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
-_SPARE = 20
-"""Half turns of board beyond either end of a motion: more than a camera at the can sees."""
-_DRAWN = 2
-"""MuJoCo's group of the geoms that are only drawn."""
 
 Mesh = tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3) [m] and faces (k, 3), closed and oriented outwards. Where two surfaces meet at an edge that is to
@@ -98,11 +90,7 @@ def dress(root: ET.Element, what: str, looks: str = "looks") -> None:
 
 
 def fit(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
-    """Fit what is drawn to the sizes of a scene.
-
-    Raises:
-      TemplateError: if the looks lack an element that mjbeer addresses by name, or a mesh cannot be read.
-    """
+    """Fit what is drawn to the sizes of a scene."""
     _fit_sizes(spec, scene.can, folder, (*_ROLLING, *(("mesh", "load"),) * (scene.load.fill is not None)))
     if scene.attachment == "sliding" and spec.joint("phi") is not None:  # no joint turns with the can
         for geom in filter(None, map(spec.geom, TURNING)):
@@ -135,7 +123,7 @@ def column(standing: Standing) -> dict[str, tuple[float, float]]:
     height = standing.height
     if standing.modes == 0:
         return {"beer": (0.0, height)}
-    thickness, pivot = min(_TOP * standing.can.radius, height / 4), standing.pivots(1)[0]
+    thickness, pivot = min(0.1 * standing.can.radius, height / 4), standing.pivots(1)[0]
     return {"beer": (0.0, height - thickness), "beer_top": (height - 2 * thickness - pivot, height - pivot)}
 
 
@@ -147,7 +135,7 @@ def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequ
     size = can.radius / RADIUS
     stretch = np.array([size, can.length / LENGTH, size])
     for geom in spec.geoms:
-        if geom.group == _DRAWN:
+        if geom.group == 2:  # of the geoms that are only drawn
             geom.pos, geom.fromto = geom.pos * stretch, geom.fromto * np.tile(stretch, 2)
             geom.size = geom.size * (stretch if geom.type == mujoco.mjtGeom.mjGEOM_BOX else size)
     for camera in spec.cameras:  # as many radii from the can's near end
@@ -178,10 +166,10 @@ def _shape(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, n
 
 
 def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:
-    """Make the board long enough for a motion from u = `low` to `high` [m]."""
+    """Make the board long enough for a motion from u = `low` to `high` [m], and for ten turns more at its ends."""
     turn = math.pi * scene.can.radius
-    first = min(_HALF_TURNS[0], math.floor(low / turn) - _SPARE)
-    last = max(_HALF_TURNS[1], math.ceil(high / turn) + _SPARE)
+    first = min(_HALF_TURNS[0], math.floor(low / turn) - 20)
+    last = max(_HALF_TURNS[1], math.ceil(high / turn) + 20)
     board, planks = spec.geom("board"), spec.material("planks")
     board.pos = [(first + last) / 2 * turn, *board.pos[1:]]
     board.size = [(last - first) / 2 * turn, *board.size[1:]]
@@ -210,7 +198,7 @@ def _hang(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 def pour(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
     """Give the beer its fill, and put the foam on it, which gets thin or goes where there is no room or no beer."""
-    radius, length, fill = scene.can.radius, scene.can.length, max(scene.load.fill or 0.0, _LEAST_FILL)
+    radius, length, fill = scene.can.radius, scene.can.length, max(scene.load.fill or 0.0, 1e-6)  # a mesh is not flat
     thickness = min(FOAM, _FOAM_SHARE * 2 * fill, _FOAM_SHARE * 2 * (1 - fill))
     liquid, foam = spec.mesh("load"), spec.mesh("foam")
     shape = beer(fill, radius, length, edges)

@@ -1,7 +1,4 @@
-"""The mechanics: MJCF files, into which the numbers of a scene are written before MuJoCo compiles them, or after.
-
-A file is read once a process. All but its parameters is stepped as it stands.
-"""
+"""The mechanics: MJCF files, into which the numbers of a scene are written before MuJoCo compiles them, or after."""
 
 import copy
 import functools
@@ -16,10 +13,8 @@ import numpy as np
 
 from mjbeer.exceptions import TemplateError
 
-Values: TypeAlias = Mapping[tuple[str, str], tuple[float, ...] | str]
+Values: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
 """Numbers by element and attribute, as `Numbers.parameters`."""
-_WRITTEN = 1e-11
-"""Largest relative difference between a number in a file, which has 12 digits, and the one that mjbeer has."""
 _STAGES = {"spring": ("stiffness", "springdamper"), "damper": ("damping", "springdamper")}
 """Stages of a step, and the attributes that a model needs them for."""
 _FORCELESS = {"fixed": ("name",), "spatial": ("name", "rgba"), "general": ("name", "joint", "biastype")}
@@ -27,13 +22,9 @@ _FORCELESS = {"fixed": ("name",), "spatial": ("name", "rgba"), "general": ("name
 
 
 def read(path: pathlib.Path) -> ET.Element:
-    """Return an MJCF file as a tree of its own, with what it includes in place.
-
-    Raises:
-      TemplateError: if it is missing, or no MJCF.
-    """
+    """Return an MJCF file as a tree of its own, with what it includes in place."""
     root = copy.deepcopy(_parsed(path))
-    include(root, path.parent)
+    _include(root, path.parent)
     return root
 
 
@@ -45,7 +36,7 @@ def _parsed(path: pathlib.Path) -> ET.Element:
         raise TemplateError(f"{path} is not readable MJCF: {error}") from error
 
 
-def include(root: ET.Element, folder: pathlib.Path) -> None:
+def _include(root: ET.Element, folder: pathlib.Path) -> None:
     """Put what a tree includes from a folder in its place."""
     for parent in list(root.iter()):
         for place, child in reversed(list(enumerate(parent))):
@@ -66,11 +57,7 @@ def find(root: ET.Element, element: str) -> ET.Element | None:
 
 
 def write(root: ET.Element, values: Values, path: pathlib.Path, digits: int = 17) -> None:
-    """Write numbers into the tree of the file at a `path`, with up to so many `digits`.
-
-    Raises:
-      TemplateError: if it lacks an element.
-    """
+    """Write numbers into the tree of the file at a `path`, with up to so many `digits`."""
     for (name, attribute), value in values.items():
         if (element := find(root, name)) is None:
             raise TemplateError(f"{path} has no {name!r}, into which mjbeer writes {attribute}; restore the file")
@@ -78,7 +65,7 @@ def write(root: ET.Element, values: Values, path: pathlib.Path, digits: int = 17
 
 
 def differences(root: ET.Element, values: Values) -> list[str]:
-    """Return the parameters that have other values in a tree; all of them must be in it."""
+    """Return the parameters that have other values, in 12 digits, in a tree; all of them must be in it."""
     found = []
     for (name, attribute), value in values.items():
         element = find(root, name)
@@ -87,20 +74,10 @@ def differences(root: ET.Element, values: Values) -> list[str]:
             same = words == [value]
         else:
             pairs = zip(words, value, strict=False)
-            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=_WRITTEN) for w, v in pairs)
+            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=1e-11) for w, v in pairs)
         if not same:
             found.append(f"{name} {attribute}")
     return found
-
-
-def require_same(root: ET.Element, values: Values, path: pathlib.Path) -> None:
-    """Check that the file at a `path` has certain values.
-
-    Raises:
-      TemplateError: if not: mjbeer would overwrite what somebody has written.
-    """
-    if edited := differences(root, values):
-        raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
 
 
 def remove(root: ET.Element, *elements: str) -> None:
@@ -136,10 +113,9 @@ def remove_idle(root: ET.Element) -> None:
 
 
 def remove_energies(root: ET.Element) -> None:
-    """Take the sensors of energy from a tree: MuJoCo counts no constant force that stands for a weight as potential."""
+    """Disable energies in a tree: MuJoCo counts no constant force that stands for a weight as potential."""
     for flag in root.iter("flag"):
         flag.attrib.pop("energy", None)
-    remove(root, "e_potential", "e_kinetic")
 
 
 def _acts(text: str) -> bool:
@@ -151,11 +127,8 @@ def _acts(text: str) -> bool:
 
 
 def to_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
-    """Return the specification in the tree of the file at a `path`.
-
-    Raises:
-      TemplateError: if MuJoCo does not understand it.
-    """
+    """Return the specification in the tree of the file at a `path`, with looks in place of what includes them."""
+    _include(root, path.parents[1])
     try:
         return mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     except ValueError as error:

@@ -11,30 +11,21 @@ from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 from mjbeer.exceptions import UnsupportedError
+from mjbeer.model.mechanics import Values
 from mjbeer.model.setting import DOP853, OWN, Setting, mjcf_folder
 from mjbeer.theory.scene import Scene
 
 Kind: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
-Parameter: TypeAlias = tuple[str, str]
-"""An element of a mechanics file, by its tag and its name, and an attribute."""
 
 _SMALLEST = 1e-9
 """Smallest mass [kg] and inertia [kg m^2] that is not scaled: MuJoCo's smallest value (mjMINVAL, 1e-15), a million
 times smaller, changes no sum noticeably."""
 _LARGEST = 1e3
 """Largest mass [kg] that is not scaled: MuJoCo's smallest softness, 1e-15 /kg, is then 1e-12 of the inverse mass."""
-_NOTHING = 1e-30
-"""Mass or inertia over the largest one below which it counts as none, as it adds nothing to any sum."""
-_POINT = 1e-6
-"""A load's own inertia over m b^2 below which it counts as none."""
-_HEAVY_CAN = 10.0
-"""Largest mass of a can over that of its load with which its whole mass is moved to the load's body."""
 _FORCES_SEEN = 2.0**60
 """Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
 [N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
-ARM = 1.0
-"""Length r of the arms of the chord [m], as in the file; any length gives the same inertia."""
 _TOLERANCE = 1e-14
 """The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
 load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
@@ -79,9 +70,6 @@ class Numbers:
         """Return the numbers of a scene in a setting; a model with visuals keeps its masses and an upright gravity.
 
         A `timestep` [s] is instead of the setting's.
-
-        Raises:
-          UnsupportedError: if MuJoCo cannot move one of the bodies.
         """
         if setting.rolling != "reduced":
             bodies, forces = _constrained(scene)
@@ -112,14 +100,14 @@ class Numbers:
         return mjcf_folder(self.setting.mjcf), self.file, *forces
 
     @cached_property
-    def parameters(self) -> dict[Parameter, tuple[float, ...] | str]:
+    def parameters(self) -> Values:
         """Return what is written into the mechanics file, by element and attribute."""
         scene, setting, radius = self.scene, self.setting, self.scene.can.radius
         alpha, g, contact = scene.incline, scene.gravity, setting.rolling == "contact"
         # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen,
         # or in contact, must lie on the incline.
         height = radius if contact or not self.tilted else 0.0
-        found: dict[Parameter, tuple[float, ...] | str] = {
+        found: Values = {
             ("option", "timestep"): (self.timestep,),
             # mjbeer's own integrators step by themselves
             ("option", "integrator"): "RK4" if setting.integrator in OWN else setting.integrator,
@@ -142,7 +130,7 @@ class Numbers:
                 found["fixed damper/slide", "coef"] = (-1 / radius,)
             else:
                 found["spatial chord", "armature"] = (self.chord,)
-                found["site chord_top", "pos"] = 0, 0, height + ARM
+                found["site chord_top", "pos"] = 0, 0, height + 1.0
                 found["fixed u/phi", "coef"] = (radius,)
             return found
         found["fixed slip/roll", "coef"] = (-radius,)
@@ -173,7 +161,7 @@ def mass_unit(scene: Scene) -> float:
         moved = _moved_to_point(scene)
         load = _load_with(scene, moved)
         values = can.mass - moved, can.inertia, load.mass, load.inertia, base
-    smallest = min(value for value in values if value > _NOTHING * max(values))
+    smallest = min(value for value in values if value > 1e-30 * max(values))  # what is less adds nothing to any sum
     up = math.ceil(math.log2(_SMALLEST / smallest))
     down = math.floor(math.log2(_LARGEST / scene.effective_mass))
     return 2.0 ** max(up, min(0, down))
@@ -199,25 +187,20 @@ def _sliding(scene: Scene) -> _Parts:
     """Put the load on a slide (u) and a hinge (phi), with the kinetic energy of eqs. (39) and (44).
 
     The can's mass is on the same body, as a point on the axis, and its inertia I_can/a^2 is the slide's armature.
-    If the can is much heavier than its load, their common centre of mass is so near the axis that the distance would
+    If it is over 10 times as heavy as its load, their common centre of mass is so near the axis that the distance would
     be lost in the rounding of u. Then most of the can's mass becomes armature too, and a constant force its weight.
     """
     can = scene.can
-    moved = can.mass if can.mass <= _HEAVY_CAN * scene.load.mass else _moved_to_point(scene)
+    moved = can.mass if can.mass <= 10 * scene.load.mass else _moved_to_point(scene)
     left = can.mass - moved
-    forces = {
-        "armature": left + can.inertia / can.radius**2,
-        "force": left * scene.gravity * math.sin(scene.incline),
-    }
-    return [("can", _load_with(scene, moved))], forces
+    armature, force = left + can.inertia / can.radius**2, left * scene.gravity * math.sin(scene.incline)
+    return [("can", _load_with(scene, moved))], {"armature": armature, "force": force}
 
 
 def _frozen(scene: Scene) -> _Parts:
     """Put can and load on one hinge, phi, whose inertia J(phi) = base + chord sin^2(phi/2) is that of rolling.
 
-    A tendon runs from a fixed site at a height r above the axis to a site on the body at a depth r below it. It is a
-    chord of length 2 r |cos(phi/2)| (inscribed angle), so that its armature A adds A r^2 sin^2(phi/2) to J. Gravity
-    acts on the moment m b as in eq. (52), and a constant torque replaces its effect on the motion of the axis.
+    The file says how. The arms of the chord are 1 m long; any length gives the same inertia.
     """
     oscillator, moment = scene.oscillator, scene.load.moment
     # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that has more than half
@@ -226,7 +209,7 @@ def _frozen(scene: Scene) -> _Parts:
     if mass * offset**2 > oscillator.base / 2:
         mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
     body = Inertial(mass, offset, oscillator.base - mass * offset**2)
-    return [("can", body)], {"force": oscillator.slope, "chord": oscillator.chord / ARM**2}
+    return [("can", body)], {"force": oscillator.slope, "chord": oscillator.chord}
 
 
 def _constrained(scene: Scene) -> _Parts:
@@ -259,7 +242,7 @@ def _moved_to_point(scene: Scene) -> float:
     A point on the axis moves with the load exactly as with the can, and gives a point load an inertia.
     """
     load = scene.load
-    return min(scene.can.mass / 2, load.mass) if load.inertia < _POINT * load.mass * load.offset**2 else 0.0
+    return min(scene.can.mass / 2, load.mass) if load.inertia < 1e-6 * load.mass * load.offset**2 else 0.0
 
 
 def _load_with(scene: Scene, moved: float) -> Inertial:

@@ -26,8 +26,6 @@ OWN = (DOP853, GAUSS_JACKSON)
 """The names of mjbeer's own integrators, which step by themselves and have samples at any time."""
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
-_LEAST_FRICTION = 1e-5
-"""Smallest friction coefficient in MuJoCo (mjMINMU), which raises a smaller one to this, and says nothing."""
 
 FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
 """Where the MJCF is in an installed wheel, and in a checkout."""
@@ -62,7 +60,8 @@ class Setting:
         require.store(
             self,
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
-            friction=require.within("friction", self.friction, _LEAST_FRICTION, math.inf),
+            # MuJoCo raises a smaller one to this (mjMINMU), and says nothing
+            friction=require.within("friction", self.friction, 1e-5, math.inf),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
             mjcf=None if self.mjcf is None else mjcf_folder(self.mjcf),
         )
@@ -77,11 +76,6 @@ class Setting:
                 f"'reduced' or 'equality', got 'contact' and {self.tolerance!r} rad; a contact is the harder, the "
                 "shorter its timestep is, and error_estimate says how good it is"
             )
-
-    @property
-    def rigid(self) -> bool:
-        """Whether rolling is a joint equality that is solved exactly."""
-        return self.rolling == "equality"
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
@@ -101,12 +95,7 @@ def supported(scene: Scene, rolling: str) -> bool:
 
 
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's.
-
-    Raises:
-      ParameterError: if one's own is no folder.
-      TemplateError: if there is none.
-    """
+    """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
     if own is None and (own := os.environ.get(VARIABLE)) is None:
         return _installed(FOLDERS)
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
