@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any, NoReturn, cast
 
 import mjbeer
-from mjbeer.cli import motions, studies, sweep
+from mjbeer.cli import motions, studies
 from mjbeer.cli.arguments import STANDING, STANDING_OPTIONS, Command, Parser, scene_options, scenes_told
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
@@ -22,18 +22,9 @@ _ERROR = 2
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
 
-COMMANDS: dict[str, Command] = {
-    "simulate": motions.simulate,
-    "render": motions.render,
-    "view": motions.view,
-    "export": motions.export,
-    "sweep": sweep.sweep,
-    "validate": studies.validate,
-    "benchmark": studies.benchmark,
-    "stability": studies.stability,
-    "paper": studies.paper,
-    "report": studies.report,
-}
+_OF_MOTIONS = motions.simulate, motions.render, motions.view, motions.export, studies.sweep
+_CHECKS = studies.validate, studies.benchmark, studies.stability, studies.paper, studies.report
+COMMANDS: dict[str, Command] = {each.run.__name__: each for each in (*_OF_MOTIONS, *_CHECKS)}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -110,9 +101,4 @@ def _show(otherwise: Callable[..., None], message: Warning | str, category: type
 
 
 def _interrupt(signum: int, _: FrameType | None) -> NoReturn:
-    """Treat a signal as Ctrl-C, so that files are cleaned up as after Ctrl-C.
-
-    Raises:
-      KeyboardInterrupt: always, with the number of the signal.
-    """
-    raise KeyboardInterrupt(signum)
+    raise KeyboardInterrupt(signum)  # so that files are cleaned up as after Ctrl-C

@@ -46,8 +46,7 @@ _MEANINGS = {
     "offset": "length of the pendulum, from the axle to the bob [m]",
 }
 """What the options of scenes mean; their order is that of the help."""
-_TURNS = np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2]) * math.pi
-"""Angles that look like radians."""
+_TURNS = np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2]) * math.pi  # angles that look like radians
 REQUIRED = "required"
 
 

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from mjbeer.cli.summary import Summary
     from mjbeer.theory.trajectory import Trajectory
 
-_FPS = 30
-"""Pictures per second of a video."""
+_FPS = 30  # pictures per second of a video
 _SPEED = Option("speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0)
 _CAMERA = (
     "fixed (stands still and shows the whole motion), pan (moves along with a constant acceleration), close (goes "

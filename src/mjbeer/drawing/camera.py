@@ -21,16 +21,11 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
 _AROUND = 1.95
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
-_ROOM = 3.0
-"""What is seen below it where marks are below the board."""
-_LARGEST = 0.22
-"""Largest radius of a can, in heights of the picture."""
-_SMALLEST = 0.11
-"""Radius below which the camera pans, unless told otherwise, in heights of the picture."""
-_FAR = 8.0
-"""Distance of the eye, in half diagonals of the picture: the longer, the less of the can's inside is seen."""
-_ABOVE = 0.18
-"""How far the eye is above the middle of the picture, in heights: it sees the board's upper side."""
+_ROOM = 3.0  # what is seen below it where marks are below the board
+_LARGEST = 0.22  # largest radius of a can, in heights of the picture
+_SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
+_FAR = 8.0  # distance of the eye, in half diagonals of the picture: the longer, the less of the can's inside is seen
+_ABOVE = 0.18  # how far the eye is above the middle of the picture, in heights: it sees the board's upper side
 
 
 def scale(scene: Scene) -> float:

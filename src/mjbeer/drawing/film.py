@@ -19,12 +19,9 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-_MOST_FRAMES = 1e6
-"""Largest number of frames of a video: nine hours at 30 frames per second."""
-_NARROW = 24
-"""Width up to which a picture has no charts below, in units."""
-_FINE = 2000
-"""Points of a path."""
+_MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
+_NARROW = 24  # width up to which a picture has no charts below, in units
+_FINE = 2000  # points of a path
 
 
 @dataclass(frozen=True, eq=False)

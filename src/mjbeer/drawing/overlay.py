@@ -65,15 +65,12 @@ HEIGHT = 4.1
 """Height of the first two lines."""
 STRIP = 10
 """Height of the charts below a picture."""
-_LEGEND = 1.5
-"""Height of the third line, which tells what the marks mean, if they need it."""
-_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7
-"""Where each of them is."""
+_LEGEND = 1.5  # height of the third line, which tells what the marks mean, if they need it
+_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
 _GREY = "#52606d"
 _RIM, _CENTRE, _GHOST, _SKID = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of the track."""
-_NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)
-"""Colours of the forces."""
+_NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
 _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
     "phi": (),
     "paths": (("—", _RIM, "path of a point on the rim"), ("—", _CENTRE, "path of the centre of mass")),
@@ -118,14 +115,10 @@ def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, unit: 
 
 LONGEST = 1.6
 """Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
-_CLEAR = 0.4
-"""Least distance of a force's letter from the foot of the can: no letter is to cover it."""
-_RARE = 90.0
-"""Percentage of times at which no force is larger than the longest arrow shows."""
-_LETTER = 1.35
-"""Least height of a letter, in units of the sheet."""
-_FAINT = 0.05
-"""Least length of an arrow that is drawn."""
+_CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
+_RARE = 90.0  # percentage of times at which no force is larger than the longest arrow shows
+_LETTER = 1.35  # least height of a letter, in units of the sheet
+_FAINT = 0.05  # least length of an arrow that is drawn
 _SLOW = 0.02
 """Speed from which on a foot slips, over that of a fall from the radius: the contact of a can that rolls creeps."""
 
@@ -256,10 +249,8 @@ class _Pen:
 
 # What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
 
-_DARK = (0.12, 0.16, 0.2)
-"""Colour of gravity's arrow."""
-_SPACING = 7.0
-"""Least distance of two numbers on the board, in units of the sheet."""
+_DARK = (0.12, 0.16, 0.2)  # colour of gravity's arrow
+_SPACING = 7.0  # least distance of two numbers on the board, in units of the sheet
 
 
 @dataclass(frozen=True, eq=False)

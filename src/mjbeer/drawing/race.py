@@ -21,18 +21,13 @@ from mjbeer.theory.exact import exact
 from mjbeer.theory.named import in_degrees
 from mjbeer.theory.trajectory import Trajectory
 
-_APART = 0.225
-"""Distance from lane to lane as drawn [m]; a can is 0.12 m long."""
-_BEFORE = 0.4
-"""Room for the names on the board before the start, in lengths of the race."""
-_MARGIN = 0.01
-"""Margin around what must be seen, in widths of the picture."""
+_APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
+_BEFORE = 0.4  # room for the names on the board before the start, in lengths of the race
+_MARGIN = 0.01  # margin around what must be seen, in widths of the picture
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_FAR = 6.0
-"""Distance of the eye, in lengths of the race."""
-_LINE = 1.5
-"""Height of a line on a plate, in units of the picture."""
+_FAR = 6.0  # distance of the eye, in lengths of the race
+_LINE = 1.5  # height of a line on a plate, in units of the picture
 
 
 @dataclass(frozen=True, eq=False)

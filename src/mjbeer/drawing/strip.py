@@ -20,10 +20,8 @@ from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_MUJOCO = (0.0, 0.447, 0.698)
-"""Colour of a simulation's line, where there is one only."""
-_THEORY = "#b4bcc8"
-"""Colour of theory's lines, which are wide and lie below."""
+_MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
+_THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
 _STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.right": False,
@@ -32,10 +30,8 @@ _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
 }
-_INTERVALS = 50
-"""Number of intervals of a motion over which forces are averaged."""
-_SMOOTH = 1500
-"""Times at which theory's lines are computed."""
+_INTERVALS = 50  # number of intervals of a motion over which forces are averaged
+_SMOOTH = 1500  # times at which theory's lines are computed
 
 
 @dataclass(frozen=True, eq=False)

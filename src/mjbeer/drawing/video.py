@@ -19,8 +19,7 @@ from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
 
-_RATE = 21
-"""The rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default."""
+_RATE = 21  # the rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default
 _ENCODED = (
     # HD colours (BT.709), which players expect; the default are those of SD television.
     *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
