@@ -5,9 +5,6 @@ import math
 import os
 import pathlib
 import re
-import shutil
-import subprocess
-import sysconfig
 from importlib.metadata import version
 
 import mujoco
@@ -121,14 +118,6 @@ def test_what_is_not_allowed_is_one_line_and_exit_status_2(
     assert not os.listdir(tmp_path)
 
 
-def test_a_tolerance_has_the_integrator_that_keeps_it(capsys: pytest.CaptureFixture[str]) -> None:
-    for options, integrator in (
-        ("--tolerance 1e-9", "GaussJackson"), ("--tolerance 1e-9 --rolling equality", "DOP853"), ("", "RK4")
-    ):  # fmt: skip
-        assert main(f"simulate frozen --duration 1 {options} --json".split()) == 0
-        assert json.loads(capsys.readouterr().out)["integrator"] == integrator
-
-
 def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[str]) -> None:
     with_scenes = [name for name, command in COMMANDS.items() if command.numbers]
     for words in (
@@ -146,14 +135,6 @@ def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[
     with pytest.raises(SystemExit):
         main(["--version"])
     assert capsys.readouterr().out == f"mjbeer {version('mjbeer')}\n"
-
-
-def test_the_console_script_passes_on_the_exit_status() -> None:
-    script = shutil.which("mjbeer", path=sysconfig.get_path("scripts"))
-    assert script is not None
-    done = subprocess.run([script, "simulate", "frozen", "--fill", "2"], capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("mjbeer: fill (height of the beer over the can's diameter) must be in (0, 1], got")
 
 
 def test_no_command_line_loads_what_draws_before_it_is_needed() -> None:

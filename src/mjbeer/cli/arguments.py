@@ -78,8 +78,7 @@ class Option(NamedTuple):
     name: str
     told: str
     default: Any = None
-    kind: Any = float
-    """A function that reads a word, or the names that are allowed; bool, if the option takes no value."""
+    kind: Any = float  # a function that reads a word, or the names that are allowed; bool, if the option takes no value
     otherwise: str = ""
 
 

@@ -171,9 +171,7 @@ def _scene_and_start(given: Namespace) -> tuple[Any, dict[str, Any]]:
 
 def _warn(summary: "Summary") -> None:
     run = summary.trajectory
-    for warning in run.solver_warnings:
-        say(f"equations not solved: {warning}", "yellow")
-    for warning in (*run.rolling_warnings, *run.liquid_warnings):
-        say(f"model does not hold: {warning}", "yellow")
-    for note in summary.notes:
-        say(f"note: {note}", "yellow")
+    lines = [f"equations not solved: {warning}" for warning in run.solver_warnings]
+    lines += [f"model does not hold: {warning}" for warning in (*run.rolling_warnings, *run.liquid_warnings)]
+    for line in (*lines, *(f"note: {note}" for note in summary.notes)):
+        say(line, "yellow")

@@ -31,8 +31,7 @@ class Summary:
     """The key figures of a trajectory, and until when a can would roll with some coefficients of friction."""
 
     trajectory: Trajectory
-    friction: float = FRICTION
-    """The coefficient of friction that was asked for; besides it, the summary has that of 1."""
+    friction: float = FRICTION  # the coefficient of friction that was asked for; besides it, the summary has that of 1
 
     @cached_property
     def rolls_until(self) -> Mapping[float, float]:

@@ -54,18 +54,13 @@ def circle(radius: float, count: int = 48) -> np.ndarray:
 class View:
     """A perspective view. An eye that looks along the can's axis sees every plane across it without distortion."""
 
-    eye: np.ndarray
-    """Where the eye is [m]."""
-    axes: np.ndarray
-    """Unit vectors in its rows: to the right, up, and backwards from the eye."""
+    eye: np.ndarray  # where the eye is [m]
+    axes: np.ndarray  # unit vectors in its rows: to the right, up, and backwards from the eye
     low: np.ndarray
     """The lower left corner of what is seen, as distances to the right and up over the distance from the eye."""
-    high: np.ndarray
-    """The upper right corner, likewise."""
-    distance: float
-    """Distance of what is looked at from the eye [m]."""
-    pixels: tuple[int, int]
-    """Width and height of the picture [pixels]."""
+    high: np.ndarray  # the upper right corner, likewise
+    distance: float  # distance of what is looked at from the eye [m]
+    pixels: tuple[int, int]  # width and height of the picture [pixels]
 
     @classmethod
     def facing(
@@ -137,15 +132,11 @@ class CameraPath:
     scene: Scene
     way: Callable[[np.ndarray | float], np.ndarray | float]
     """Distance of the picture's middle down the incline over time [s], as drawn [m]."""
-    middle: np.ndarray
-    """From the incline at that distance to the middle of the picture, to the right and up [m]."""
-    metres: np.ndarray
-    """Width and height of what is seen at the can's near end [m]."""
-    plane: float
-    """Coordinate y of the can's near end [m]."""
+    middle: np.ndarray  # from the incline at that distance to the middle of the picture, to the right and up [m]
+    metres: np.ndarray  # width and height of what is seen at the can's near end [m]
+    plane: float  # coordinate y of the can's near end [m]
     pixels: tuple[int, int]
-    still: bool
-    """Whether the camera stands still."""
+    still: bool  # whether the camera stands still
 
     def view(self, time: float) -> View:
         """Return what is seen at a `time` [s]."""

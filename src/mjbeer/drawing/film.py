@@ -28,12 +28,9 @@ _FINE = 2000  # points of a path
 class RenderPlan:
     """What is needed to draw a film: its pictures as a function of their times and size."""
 
-    start: float
-    """Time of the first picture [s]."""
-    end: float
-    """Time at which the film ends [s]."""
-    speed: float
-    """Playback speed: 1 is real time, 0.5 is half as fast."""
+    start: float  # time of the first picture [s]
+    end: float  # time at which the film ends [s]
+    speed: float  # playback speed: 1 is real time, 0.5 is half as fast
     draw: Callable[[np.ndarray, int, int], Generator[np.ndarray]]
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height, width, 3), uint8."""
     later: tuple[float, float] = (math.inf, 1.0)
@@ -80,11 +77,9 @@ class Film(Protocol):
 class Take:
     """The film of a motion."""
 
-    trajectory: Callable[[], Trajectory]
-    """A function that computes the motion, and that can be pickled."""
+    trajectory: Callable[[], Trajectory]  # a function that computes the motion, and that can be pickled
     speed: float
-    look: Look | None = None
-    """What is drawn; None is the usual look of such a motion."""
+    look: Look | None = None  # what is drawn; None is the usual look of such a motion
     still: float = 0.0
     """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""

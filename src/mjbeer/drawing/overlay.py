@@ -35,16 +35,11 @@ _DAMPED = "A can that its load or the air brakes"
 class Look:
     """What is drawn into the pictures of a motion besides the can, and below them."""
 
-    title: str
-    """What is seen, in a few words."""
-    strips: tuple[str, ...] = ("phi", "u")
-    """Names of the quantities in the charts below the picture."""
-    marks: tuple[Mark, ...] = ("phi", "paths")
-    """What is drawn to explain the motion."""
-    camera: Camera = "auto"
-    """How the camera moves."""
-    facts: str = ""
-    """What is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title."""
+    title: str  # what is seen, in a few words
+    strips: tuple[str, ...] = ("phi", "u")  # names of the quantities in the charts below the picture
+    marks: tuple[Mark, ...] = ("phi", "paths")  # what is drawn to explain the motion
+    camera: Camera = "auto"  # how the camera moves
+    facts: str = ""  # what is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
@@ -61,10 +56,8 @@ class Look:
 
 # The lines above a picture: what is seen, when, how fast, and what the marks mean. Sizes are in units of the sheet.
 
-HEIGHT = 4.1
-"""Height of the first two lines."""
-STRIP = 10
-"""Height of the charts below a picture."""
+HEIGHT = 4.1  # height of the first two lines
+STRIP = 10  # height of the charts below a picture
 _LEGEND = 1.5  # height of the third line, which tells what the marks mean, if they need it
 _FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
 _GREY = "#52606d"
@@ -129,22 +122,17 @@ class Marks:
 
     trajectory: Trajectory
     kinds: Sequence[Mark]
-    plane: float
-    """Coordinate y of the can's near end [m]."""
-    fine: np.ndarray
-    """Times [s] at which the paths are drawn."""
-    positions: np.ndarray
-    """u, phi, roll and lift at these times, shape (times, 4)."""
+    plane: float  # coordinate y of the can's near end [m]
+    fine: np.ndarray  # times [s] at which the paths are drawn
+    positions: np.ndarray  # u, phi, roll and lift at these times, shape (times, 4)
 
     def draw(self, sheet: Sheet, view: View, top: int, time: float, now: np.ndarray) -> None:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        drawn = {"skid": self._skid, "ghost": self._ghost, "paths": self._paths}
-        drawn |= {"forces": self._forces, "phi": self._phi}
-        for kind, draw in drawn.items():
-            if kind in self.kinds:
-                draw(pen, time, now)
+        marks = (self._skid, self._ghost, self._paths, self._forces, self._phi)
+        for draw in (each for each in marks if each.__name__[1:] in self.kinds):
+            draw(pen, time, now)
         sheet.clip(None)
 
     def _ghost(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
@@ -258,10 +246,8 @@ class Board:
     """The near edge of the board's underside, where its numbers and the angle of the incline are."""
 
     scene: Scene
-    front: float
-    """Its coordinate y [m]."""
-    under: float
-    """Its height over the surface on which the can rolls, negative [m]."""
+    front: float  # its coordinate y [m]
+    under: float  # its height over the surface on which the can rolls, negative [m]
 
     @classmethod
     def of(cls, scene: Scene, model: mujoco.MjModel) -> "Board":

@@ -36,12 +36,10 @@ class Runner:
 
     name: str
     trajectory: Trajectory
-    colour: tuple[float, float, float]
-    """Colour of its label, its name and its lines."""
+    colour: tuple[float, float, float]  # colour of its label, its name and its lines
     load: tuple[float, float, float] | None = None
     """Colour of what is in it; None is that of beer, or of ice if it is frozen."""
-    note: str = ""
-    """What else is to be known of it, such as "μ = 0.35"; it stands below the name."""
+    note: str = ""  # what else is to be known of it, such as "μ = 0.35"; it stands below the name
 
     @cached_property
     def distance(self) -> np.ndarray:
@@ -87,22 +85,16 @@ class Race:
     """
 
     title: str
-    runners: Callable[[], Sequence[Runner]]
-    """A function that computes the motions, and that can be pickled."""
-    length: float
-    """Distance from start to finish, or that is seen from the start on [m]."""
+    runners: Callable[[], Sequence[Runner]]  # a function that computes the motions, and that can be pickled
+    length: float  # distance from start to finish, or that is seen from the start on [m]
     speed: float
-    told: Callable[[], str]
-    """A function that says what is seen, in whole sentences, for the text beside the film."""
+    told: Callable[[], str]  # a function that says what is seen, in whole sentences, for the text beside the film
     still: float
     after: float = 0.0
     """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
-    hurry: float = 1.0
-    """How many times faster time runs once all cans but the last have finished."""
-    facts: str = ""
-    """What holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title."""
-    strips: tuple[str, ...] = ()
-    """Names of the quantities in the charts."""
+    hurry: float = 1.0  # how many times faster time runs once all cans but the last have finished
+    facts: str = ""  # what holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title
+    strips: tuple[str, ...] = ()  # names of the quantities in the charts
 
     @property
     def caption(self) -> str:

@@ -67,8 +67,7 @@ class Display:
     model: mujoco.MjModel
     data: mujoco.MjData
     scenes: Sequence[Scene]
-    lanes: Sequence[float]
-    """Where each can is across the board [m], away from the reader."""
+    lanes: Sequence[float]  # where each can is across the board [m], away from the reader
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":

@@ -21,8 +21,7 @@ Colour = str | tuple[float, float, float]
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom [pixels]."""
 
-UNITS = 36
-"""Height of a picture in units."""
+UNITS = 36  # height of a picture in units
 _LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
 INK = "#1f2933"
 """Colour of texts and of lines that explain."""

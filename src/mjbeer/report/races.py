@@ -15,8 +15,7 @@ from mjbeer.theory.named import frozen, in_degrees, sliding
 from mjbeer.theory.scene import Scene
 
 METAL = Can.sheet_metal()
-LENGTH = 1.0
-"""Distance from start to finish [m]."""
+LENGTH = 1.0  # distance from start to finish [m]
 _GENTLE = math.radians(5)
 """Incline of the race of beer [rad]: gentle enough for the frozen can to finish without leaving the board."""
 _FILL = 0.75  # how full the cans are that are neither full nor empty
