@@ -15,7 +15,7 @@ from rich.console import Console
 
 from mjbeer import Trajectory, exact, frozen
 from mjbeer.drawing import film, opengl, video
-from mjbeer.drawing.film import Take, render_plan
+from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Filmed, produce
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from tests.support.processes import run
@@ -55,7 +55,7 @@ def blank(alive: list[int], frames: int = 40, error: BaseException | None = None
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Let videos have blank frames, which take no time."""
     alive: list[int] = []
-    monkeypatch.setattr(film, "draw", lambda trajectory, look, speed, times, *_: blank(alive, len(times)))
+    monkeypatch.setattr(film, "_pictures", lambda trajectory, look, speed, times, *_: blank(alive, len(times)))
     return alive
 
 
@@ -68,7 +68,7 @@ def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path
     assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL)
     assert frames.shape == (10, 180, 320, 3)
     # The last frame is that of its time, but for what H.264 leaves out.
-    drawn = render_plan(moved).draw(np.array([9, 8, 0]) / 20, 320, 180)
+    drawn = Take(lambda: moved, 1.0).plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
     off = [np.abs(frames[-1] - each.astype(float)).mean() for each in drawn]
     assert 1.5 * off[0] < min(off[1:])
 
@@ -79,7 +79,7 @@ def test_speed_stretches_time(
 ) -> None:
     """And of the frames never more than two are held."""
     moved = motion()
-    times = render_plan(moved, speed=speed).times(fps)
+    times = Take(lambda: moved, speed).plan().times(fps)
     assert times == pytest.approx(speed / fps * np.arange(expected))
     video.render(moved, tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
     assert len(decode(tmp_path / "can.mp4")[1]) == len(undrawn) == expected
@@ -140,7 +140,7 @@ def test_an_interrupted_video_leaves_what_was_there(
     """Also before the first picture, of which ffmpeg complains."""
     (tmp_path / "can.mp4").write_text("an older video")
     for frames in (0, 5):
-        monkeypatch.setattr(film, "draw", lambda *_, n=frames, **__: blank([], n, error))
+        monkeypatch.setattr(film, "_pictures", lambda *_, n=frames, **__: blank([], n, error))
         with pytest.raises(type(error)) as caught:
             video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
         assert caught.value is error

@@ -22,9 +22,9 @@ _ERROR = 2
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
 
-_OF_MOTIONS = motions.simulate, motions.render, motions.view, motions.export, studies.sweep
-_CHECKS = studies.validate, studies.benchmark, studies.stability, studies.paper, studies.report
-COMMANDS: dict[str, Command] = {each.run.__name__: each for each in (*_OF_MOTIONS, *_CHECKS)}
+_NAMES = "sweep", "validate", "benchmark", "stability", "paper", "report"
+COMMANDS: dict[str, Command] = {name: getattr(motions, name) for name in ("simulate", "render", "view", "export")}
+COMMANDS |= {name: getattr(studies, name) for name in _NAMES}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -13,7 +13,7 @@ from mjbeer import require
 from mjbeer.drawing.camera import CameraPath
 from mjbeer.drawing.overlay import STRIP, Board, Look, Marks, guides, header, header_height
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import UNITS, Sheet, require_pixels
+from mjbeer.drawing.sheet import UNITS, Sheet
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -85,42 +85,24 @@ class Take:
     caption: str = ""
 
     def plan(self) -> RenderPlan:
-        """Compute the motion, and return what is needed to draw it."""
-        return render_plan(self.trajectory(), self.look, self.speed)
+        """Compute the motion, and return what is needed to draw it.
 
-
-def render_plan(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -> RenderPlan:
-    """Return what is needed to draw a trajectory; without a `look`, its usual one.
-
-    Raises:
-      ParameterError: if `trajectory` is not one.
-    """
-    require.instance("trajectory", trajectory, Trajectory)
-    drawn = partial(draw, trajectory, look or Look.usual(trajectory), speed)
-    return RenderPlan(float(trajectory.time[0]), float(trajectory.time[-1]), speed, drawn)
-
-
-def draw(
-    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
-) -> Generator[np.ndarray]:
-    """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-      RenderingError: while the first picture is drawn, if OpenGL does not work.
-    """
-    if (np.diff(trajectory.time) <= 0).any():
-        raise ParameterError(
-            f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
-        )
-    sheet = Sheet(require_pixels("width", width), require_pixels("height", height))
-    return _pictures(trajectory, look, speed, times, sheet)
+        Raises:
+          ParameterError: if its times do not increase.
+        """
+        motion = self.trajectory()
+        if (np.diff(motion.time) <= 0).any():
+            raise ParameterError(
+                f"the times of a trajectory must increase for it to be drawn, got {require.shown(motion.time)}"
+            )
+        drawn = partial(_pictures, motion, self.look or Look.usual(motion), self.speed)
+        return RenderPlan(float(motion.time[0]), float(motion.time[-1]), self.speed, drawn)
 
 
 def _pictures(
-    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, sheet: Sheet
+    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
-    scene, width, height, unit = trajectory.scene, sheet.width, sheet.height, sheet.height / UNITS
+    sheet, scene, unit = Sheet(width, height), trajectory.scene, height / UNITS
     top = header_height(look, unit)  # row of the upper edge of the scene
     has_room = len(trajectory.time) > 1 and width > _NARROW * unit
     below = round(STRIP * unit) if has_room and look.strips else 0

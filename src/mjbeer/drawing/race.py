@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,7 +13,7 @@ from mjbeer.drawing.camera import View, in_space
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, require_pixels
+from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -115,11 +115,7 @@ class Race:
             end = finishes[-1] + self.after * self.hurry
             later = (finishes[-2] + self.after, self.speed * self.hurry) if self.hurry != 1 else (math.inf, self.speed)
 
-        def pictures(times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
-            sheet = Sheet(require_pixels("width", width), require_pixels("height", height))
-            return self._pictures(runners, later, times, sheet)
-
-        return RenderPlan(0.0, end, self.speed, pictures, later)
+        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, later), later)
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
@@ -136,9 +132,9 @@ class Race:
         return sorted(runner.finish(self.length) for runner in runners)
 
     def _pictures(
-        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, sheet: Sheet
+        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
-        unit, scenes = sheet.height / UNITS, [runner.trajectory.scene for runner in runners]
+        sheet, unit, scenes = Sheet(width, height), height / UNITS, [runner.trajectory.scene for runner in runners]
         top, below = round(HEIGHT * unit), round(STRIP * unit) if self.strips else 0
         display = Display.of(scenes, _APART)
         scenery = Scenery(scenes[0], display.model, (0.0,) if self.strips else (0.0, self.length))
