@@ -12,7 +12,7 @@ from typing import Any, NoReturn, cast
 
 import mjbeer
 from mjbeer.cli import motions, studies
-from mjbeer.cli.arguments import STANDING, STANDING_OPTIONS, Command, Parser, scene_options, scenes_told
+from mjbeer.cli.arguments import SCENES_TOLD, STANDING, STANDING_OPTIONS, Command, Parser, scene_options
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
@@ -77,7 +77,7 @@ def parse(words: Sequence[str]) -> Namespace:
         if command.numbers is None:
             at.add(command.options)
         else:
-            scenes = scenes_told() | ({"standing": STANDING} if command.standing else {})
+            scenes = SCENES_TOLD | ({"standing": STANDING} if command.standing else {})
             for scene, below in at.below("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
                 if scene == "standing":
                     below.add((*STANDING_OPTIONS, *command.standing))

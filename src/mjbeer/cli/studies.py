@@ -61,7 +61,7 @@ def sweep(given: Namespace) -> int:
 
     if given.output.suffix not in ENDINGS:
         raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")
-    options = {**asked(given), **start(given)}
+    options = asked(given) | start(given)
     varied = [each for each in options.values() if isinstance(each, np.ndarray)]
     if given.output.suffix in PLOTS and len(varied) not in (1, 2):
         raise ParameterError(
@@ -187,8 +187,7 @@ def _conclude(validation: "Validation", began: float) -> int:
     """Print what failed and, on the last line, what passed since the moment `began`; return the exit status."""
     for failure in validation.failures:
         say(f"FAILED: {failure}", "red")
-    style = "green" if validation.passed else "red"
-    say(f"{validation.sentence}, in {time.perf_counter() - began:.0f} s", style)
+    say(f"{validation.sentence}, in {time.perf_counter() - began:.0f} s", "green" if validation.passed else "red")
     return 0 if validation.passed else _FAILED
 
 

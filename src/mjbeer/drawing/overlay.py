@@ -260,7 +260,7 @@ class Board:
         return view.pixel(in_space(self.scene, along, self.under, self.front))
 
     def along(self, view: View, column: float) -> float:
-        """Return how far down the incline the edge is seen in a column of the picture, as drawn [m]."""
+        """Return how far down the incline the edge is in a column of the picture, as drawn [m]."""
         first, second = self.pixel(view, np.array([0.0, 1.0]))[:, 0]
         return float((column - first) / (second - first))
 
