@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from mjbeer import Trajectory, exact, frozen
+from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
 from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Filmed, produce
@@ -24,11 +24,8 @@ from tests.support.processes import run
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")]
 
 SIZE = {"width": 320, "height": 180}
-TAKE = Take(partial(exact, frozen(), np.linspace(0, 0.5, 51), 1.0), speed=1.0, still=0.2)
-
-
-def motion(duration: float = 0.5) -> Trajectory:
-    return exact(frozen(), np.linspace(0, duration, 51), 1.0)
+motion = partial(exact, frozen(), np.linspace(0, 0.5, 51), 1.0)
+TAKE = Take(motion, speed=1.0, still=0.2)
 
 
 def decode(path: pathlib.Path) -> tuple[str, np.ndarray]:
@@ -61,14 +58,13 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 @pytest.mark.draws
 def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path) -> None:
-    moved = motion()
-    video.render(moved, tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
+    video.render(motion(), tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
     assert os.listdir(tmp_path) == ["can.mp4"]
     about, frames = decode(tmp_path / "can.mp4")
     assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL)
     assert frames.shape == (10, 180, 320, 3)
     # The last frame is that of its time, but for what H.264 leaves out.
-    drawn = Take(lambda: moved, 1.0).plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
+    drawn = TAKE.plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
     off = [np.abs(frames[-1] - each.astype(float)).mean() for each in drawn]
     assert 1.5 * off[0] < min(off[1:])
 
@@ -78,10 +74,8 @@ def test_speed_stretches_time(
     speed: float, fps: float, expected: int, undrawn: list[int], tmp_path: pathlib.Path
 ) -> None:
     """And of the frames never more than two are held."""
-    moved = motion()
-    times = Take(lambda: moved, speed).plan().times(fps)
-    assert times == pytest.approx(speed / fps * np.arange(expected))
-    video.render(moved, tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
+    assert Take(motion, speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
+    video.render(motion(), tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
     assert len(decode(tmp_path / "can.mp4")[1]) == len(undrawn) == expected
     assert max(undrawn) <= 2
 
