@@ -10,10 +10,10 @@ from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
 from mjbeer.drawing.camera import Camera, CameraPath, View, on_incline, scale
 from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides
 from mjbeer.drawing.scene import Display, coordinates
+from mjbeer.drawing.sheet import Box, Sheet
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
-from tests.support.drawn import Recorder
 
 TIMES = np.linspace(0, 0.5, 501)
 PIXELS = (1280, 430)
@@ -24,6 +24,33 @@ UNIT = 20.0
 PIXEL = 0.5
 # Rounding of places of some hundred pixels; the arcs are polygons, whose ends are exact.
 ROUNDING = 1e-6
+
+
+class Recorder(Sheet):
+    """A sheet that keeps the places of lines and arrows, and the texts."""
+
+    def __init__(self, width: int, height: int) -> None:
+        super().__init__(width, height)
+        self.lines: list[np.ndarray] = []
+        self.arrows: list[tuple[np.ndarray, np.ndarray]] = []
+        self.discs: list[np.ndarray] = []
+        self.words: list[str] = []
+
+    def line(self, places: np.ndarray, *arguments: Any, **more: Any) -> None:
+        self.lines.append(places)
+        super().line(places, *arguments, **more)
+
+    def arrow(self, tail: np.ndarray, head: np.ndarray, *arguments: Any, **more: Any) -> None:
+        self.arrows.append((np.asarray(tail), np.asarray(head)))
+        super().arrow(tail, head, *arguments, **more)
+
+    def disc(self, place: np.ndarray, *arguments: Any, **more: Any) -> None:
+        self.discs.append(place)
+        super().disc(place, *arguments, **more)
+
+    def text(self, place: Any, words: str, *arguments: Any, **more: Any) -> Box:
+        self.words.append(words)
+        return super().text(place, words, *arguments, **more)
 
 
 def drawn(motion: Trajectory, kind: Mark, time: float) -> tuple[Recorder, View, np.ndarray]:

@@ -50,8 +50,7 @@ def trajectory_of(given: Namespace) -> "Trajectory":
     from mjbeer.simulation.simulate import simulate
 
     asked = scene(given)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LiquidWarning)  # `_warn` says it
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # `_warn` says it
         return simulate(asked, given.duration, **start(given), **steps(given))
 
 

@@ -16,7 +16,6 @@ from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import UNITS, Sheet
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
 _MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
@@ -108,11 +107,11 @@ def _pictures(
     below = round(STRIP * unit) if has_room and look.strips else 0
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
     positions = coordinates(trajectory, fine)
-    plane = -scene.can.length / scene.can.radius * RADIUS / 2
+    display = Display.of([scene])
+    plane = display.front()
     room = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
     pixels = width, height - top - below
     path = CameraPath.fit(scene, look.camera, fine, positions[:, 0], positions[:, 3], plane, pixels, room)
-    display = Display.of([scene])
     marks = Marks(trajectory, look.marks, plane, fine, positions)
     strip = Strip(charts(trajectory, look.strips), width, below) if below else None
     board = Board.of(scene, display.model)
