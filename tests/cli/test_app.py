@@ -87,6 +87,8 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("export frozen --output x.xml --phi-dot0 nan", "phi_dot0 must be a finite number [degrees/s], got nan"),
         ("simulate frozen --timestep 0", "timestep must be between 1e-07 and 10 [s], got 0.0"),
         ("simulate frozen --timestep 0.5 --integrator Euler --phi0 5e5 --duration 900", "the run diverged at t ="),
+        ("simulate frozen --duration -1", "duration must be greater than 0 [s], got -1.0"),
+        ("simulate frozen --tolerance 1e-6 --integrator Euler", "give a tolerance or an integrator: a tolerance ch"),
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),
         ("simulate frozen --output .", "cannot write .: it is a folder"),
         ("simulate frozen --json --output -", "standard output takes one of them: the JSON, or the CSV of --output -"),
