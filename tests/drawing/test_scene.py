@@ -7,19 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, exact, frozen, hoop, simulate, sliding
+from mjbeer import Can, Scene, frozen, hoop, sliding
 from mjbeer.drawing.camera import scale
 from mjbeer.drawing.scene import Display
 from mjbeer.theory.can import RADIUS
-from tests.support.scenes import METAL, SCENES, scenes
+from tests.support.scenes import METAL, scenes
 
 # Rounding of a few products, relative to the distances in play.
 ROUNDING = 1e-12
-ROLLINGS = ("reduced", "equality", "contact")
-MOTIONS = [
-    *((name, rolling) for name in SCENES for rolling in ROLLINGS if not (name == "sliding" and rolling != "reduced")),
-    *((name, "exact") for name in SCENES),
-]
 
 
 def in_incline(scene: Scene, point: np.ndarray) -> tuple[float, float]:
@@ -47,19 +42,6 @@ def check(display: Display, number: int, u: float, phi: float, roll: float, lift
     top = can.xpos + can.xmat.reshape(3, 3) @ [0, 0, RADIUS]
     expected = u + a * math.sin(roll), a + lift + a * math.cos(roll)
     assert in_incline(scene, top) == close(expected, abs=tolerance * (1 + abs(roll)))
-
-
-@pytest.mark.parametrize(("name", "rolling"), MOTIONS)
-def test_every_kind_of_trajectory(name: str, rolling: str) -> None:
-    scene = SCENES[name]
-    if rolling == "exact":
-        moved = exact(scene, np.linspace(0, 0.5, 6), 2.0)
-    else:
-        moved = simulate(scene, 0.5, 2.0, rolling=rolling, times=0.1 * np.arange(6))
-    display = Display.of([scene])
-    for position in np.stack([moved.u, moved.phi, moved.roll, moved.lift], axis=1):
-        display.pose(position[None])
-        check(display, 0, *position)
 
 
 @pytest.mark.slow

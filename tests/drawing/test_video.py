@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from mjbeer import Trajectory, exact, frozen
+from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
-from mjbeer.drawing.film import Take, render_plan
+from mjbeer.drawing.film import Take
 from mjbeer.drawing.studio import Filmed, produce
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from tests.support.processes import run
@@ -24,11 +24,8 @@ from tests.support.processes import run
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:unclosed file:ResourceWarning")]
 
 SIZE = {"width": 320, "height": 180}
-TAKE = Take(partial(exact, frozen(), np.linspace(0, 0.5, 51), 1.0), speed=1.0, still=0.2)
-
-
-def motion(duration: float = 0.5) -> Trajectory:
-    return exact(frozen(), np.linspace(0, duration, 51), 1.0)
+motion = partial(exact, frozen(), np.linspace(0, 0.5, 51), 1.0)
+TAKE = Take(motion, speed=1.0, still=0.2)
 
 
 def decode(path: pathlib.Path) -> tuple[str, np.ndarray]:
@@ -55,20 +52,19 @@ def blank(alive: list[int], frames: int = 40, error: BaseException | None = None
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Let videos have blank frames, which take no time."""
     alive: list[int] = []
-    monkeypatch.setattr(film, "draw", lambda trajectory, look, speed, times, *_: blank(alive, len(times)))
+    monkeypatch.setattr(film, "_pictures", lambda trajectory, look, speed, times, *_: blank(alive, len(times)))
     return alive
 
 
 @pytest.mark.draws
 def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path) -> None:
-    moved = motion()
-    video.render(moved, tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
+    video.render(motion(), tmp_path / "can.mp4", fps=20, progress=False, **SIZE)
     assert os.listdir(tmp_path) == ["can.mp4"]
     about, frames = decode(tmp_path / "can.mp4")
     assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL)
     assert frames.shape == (10, 180, 320, 3)
     # The last frame is that of its time, but for what H.264 leaves out.
-    drawn = render_plan(moved).draw(np.array([9, 8, 0]) / 20, 320, 180)
+    drawn = TAKE.plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
     off = [np.abs(frames[-1] - each.astype(float)).mean() for each in drawn]
     assert 1.5 * off[0] < min(off[1:])
 
@@ -78,10 +74,8 @@ def test_speed_stretches_time(
     speed: float, fps: float, expected: int, undrawn: list[int], tmp_path: pathlib.Path
 ) -> None:
     """And of the frames never more than two are held."""
-    moved = motion()
-    times = render_plan(moved, speed=speed).times(fps)
-    assert times == pytest.approx(speed / fps * np.arange(expected))
-    video.render(moved, tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
+    assert Take(motion, speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
+    video.render(motion(), tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
     assert len(decode(tmp_path / "can.mp4")[1]) == len(undrawn) == expected
     assert max(undrawn) <= 2
 
@@ -140,7 +134,7 @@ def test_an_interrupted_video_leaves_what_was_there(
     """Also before the first picture, of which ffmpeg complains."""
     (tmp_path / "can.mp4").write_text("an older video")
     for frames in (0, 5):
-        monkeypatch.setattr(film, "draw", lambda *_, n=frames, **__: blank([], n, error))
+        monkeypatch.setattr(film, "_pictures", lambda *_, n=frames, **__: blank([], n, error))
         with pytest.raises(type(error)) as caught:
             video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
         assert caught.value is error

@@ -11,8 +11,8 @@ from types import FrameType
 from typing import Any, NoReturn, cast
 
 import mjbeer
-from mjbeer.cli import motions, studies, sweep
-from mjbeer.cli.arguments import STANDING, STANDING_OPTIONS, Command, Parser, scene_options, scenes_told
+from mjbeer.cli import motions, studies
+from mjbeer.cli.arguments import SCENES_TOLD, STANDING, STANDING_OPTIONS, Command, Parser, scene_options
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
@@ -22,18 +22,9 @@ _ERROR = 2
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
 
-COMMANDS: dict[str, Command] = {
-    "simulate": motions.simulate,
-    "render": motions.render,
-    "view": motions.view,
-    "export": motions.export,
-    "sweep": sweep.sweep,
-    "validate": studies.validate,
-    "benchmark": studies.benchmark,
-    "stability": studies.stability,
-    "paper": studies.paper,
-    "report": studies.report,
-}
+_NAMES = "sweep", "validate", "benchmark", "stability", "paper", "report"
+COMMANDS: dict[str, Command] = {name: getattr(motions, name) for name in ("simulate", "render", "view", "export")}
+COMMANDS |= {name: getattr(studies, name) for name in _NAMES}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -86,7 +77,7 @@ def parse(words: Sequence[str]) -> Namespace:
         if command.numbers is None:
             at.add(command.options)
         else:
-            scenes = scenes_told() | ({"standing": STANDING} if command.standing else {})
+            scenes = SCENES_TOLD | ({"standing": STANDING} if command.standing else {})
             for scene, below in at.below("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
                 if scene == "standing":
                     below.add((*STANDING_OPTIONS, *command.standing))
@@ -110,9 +101,4 @@ def _show(otherwise: Callable[..., None], message: Warning | str, category: type
 
 
 def _interrupt(signum: int, _: FrameType | None) -> NoReturn:
-    """Treat a signal as Ctrl-C, so that files are cleaned up as after Ctrl-C.
-
-    Raises:
-      KeyboardInterrupt: always, with the number of the signal.
-    """
-    raise KeyboardInterrupt(signum)
+    raise KeyboardInterrupt(signum)  # so that files are cleaned up as after Ctrl-C

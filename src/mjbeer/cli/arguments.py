@@ -46,8 +46,7 @@ _MEANINGS = {
     "offset": "length of the pendulum, from the axle to the bob [m]",
 }
 """What the options of scenes mean; their order is that of the help."""
-_TURNS = np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2]) * math.pi
-"""Angles that look like radians."""
+_TURNS = np.array([1 / 6, 1 / 4, 1 / 3, 1 / 2, 2 / 3, 3 / 4, 1, 3 / 2, 2]) * math.pi  # angles that look like radians
 REQUIRED = "required"
 
 
@@ -79,8 +78,7 @@ class Option(NamedTuple):
     name: str
     told: str
     default: Any = None
-    kind: Any = float
-    """A function that reads a word, or the names that are allowed; bool, if the option takes no value."""
+    kind: Any = float  # a function that reads a word, or the names that are allowed; bool, if the option takes no value
     otherwise: str = ""
 
 
@@ -90,17 +88,15 @@ class Command:
 
     run: Callable[[Namespace], int]
     options: tuple[Option, ...]
-    numbers: Callable[[str], Any] | None
+    numbers: Callable[[str], Any] | None = None
     """How the numbers of its scene are read, which is its first argument; None if it has no scene."""
     standing: tuple[Option, ...] = ()
     """The options beside those of a standing can, if the command takes one instead of a scene."""
 
 
-def command(
-    *options: Option, numbers: Any = None, standing: tuple[Option, ...] = ()
-) -> Callable[[Callable[[Namespace], int]], Command]:
-    """Make a function the command of its name."""
-    return lambda run: Command(run, options, numbers, standing)
+def command(*options: Option, **more: Any) -> Callable[[Callable[[Namespace], int]], Command]:
+    """Make a function the command of its name, with `numbers` and `standing` as a `Command` has them."""
+    return lambda run: Command(run, options, **more)
 
 
 class Parser(argparse.ArgumentParser):
@@ -143,12 +139,6 @@ class Parser(argparse.ArgumentParser):
             self.add_argument("--" + name.replace("_", "-"), **how)
 
 
-def scenes_told() -> dict[str, str]:
-    """Return what each scene is."""
-    first_lines = {name: str(make.__doc__).split("\n")[0] for name, make in SCENES.items()}
-    return {name: line.removeprefix("Return the scene of ") for name, line in first_lines.items()}
-
-
 def defaults(scene: str) -> dict[str, Any]:
     """Return the options of a scene with their defaults; the incline is in degrees."""
     given = {name: each.default for name, each in inspect.signature(SCENES[scene]).parameters.items()}
@@ -166,6 +156,9 @@ def scene_options(scene: str, numbers: Callable[[str], Any]) -> Iterable[Option]
 
 
 STANDING = "a can that stands on a floor, free in space, with a liquid that sloshes"
+SCENES_TOLD = {
+    name: str(make.__doc__).split("\n")[0].removeprefix("Return the scene of ") for name, make in SCENES.items()
+}
 STANDING_OPTIONS = (
     Option("liquid", _MEANINGS["liquid"], "beer", NAMES),
     Option("fill", "height of the liquid as a fraction of the can's length, between 0 and 1", 0.5),

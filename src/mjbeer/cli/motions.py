@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from mjbeer.cli.summary import Summary
     from mjbeer.theory.trajectory import Trajectory
 
-_FPS = 30
-"""Pictures per second of a video."""
+_FPS = 30  # pictures per second of a video
 _SPEED = Option("speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0)
 _CAMERA = (
     "fixed (stands still and shows the whole motion), pan (moves along with a constant acceleration), close (goes "
@@ -51,8 +50,7 @@ def trajectory_of(given: Namespace) -> "Trajectory":
     from mjbeer.simulation.simulate import simulate
 
     asked = scene(given)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LiquidWarning)  # `_warn` says it
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # `_warn` says it
         return simulate(asked, given.duration, **start(given), **steps(given))
 
 
@@ -172,9 +170,7 @@ def _scene_and_start(given: Namespace) -> tuple[Any, dict[str, Any]]:
 
 def _warn(summary: "Summary") -> None:
     run = summary.trajectory
-    for warning in run.solver_warnings:
-        say(f"equations not solved: {warning}", "yellow")
-    for warning in (*run.rolling_warnings, *run.liquid_warnings):
-        say(f"model does not hold: {warning}", "yellow")
-    for note in summary.notes:
-        say(f"note: {note}", "yellow")
+    lines = [f"equations not solved: {warning}" for warning in run.solver_warnings]
+    lines += [f"model does not hold: {warning}" for warning in (*run.rolling_warnings, *run.liquid_warnings)]
+    for line in (*lines, *(f"note: {note}" for note in summary.notes)):
+        say(line, "yellow")

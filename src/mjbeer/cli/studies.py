@@ -1,18 +1,24 @@
-"""The commands that check and measure: validate, benchmark, stability, paper and report."""
+"""The commands of many motions: sweep, validate, benchmark, stability, paper and report."""
 
+import contextlib
+import functools
 import pathlib
 import time
 from argparse import Namespace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
 
 from mjbeer import require
-from mjbeer.cli.arguments import Option, command
+from mjbeer.cli.arguments import SCENES, Option, asked, command, make, run_options, several, start, steps
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.benchmark.points import CASES, DEFAULT
 
 if TYPE_CHECKING:
+    import xarray
+
     from mjbeer.studies.validation.validate import Validation
 
 _FAILED = 1
@@ -23,8 +29,64 @@ def _folder(name: str, told: str = "folder to write to") -> Option:
     return Option("output", told, pathlib.Path(name), pathlib.Path)
 
 
-def _flag(name: str, told: str) -> Option:
-    return Option(name, told, kind=bool)
+_flag = functools.partial(Option, kind=bool)
+PLOTS = (".png", ".svg")
+ENDINGS = (*PLOTS, ".csv", ".nc")
+_OF_A_RUN = "phi u phi_dot u_dot error lowest_normal friction_needed parting_time energy_drift"
+QUANTITIES = (*_OF_A_RUN.split(), "trusted", "status", "period")
+_QUANTITY = (
+    "quantity of the plot; files have all of them. phi, u, phi_dot and u_dot are those at the end, error is the "
+    "estimate, and parting_time the time from which N < 0. period is measured only if it is asked for"
+)
+_OUTPUT = (
+    "file to write: a plot (.png or .svg) over one or two options, a table (.csv), or NetCDF (.nc), with all arrays; "
+    "an interrupted sweep to .nc goes on where it was"
+)
+
+
+@command(
+    *run_options(several),
+    Option("quantity", _QUANTITY, "phi", QUANTITIES),
+    Option("output", _OUTPUT, pathlib.Path("sweep.png"), pathlib.Path),
+    _flag("overwrite", "replace a .nc of another sweep, and begin the same one anew"),
+    numbers=several,
+)
+def sweep(given: Namespace) -> int:
+    """Simulate a scene for ranges of its options, as --incline 1:20:39, which is 39 numbers from 1 to 20.
+
+    NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
+    1e-6 rad.
+    """
+    from mjbeer.studies.sweep import STATUSES, WELL, sweep
+
+    if given.output.suffix not in ENDINGS:
+        raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")
+    options = asked(given) | start(given)
+    varied = [each for each in options.values() if isinstance(each, np.ndarray)]
+    if given.output.suffix in PLOTS and len(varied) not in (1, 2):
+        raise ParameterError(
+            f"a plot needs one or two options with several values, got {len(varied)}: write .csv or .nc instead"
+        )
+    if given.tolerance is None and given.integrator is None:
+        given.tolerance = 1e-6
+    maker = functools.partial(make, SCENES[given.scene])
+    cast("Any", maker).__qualname__ = given.scene
+    resumed = given.output if given.output.suffix == ".nc" else None
+    with files.whole(given.output) if resumed is None else contextlib.nullcontext() as temporary:
+        options |= {"quantity": given.quantity, "output": resumed, "overwrite": given.overwrite, **steps(given)}
+        result = sweep(maker, given.duration, **options)
+        if temporary and given.output.suffix in PLOTS:
+            _plot(result, given.quantity, temporary)
+        elif temporary:
+            result.to_dataframe().to_csv(temporary, float_format="%.17g", index=bool(result.dims))
+    for line in result.attrs["failed"].splitlines():
+        say(f"failed: {line}", "yellow")  # one of each kind
+    say(f"wrote {given.output}")
+    status = result["status"].values
+    counts = [f"{np.count_nonzero(status == number)}: {text}" for number, text in STATUSES.items() if number in status]
+    doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
+    terminal.write("; ".join(counts + [f"{doubted}: not trusted"] * bool(doubted)) + "\n")
+    return 0
 
 
 @command(_flag("table", "print every row, not only those that failed"), _flag("json", "print the results as JSON"))
@@ -125,6 +187,32 @@ def _conclude(validation: "Validation", began: float) -> int:
     """Print what failed and, on the last line, what passed since the moment `began`; return the exit status."""
     for failure in validation.failures:
         say(f"FAILED: {failure}", "red")
-    style = "green" if validation.passed else "red"
-    say(f"{validation.sentence}, in {time.perf_counter() - began:.0f} s", style)
+    say(f"{validation.sentence}, in {time.perf_counter() - began:.0f} s", "green" if validation.passed else "red")
     return 0 if validation.passed else _FAILED
+
+
+def _plot(result: "xarray.Dataset", quantity: str, path: pathlib.Path) -> None:
+    """Plot a quantity over one parameter, or as a map over two, with angles in degrees."""
+    import matplotlib as mpl
+    from matplotlib import pyplot as plt
+
+    from mjbeer.output.plots import STYLE
+
+    shown = result.copy()
+    for name in (*shown.coords, quantity):
+        unit = shown[name].attrs.get("units", "")
+        if "rad" in unit and name != "error":
+            values = np.degrees(shown[name].values)
+            shown[name] = shown[name].dims, values, shown[name].attrs | {"units": unit.replace("rad", "°")}
+    with mpl.rc_context(STYLE):
+        figure = plt.figure(figsize=(7, 4.5), layout="constrained")
+        axes = figure.add_subplot()
+        values = shown[quantity].where(np.isfinite(shown[quantity]))
+        if values.ndim == 1:
+            values.plot.line(ax=axes, marker="." if values.size < 100 else "")
+        else:
+            values.plot.pcolormesh(ax=axes, x=values.dims[0], cmap="cividis", rasterized=True)
+            axes.grid(visible=False)
+        axes.set_title(f"{result.attrs['make']}, {result.attrs['duration']:.6g} s")
+        figure.savefig(path, facecolor="white", dpi=150)
+        plt.close(figure)

@@ -31,8 +31,7 @@ class Summary:
     """The key figures of a trajectory, and until when a can would roll with some coefficients of friction."""
 
     trajectory: Trajectory
-    friction: float = FRICTION
-    """The coefficient of friction that was asked for; besides it, the summary has that of 1."""
+    friction: float = FRICTION  # the coefficient of friction that was asked for; besides it, the summary has that of 1
 
     @cached_property
     def rolls_until(self) -> Mapping[float, float]:
@@ -112,9 +111,8 @@ class Summary:
 def _needed(run: Trajectory) -> str:
     if math.isfinite(run.record.needed):
         return "{:.4g} to roll to the end without slipping"
-    if math.isfinite(run.record.fails_at):
-        return f"none is enough: N < 0 from t = {run.record.fails_at:.6g} s"
-    return "none is enough: nothing presses (N = 0)"
+    ends = f"N < 0 from t = {run.record.fails_at:.6g} s"
+    return f"none is enough: {ends if math.isfinite(run.record.fails_at) else 'nothing presses (N = 0)'}"
 
 
 def _steady(scene: Scene) -> Generator[Row]:

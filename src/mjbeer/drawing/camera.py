@@ -21,16 +21,11 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
 _AROUND = 1.95
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
-_ROOM = 3.0
-"""What is seen below it where marks are below the board."""
-_LARGEST = 0.22
-"""Largest radius of a can, in heights of the picture."""
-_SMALLEST = 0.11
-"""Radius below which the camera pans, unless told otherwise, in heights of the picture."""
-_FAR = 8.0
-"""Distance of the eye, in half diagonals of the picture: the longer, the less of the can's inside is seen."""
-_ABOVE = 0.18
-"""How far the eye is above the middle of the picture, in heights: it sees the board's upper side."""
+_ROOM = 3.0  # what is seen below it where marks are below the board
+_LARGEST = 0.22  # largest radius of a can, in heights of the picture
+_SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
+_FAR = 8.0  # distance of the eye, in half diagonals of the picture: the longer, the less of the can's inside is seen
+_ABOVE = 0.18  # how far the eye is above the middle of the picture, in heights: it sees the board's upper side
 
 
 def scale(scene: Scene) -> float:
@@ -59,18 +54,13 @@ def circle(radius: float, count: int = 48) -> np.ndarray:
 class View:
     """A perspective view. An eye that looks along the can's axis sees every plane across it without distortion."""
 
-    eye: np.ndarray
-    """Where the eye is [m]."""
-    axes: np.ndarray
-    """Unit vectors in its rows: to the right, up, and backwards from the eye."""
+    eye: np.ndarray  # where the eye is [m]
+    axes: np.ndarray  # unit vectors in its rows: to the right, up, and backwards from the eye
     low: np.ndarray
     """The lower left corner of what is seen, as distances to the right and up over the distance from the eye."""
-    high: np.ndarray
-    """The upper right corner, likewise."""
-    distance: float
-    """Distance of what is looked at from the eye [m]."""
-    pixels: tuple[int, int]
-    """Width and height of the picture [pixels]."""
+    high: np.ndarray  # the upper right corner, likewise
+    distance: float  # distance of what is looked at from the eye [m]
+    pixels: tuple[int, int]  # width and height of the picture [pixels]
 
     @classmethod
     def facing(
@@ -142,15 +132,11 @@ class CameraPath:
     scene: Scene
     way: Callable[[np.ndarray | float], np.ndarray | float]
     """Distance of the picture's middle down the incline over time [s], as drawn [m]."""
-    middle: np.ndarray
-    """From the incline at that distance to the middle of the picture, to the right and up [m]."""
-    metres: np.ndarray
-    """Width and height of what is seen at the can's near end [m]."""
-    plane: float
-    """Coordinate y of the can's near end [m]."""
+    middle: np.ndarray  # from the incline at that distance to the middle of the picture, to the right and up [m]
+    metres: np.ndarray  # width and height of what is seen at the can's near end [m]
+    plane: float  # coordinate y of the can's near end [m]
     pixels: tuple[int, int]
-    still: bool
-    """Whether the camera stands still."""
+    still: bool  # whether the camera stands still
 
     def view(self, time: float) -> View:
         """Return what is seen at a `time` [s]."""

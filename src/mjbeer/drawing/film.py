@@ -13,30 +13,23 @@ from mjbeer import require
 from mjbeer.drawing.camera import CameraPath
 from mjbeer.drawing.overlay import STRIP, Board, Look, Marks, guides, header, header_height
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import UNITS, Sheet, require_pixels
+from mjbeer.drawing.sheet import UNITS, Sheet
 from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
-_MOST_FRAMES = 1e6
-"""Largest number of frames of a video: nine hours at 30 frames per second."""
-_NARROW = 24
-"""Width up to which a picture has no charts below, in units."""
-_FINE = 2000
-"""Points of a path."""
+_MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
+_NARROW = 24  # width up to which a picture has no charts below, in units
+_FINE = 2000  # points of a path
 
 
 @dataclass(frozen=True, eq=False)
 class RenderPlan:
     """What is needed to draw a film: its pictures as a function of their times and size."""
 
-    start: float
-    """Time of the first picture [s]."""
-    end: float
-    """Time at which the film ends [s]."""
-    speed: float
-    """Playback speed: 1 is real time, 0.5 is half as fast."""
+    start: float  # time of the first picture [s]
+    end: float  # time at which the film ends [s]
+    speed: float  # playback speed: 1 is real time, 0.5 is half as fast
     draw: Callable[[np.ndarray, int, int], Generator[np.ndarray]]
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height, width, 3), uint8."""
     later: tuple[float, float] = (math.inf, 1.0)
@@ -83,62 +76,42 @@ class Film(Protocol):
 class Take:
     """The film of a motion."""
 
-    trajectory: Callable[[], Trajectory]
-    """A function that computes the motion, and that can be pickled."""
+    trajectory: Callable[[], Trajectory]  # a function that computes the motion, and that can be pickled
     speed: float
-    look: Look | None = None
-    """What is drawn; None is the usual look of such a motion."""
+    look: Look | None = None  # what is drawn; None is the usual look of such a motion
     still: float = 0.0
     """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""
 
     def plan(self) -> RenderPlan:
-        """Compute the motion, and return what is needed to draw it."""
-        return render_plan(self.trajectory(), self.look, self.speed)
+        """Compute the motion, and return what is needed to draw it.
 
-
-def render_plan(trajectory: Trajectory, look: Look | None = None, speed: float = 1.0) -> RenderPlan:
-    """Return what is needed to draw a trajectory; without a `look`, its usual one.
-
-    Raises:
-      ParameterError: if `trajectory` is not one.
-    """
-    require.instance("trajectory", trajectory, Trajectory)
-    drawn = partial(draw, trajectory, look or Look.usual(trajectory), speed)
-    return RenderPlan(float(trajectory.time[0]), float(trajectory.time[-1]), speed, drawn)
-
-
-def draw(
-    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
-) -> Generator[np.ndarray]:
-    """Return a generator of the pictures at some times [s], each of shape (height, width, 3), uint8.
-
-    Raises:
-      ParameterError: if a parameter is not allowed.
-      RenderingError: while the first picture is drawn, if OpenGL does not work.
-    """
-    if (np.diff(trajectory.time) <= 0).any():
-        raise ParameterError(
-            f"the times of a trajectory must increase for it to be drawn, got {require.shown(trajectory.time)}"
-        )
-    sheet = Sheet(require_pixels("width", width), require_pixels("height", height))
-    return _pictures(trajectory, look, speed, times, sheet)
+        Raises:
+          ParameterError: if its times do not increase.
+        """
+        motion = self.trajectory()
+        if (np.diff(motion.time) <= 0).any():
+            raise ParameterError(
+                f"the times of a trajectory must increase for it to be drawn, got {require.shown(motion.time)}"
+            )
+        drawn = partial(_pictures, motion, self.look or Look.usual(motion), self.speed)
+        return RenderPlan(float(motion.time[0]), float(motion.time[-1]), self.speed, drawn)
 
 
 def _pictures(
-    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, sheet: Sheet
+    trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
-    scene, width, height, unit = trajectory.scene, sheet.width, sheet.height, sheet.height / UNITS
+    sheet, scene, unit = Sheet(width, height), trajectory.scene, height / UNITS
     top = header_height(look, unit)  # row of the upper edge of the scene
     has_room = len(trajectory.time) > 1 and width > _NARROW * unit
     below = round(STRIP * unit) if has_room and look.strips else 0
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
     positions = coordinates(trajectory, fine)
-    plane = -scene.can.length / scene.can.radius * RADIUS / 2
+    display = Display.of([scene])
+    plane = display.front()
     room = "forces" in look.marks or ("phi" in look.marks and scene.load.fill is None)
     pixels = width, height - top - below
     path = CameraPath.fit(scene, look.camera, fine, positions[:, 0], positions[:, 3], plane, pixels, room)
-    display = Display.of([scene])
     marks = Marks(trajectory, look.marks, plane, fine, positions)
     strip = Strip(charts(trajectory, look.strips), width, below) if below else None
     board = Board.of(scene, display.model)

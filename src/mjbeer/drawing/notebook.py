@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-_SMOOTH = 2000
-"""Number of samples of the line of exact theory in a plot."""
+_SMOOTH = 2000  # number of samples of the line of exact theory in a plot
 _LABELS = {
     "phi": "φ [°]",
     "u": "u [m]",

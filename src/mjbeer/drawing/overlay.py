@@ -35,16 +35,11 @@ _DAMPED = "A can that its load or the air brakes"
 class Look:
     """What is drawn into the pictures of a motion besides the can, and below them."""
 
-    title: str
-    """What is seen, in a few words."""
-    strips: tuple[str, ...] = ("phi", "u")
-    """Names of the quantities in the charts below the picture."""
-    marks: tuple[Mark, ...] = ("phi", "paths")
-    """What is drawn to explain the motion."""
-    camera: Camera = "auto"
-    """How the camera moves."""
-    facts: str = ""
-    """What is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title."""
+    title: str  # what is seen, in a few words
+    strips: tuple[str, ...] = ("phi", "u")  # names of the quantities in the charts below the picture
+    marks: tuple[Mark, ...] = ("phi", "paths")  # what is drawn to explain the motion
+    camera: Camera = "auto"  # how the camera moves
+    facts: str = ""  # what is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
@@ -61,19 +56,14 @@ class Look:
 
 # The lines above a picture: what is seen, when, how fast, and what the marks mean. Sizes are in units of the sheet.
 
-HEIGHT = 4.1
-"""Height of the first two lines."""
-STRIP = 10
-"""Height of the charts below a picture."""
-_LEGEND = 1.5
-"""Height of the third line, which tells what the marks mean, if they need it."""
-_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7
-"""Where each of them is."""
+HEIGHT = 4.1  # height of the first two lines
+STRIP = 10  # height of the charts below a picture
+_LEGEND = 1.5  # height of the third line, which tells what the marks mean, if they need it
+_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
 _GREY = "#52606d"
 _RIM, _CENTRE, _GHOST, _SKID = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of the track."""
-_NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)
-"""Colours of the forces."""
+_NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
 _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
     "phi": (),
     "paths": (("—", _RIM, "path of a point on the rim"), ("—", _CENTRE, "path of the centre of mass")),
@@ -118,14 +108,10 @@ def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, unit: 
 
 LONGEST = 1.6
 """Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
-_CLEAR = 0.4
-"""Least distance of a force's letter from the foot of the can: no letter is to cover it."""
-_RARE = 90.0
-"""Percentage of times at which no force is larger than the longest arrow shows."""
-_LETTER = 1.35
-"""Least height of a letter, in units of the sheet."""
-_FAINT = 0.05
-"""Least length of an arrow that is drawn."""
+_CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
+_RARE = 90.0  # percentage of times at which no force is larger than the longest arrow shows
+_LETTER = 1.35  # least height of a letter, in units of the sheet
+_FAINT = 0.05  # least length of an arrow that is drawn
 _SLOW = 0.02
 """Speed from which on a foot slips, over that of a fall from the radius: the contact of a can that rolls creeps."""
 
@@ -136,22 +122,17 @@ class Marks:
 
     trajectory: Trajectory
     kinds: Sequence[Mark]
-    plane: float
-    """Coordinate y of the can's near end [m]."""
-    fine: np.ndarray
-    """Times [s] at which the paths are drawn."""
-    positions: np.ndarray
-    """u, phi, roll and lift at these times, shape (times, 4)."""
+    plane: float  # coordinate y of the can's near end [m]
+    fine: np.ndarray  # times [s] at which the paths are drawn
+    positions: np.ndarray  # u, phi, roll and lift at these times, shape (times, 4)
 
     def draw(self, sheet: Sheet, view: View, top: int, time: float, now: np.ndarray) -> None:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        drawn = {"skid": self._skid, "ghost": self._ghost, "paths": self._paths}
-        drawn |= {"forces": self._forces, "phi": self._phi}
-        for kind, draw in drawn.items():
-            if kind in self.kinds:
-                draw(pen, time, now)
+        marks = (self._skid, self._ghost, self._paths, self._forces, self._phi)
+        for draw in (each for each in marks if each.__name__[1:] in self.kinds):
+            draw(pen, time, now)
         sheet.clip(None)
 
     def _ghost(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
@@ -256,10 +237,8 @@ class _Pen:
 
 # What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
 
-_DARK = (0.12, 0.16, 0.2)
-"""Colour of gravity's arrow."""
-_SPACING = 7.0
-"""Least distance of two numbers on the board, in units of the sheet."""
+_DARK = (0.12, 0.16, 0.2)  # colour of gravity's arrow
+_SPACING = 7.0  # least distance of two numbers on the board, in units of the sheet
 
 
 @dataclass(frozen=True, eq=False)
@@ -267,10 +246,8 @@ class Board:
     """The near edge of the board's underside, where its numbers and the angle of the incline are."""
 
     scene: Scene
-    front: float
-    """Its coordinate y [m]."""
-    under: float
-    """Its height over the surface on which the can rolls, negative [m]."""
+    front: float  # its coordinate y [m]
+    under: float  # its height over the surface on which the can rolls, negative [m]
 
     @classmethod
     def of(cls, scene: Scene, model: mujoco.MjModel) -> "Board":
@@ -283,7 +260,7 @@ class Board:
         return view.pixel(in_space(self.scene, along, self.under, self.front))
 
     def along(self, view: View, column: float) -> float:
-        """Return how far down the incline the edge is seen in a column of the picture, as drawn [m]."""
+        """Return how far down the incline the edge is in a column of the picture, as drawn [m]."""
         first, second = self.pixel(view, np.array([0.0, 1.0]))[:, 0]
         return float((column - first) / (second - first))
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -13,7 +13,7 @@ from mjbeer.drawing.camera import View, in_space
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet, require_pixels
+from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -21,18 +21,13 @@ from mjbeer.theory.exact import exact
 from mjbeer.theory.named import in_degrees
 from mjbeer.theory.trajectory import Trajectory
 
-_APART = 0.225
-"""Distance from lane to lane as drawn [m]; a can is 0.12 m long."""
-_BEFORE = 0.4
-"""Room for the names on the board before the start, in lengths of the race."""
-_MARGIN = 0.01
-"""Margin around what must be seen, in widths of the picture."""
+_APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
+_BEFORE = 0.4  # room for the names on the board before the start, in lengths of the race
+_MARGIN = 0.01  # margin around what must be seen, in widths of the picture
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_FAR = 6.0
-"""Distance of the eye, in lengths of the race."""
-_LINE = 1.5
-"""Height of a line on a plate, in units of the picture."""
+_FAR = 6.0  # distance of the eye, in lengths of the race
+_LINE = 1.5  # height of a line on a plate, in units of the picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +36,10 @@ class Runner:
 
     name: str
     trajectory: Trajectory
-    colour: tuple[float, float, float]
-    """Colour of its label, its name and its lines."""
+    colour: tuple[float, float, float]  # colour of its label, its name and its lines
     load: tuple[float, float, float] | None = None
     """Colour of what is in it; None is that of beer, or of ice if it is frozen."""
-    note: str = ""
-    """What else is to be known of it, such as "μ = 0.35"; it stands below the name."""
+    note: str = ""  # what else is to be known of it, such as "μ = 0.35"; it stands below the name
 
     @cached_property
     def distance(self) -> np.ndarray:
@@ -92,22 +85,16 @@ class Race:
     """
 
     title: str
-    runners: Callable[[], Sequence[Runner]]
-    """A function that computes the motions, and that can be pickled."""
-    length: float
-    """Distance from start to finish, or that is seen from the start on [m]."""
+    runners: Callable[[], Sequence[Runner]]  # a function that computes the motions, and that can be pickled
+    length: float  # distance from start to finish, or that is seen from the start on [m]
     speed: float
-    told: Callable[[], str]
-    """A function that says what is seen, in whole sentences, for the text beside the film."""
+    told: Callable[[], str]  # a function that says what is seen, in whole sentences, for the text beside the film
     still: float
     after: float = 0.0
     """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
-    hurry: float = 1.0
-    """How many times faster time runs once all cans but the last have finished."""
-    facts: str = ""
-    """What holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title."""
-    strips: tuple[str, ...] = ()
-    """Names of the quantities in the charts."""
+    hurry: float = 1.0  # how many times faster time runs once all cans but the last have finished
+    facts: str = ""  # what holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title
+    strips: tuple[str, ...] = ()  # names of the quantities in the charts
 
     @property
     def caption(self) -> str:
@@ -128,11 +115,7 @@ class Race:
             end = finishes[-1] + self.after * self.hurry
             later = (finishes[-2] + self.after, self.speed * self.hurry) if self.hurry != 1 else (math.inf, self.speed)
 
-        def pictures(times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
-            sheet = Sheet(require_pixels("width", width), require_pixels("height", height))
-            return self._pictures(runners, later, times, sheet)
-
-        return RenderPlan(0.0, end, self.speed, pictures, later)
+        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, later), later)
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
@@ -149,9 +132,9 @@ class Race:
         return sorted(runner.finish(self.length) for runner in runners)
 
     def _pictures(
-        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, sheet: Sheet
+        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
-        unit, scenes = sheet.height / UNITS, [runner.trajectory.scene for runner in runners]
+        sheet, unit, scenes = Sheet(width, height), height / UNITS, [runner.trajectory.scene for runner in runners]
         top, below = round(HEIGHT * unit), round(STRIP * unit) if self.strips else 0
         display = Display.of(scenes, _APART)
         scenery = Scenery(scenes[0], display.model, (0.0,) if self.strips else (0.0, self.length))

@@ -5,7 +5,6 @@ too small or too large for the graphics, which compute in single precision.
 """
 
 import dataclasses
-import functools
 import math
 from collections.abc import Sequence
 from typing import TypeAlias
@@ -27,33 +26,18 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Colour: TypeAlias = tuple[float, float, float]
-_PALER = 0.35
-"""How much nearer to white the surface of a painted load is."""
-_EDGES = 64
-"""Edges around a load: a circle, to the eye. A finer one takes longer to draw."""
+_PALER = 0.35  # how much nearer to white the surface of a painted load is
+_EDGES = 64  # edges around a load: a circle, to the eye. A finer one takes longer to draw
 _VISUAL, _UNSEEN = 2, 5
 """MuJoCo's groups of geoms: of what templates show, and of what OpenGL does not draw; each can is in one of its own."""
-_RIM = 1.12
-"""Radius of what is drawn of a can, in radii, with room for what sticks out of it."""
-_NEAR_PLANE, _FAR_PLANE = 0.2, 20.0
-"""Nearest and farthest that is drawn, in distances of what is looked at."""
+_RIM = 1.12  # radius of what is drawn of a can, in radii, with room for what sticks out of it
+_NEAR_PLANE, _FAR_PLANE = 0.2, 20.0  # nearest and farthest that is drawn, in distances of what is looked at
 _STRIPE = math.pi / 2 * RADIUS
 """Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
 _SQUARE = 0.1
 """Distance of the lines on the wall [m]: it repeats its texture, whose edge is a line, with x = 0 in its middle."""
-_PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003
-"""Colour of lines across the board, and half their width [m]."""
-_IDENTITY = ("name", "classname", "childclass", "info", "userdata", "plugin")
-"""Attributes that identify an element."""
-_NEAR = np.array([0.0, -1.0, 0.0])
-"""Unit vector towards the reader."""
-
-
-@functools.cache
-def _attributes(kind: type) -> tuple[str, ...]:
-    """Return the names of the attributes that can be set in a kind of element, except those that identify it."""
-    settable = (each for each in dir(kind) if getattr(getattr(kind, each), "fset", None) is not None)
-    return tuple(each for each in settable if each not in _IDENTITY)
+_PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003  # colour of lines across the board, and half their width [m]
+_NEAR = np.array([0.0, -1.0, 0.0])  # unit vector towards the reader
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
@@ -83,8 +67,7 @@ class Display:
     model: mujoco.MjModel
     data: mujoco.MjData
     scenes: Sequence[Scene]
-    lanes: Sequence[float]
-    """Where each can is across the board [m], away from the reader."""
+    lanes: Sequence[float]  # where each can is across the board [m], away from the reader
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
@@ -101,12 +84,6 @@ class Display:
                 looks.pour(spec, _resize(scene), _EDGES)
             for pair in spec.pairs:
                 spec.delete(pair)
-            shell = spec.body("can").add_body()  # it comes after the load: what that hides is quickly drawn
-            for geom in [each for each in spec.body("can").geoms if each.name not in looks.OF_THE_LOAD]:
-                moved = shell.add_geom()
-                for attribute in _attributes(type(geom)):
-                    setattr(moved, attribute, getattr(geom, attribute))
-                spec.delete(geom)
             for geom in spec.geoms:
                 of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
                 geom.group = number % _UNSEEN if of_can else _UNSEEN

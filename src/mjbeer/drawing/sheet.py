@@ -21,16 +21,12 @@ Colour = str | tuple[float, float, float]
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom [pixels]."""
 
-UNITS = 36
-"""Height of a picture in units."""
-_LARGEST = 4096
-"""Largest width and height [pixels] that H.264 encoders support."""
+UNITS = 36  # height of a picture in units
+_LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
 INK = "#1f2933"
 """Colour of texts and of lines that explain."""
-_EDGE = 2
-"""Width of the white edge around a text that may lie on anything [pixels]."""
-_HEAD = 3.2
-"""Length of an arrow's head, in widths of its line."""
+_EDGE = 2  # width of the white edge around a text that may lie on anything [pixels]
+_HEAD = 3.2  # length of an arrow's head, in widths of its line
 
 
 def require_pixels(name: str, pixels: float) -> int:

@@ -20,10 +20,8 @@ from mjbeer.theory.exact import solution
 from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_MUJOCO = (0.0, 0.447, 0.698)
-"""Colour of a simulation's line, where there is one only."""
-_THEORY = "#b4bcc8"
-"""Colour of theory's lines, which are wide and lie below."""
+_MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
+_THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
 _STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.right": False,
@@ -32,10 +30,8 @@ _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
 }
-_INTERVALS = 50
-"""Number of intervals of a motion over which forces are averaged."""
-_SMOOTH = 1500
-"""Times at which theory's lines are computed."""
+_INTERVALS = 50  # number of intervals of a motion over which forces are averaged
+_SMOOTH = 1500  # times at which theory's lines are computed
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,10 +39,8 @@ class Line:
     """A line of a chart."""
 
     name: str
-    time: np.ndarray
-    """Times [s], shape (samples,)."""
-    values: np.ndarray
-    """Values at these times."""
+    time: np.ndarray  # times [s], shape (samples,)
+    values: np.ndarray  # values at these times
     colour: tuple[float, float, float] | None = None
     """Its colour; None for theory's line, which is seen from the beginning."""
     possible: float = math.inf
@@ -57,15 +51,11 @@ class Line:
 class Chart:
     """A chart over time."""
 
-    title: str
-    """What it shows, with letter and unit."""
+    title: str  # what it shows, with letter and unit
     lines: Sequence[Line]
-    low: float = -math.inf
-    """Least value that the chart has room for."""
-    high: float = math.inf
-    """Largest value that it has room for; the blow of a landing goes beyond."""
-    least: float = 0.0
-    """Least range of values that it shows: a straight line is not to look like a crooked one."""
+    low: float = -math.inf  # least value that the chart has room for
+    high: float = math.inf  # largest value that it has room for; the blow of a landing goes beyond
+    least: float = 0.0  # least range of values that it shows: a straight line is not to look like a crooked one
 
 
 def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
@@ -143,14 +133,6 @@ def weight(scene: Scene) -> float:
     return scene.mass * (scene.gravity or GRAVITY)
 
 
-def _ahead(scene: Scene, motion: Coordinates) -> np.ndarray:
-    return 1e3 * (motion.u - even(scene, motion, motion.time))
-
-
-def _normal(scene: Scene, motion: Coordinates) -> np.ndarray:
-    return forces(scene, motion)[0] / weight(scene)
-
-
 def _slip(scene: Scene, motion: Coordinates) -> np.ndarray:
     return 1e3 * (motion.u - motion.u[0] - scene.can.radius * (motion.roll - motion.roll[0]))
 
@@ -160,8 +142,12 @@ QUANTITIES: dict[str, Quantity] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
     "u": ("distance down the incline, u [m]", lambda _, motion: motion.u, {}),
     "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
-    "ahead": ("ahead of even acceleration [mm]", _ahead, {}),
-    "normal": ("normal force, N [weights]", _normal, {"low": -1.0, "high": 4.0}),
+    "ahead": (
+        "ahead of even acceleration [mm]",
+        lambda scene, motion: 1e3 * (motion.u - even(scene, motion, motion.time)),
+        {},
+    ),
+    "normal": ("normal force, N [weights]", lambda *of: forces(*of)[0] / weight(of[0]), {"low": -1.0, "high": 4.0}),
     "lift": ("height above the incline [mm]", lambda _, motion: 1e3 * motion.lift, {}),
     "slip": ("slid instead of rolled [mm]", _slip, {}),
 }

@@ -28,8 +28,7 @@ class Filmed:
     """A film to be written."""
 
     film: Film
-    path: pathlib.Path
-    """Its file, whose name ends in .mp4."""
+    path: pathlib.Path  # its file, whose name ends in .mp4
     width: int
     height: int
     fps: float
@@ -52,8 +51,7 @@ class Filmed:
 class Plotted:
     """A plot to be drawn."""
 
-    draw: Callable[[Any], None]
-    """Writes the plot to a path, with .svg appended, or into a `Picture`."""
+    draw: Callable[[Any], None]  # writes the plot to a path, with .svg appended, or into a `Picture`
     path: pathlib.Path
     in_memory: bool = False
 

@@ -12,15 +12,14 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS, Camera
-from mjbeer.drawing.film import RenderPlan, render_plan
+from mjbeer.drawing.film import RenderPlan, Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.sheet import require_pixels
 from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
 
-_RATE = 21
-"""The rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default."""
+_RATE = 21  # the rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default
 _ENCODED = (
     # HD colours (BT.709), which players expect; the default are those of SD television.
     *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
@@ -110,7 +109,7 @@ def _pictures(plan: RenderPlan, width: int, height: int, fps: float) -> Generato
     for name, pixels in (("width", width), ("height", height)):
         if require_pixels(name, pixels) % 2 != 0:
             raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
-    return plan.draw(plan.times(fps), width, height)
+    return plan.draw(plan.times(fps), int(width), int(height))
 
 
 @contextlib.contextmanager
@@ -145,4 +144,4 @@ def _failure(said: str) -> RenderingError:
 def _plan(trajectory: Trajectory, camera: Camera, speed: float) -> RenderPlan:
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
-    return render_plan(trajectory, Look.usual(trajectory, camera), speed)
+    return Take(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()

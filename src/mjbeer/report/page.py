@@ -27,10 +27,8 @@ from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.study import machine
 from mjbeer.studies.validation.validate import Validation
 
-_SMALL = 1e-3
-"""A smaller share is a power of ten and not a percentage."""
-_WIDE = 9.6
-"""Width [inches] from which a plot takes the width of the page, so that its letters can be read."""
+_SMALL = 1e-3  # a smaller share is a power of ten and not a percentage
+_WIDE = 9.6  # width [inches] from which a plot takes the width of the page, so that its letters can be read
 _FAILED = re.compile(r"\*\*(.+?)\*\*")
 
 Film = tuple[bytes, bytes]

@@ -15,21 +15,16 @@ from mjbeer.theory.named import frozen, in_degrees, sliding
 from mjbeer.theory.scene import Scene
 
 METAL = Can.sheet_metal()
-LENGTH = 1.0
-"""Distance from start to finish [m]."""
+LENGTH = 1.0  # distance from start to finish [m]
 _GENTLE = math.radians(5)
 """Incline of the race of beer [rad]: gentle enough for the frozen can to finish without leaving the board."""
-_FILL = 0.75
-"""How full the cans are that are neither full nor empty."""
-_EMPTY = 1e-5
-"""Fill of the empty can: its beer weighs some millionths of the can."""
+_FILL = 0.75  # how full the cans are that are neither full nor empty
+_EMPTY = 1e-5  # fill of the empty can: its beer weighs some millionths of the can
 _STEEPER = math.radians(7.1)
 """Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
 honey, the thickest of the liquids, from 7.38."""
-_ICE = 917.0
-"""Density of ice [kg/m^3]."""
-_END = 24.5
-"""When the can with honey is out of the picture [s]."""
+_ICE = 917.0  # density of ice [kg/m^3]
+_END = 24.5  # when the can with honey is out of the picture [s]
 
 
 def of_beer() -> Sequence[Runner]:

@@ -1,4 +1,4 @@
-"""`mjbeer sweep`: ranges on the command line, in degrees, and a file of each kind."""
+"""`mjbeer sweep`, the study of one scene: ranges on the command line, in degrees, and a file of each kind."""
 
 import pathlib
 
