@@ -26,7 +26,7 @@ from mjbeer.studies.stability import search, stability_maps
 from mjbeer.studies.stability.judge import NOBODY, SERIES, SILENT, THEORY, VERDICTS
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
-from mjbeer.theory.named import frozen
+from mjbeer.theory.scenes import frozen
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "docs" / "figures")]

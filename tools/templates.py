@@ -11,8 +11,8 @@ from mjbeer.model import looks, mechanics, state
 from mjbeer.model.numbers import Numbers
 from mjbeer.model.setting import Setting
 from mjbeer.output import files
-from mjbeer.theory.named import hoop, pendulum
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import hoop, pendulum
 
 _DIGITS = 12
 """Digits of the numbers in the files."""

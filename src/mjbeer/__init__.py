@@ -13,8 +13,8 @@ from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene, pictures
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import standing
 from mjbeer.theory.trajectory import Trajectory
 

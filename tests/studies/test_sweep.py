@@ -197,7 +197,7 @@ def test_a_quantity_without_a_value_leaves_the_others() -> None:
 def test_units_and_the_call_are_attributes() -> None:
     swept = sweep_of_sliding(phi_dot0=0.5)
     assert (swept.phi.attrs["units"], swept.incline.attrs["units"]) == ("rad", "rad")
-    assert (swept.make, swept.tolerance, swept.phi0, swept.phi_dot0) == ("mjbeer.theory.named.sliding", 1e-6, 1.0, 0.5)
+    assert (swept.make, swept.tolerance, swept.phi0, swept.phi_dot0) == ("mjbeer.theory.scenes.sliding", 1e-6, 1.0, 0.5)
     assert swept.phi.sel(fill=0.5).dims == ("incline",)
 
 

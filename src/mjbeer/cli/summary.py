@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
-from mjbeer.theory.named import damping_in_words
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 

@@ -23,8 +23,8 @@ from mjbeer.model import looks, mechanics, numbers
 from mjbeer.model.setting import INTEGRATORS, Integrator, mjcf_folder
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
-from mjbeer.theory.named import sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import sliding
 from mjbeer.theory.standing import MOST_MODES, Standing, standing
 
 _BOB = 1e-3, 0.1

@@ -31,9 +31,9 @@ from mjbeer.paper.witness import (
 )
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen
 from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen
 
 _CREEP = 1e-3
 """A can counts as slipping if it slips by more than this in a second, in radii; one that holds slips by 1e-7."""

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
+from mjbeer.drawing.words import in_degrees
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import (
     COLOURS,
@@ -27,8 +28,8 @@ from mjbeer.paper.hopping import MU
 from mjbeer.paper.witness import GRIP, fall_from_top
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, hoop, in_degrees, pendulum, sliding
 from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 FRICTION = 1.0

@@ -12,11 +12,12 @@ from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.studio import Filmed, Plotted
+from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
 from mjbeer.output.plots import chart
 from mjbeer.paper import plots_frozen, plots_sliding
 from mjbeer.paper.plots_sliding import SWING
-from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 
 SIZE = 960, 540, 25
 """Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""

@@ -17,8 +17,8 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, pendulum, sliding
 from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 

@@ -31,8 +31,8 @@ from mjbeer.exceptions import NoEquilibriumError, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import segment
-from mjbeer.theory.named import named, sliding
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
+from mjbeer.theory.scenes import named, sliding
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
 NAMES: tuple[Name, ...] = get_args(Name)

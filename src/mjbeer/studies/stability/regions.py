@@ -19,8 +19,8 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.liquid import NAMES, liquid
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
 T = TypeVar("T")
 _SWINGS, _TURNED = 400.0, 3e3

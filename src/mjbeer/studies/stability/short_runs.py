@@ -26,8 +26,8 @@ from mjbeer.studies.stability.judge import REFUSALS, Angles
 from mjbeer.theory.can import Can
 from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, sliding
 from mjbeer.theory.record import ERROR
+from mjbeer.theory.scenes import frozen, sliding
 
 EXPLODED, INACCURATE, ACCURATE = range(3)
 """Outcomes of a run, as numbers for the cells of a map."""

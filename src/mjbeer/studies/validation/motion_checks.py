@@ -16,8 +16,8 @@ from mjbeer.simulation.run import Prepared
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import mean_acceleration
 
 _FRICTION = 10.0

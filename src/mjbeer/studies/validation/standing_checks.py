@@ -16,8 +16,8 @@ from mjbeer.model.setting import MujocoIntegrator
 from mjbeer.studies import attached_can
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
 
 _METAL = Can.sheet_metal()
