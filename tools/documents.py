@@ -25,7 +25,7 @@ from mjbeer.studies.predictions import linear_stability, soft_constraint
 from mjbeer.studies.stability import search, stability_maps
 from mjbeer.studies.stability.judge import NOBODY, SERIES, SILENT, THEORY, VERDICTS
 from mjbeer.studies.validation.validate import checks
-from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
+from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
 from mjbeer.theory.scenes import frozen
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
@@ -274,7 +274,7 @@ def speeds() -> str:
                 warnings.simplefilter("ignore", LiquidWarning)
                 scene = liquid(name, incline)
             speed = scene.terminal_speed()
-            within = centrifugal(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
+            within = centrifugal_ratio(scene, speed) < 1 and liquid_in(name, incline).carried < 1 / 3
             cells.append(f"{speed:.2g}" if within else f"({speed:.2g})")
         arc = math.pi * scene.can.radius
         lines.append((

@@ -13,7 +13,7 @@ from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, pictures
+from mjbeer.theory.scene import Scene, load_drawing
 from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import standing
 from mjbeer.theory.trajectory import Trajectory
@@ -67,7 +67,7 @@ _LAZY = {
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep",
 }
-pictures[:] = [lambda: import_module("mjbeer.drawing.notebook")]
+load_drawing[:] = [lambda: import_module("mjbeer.drawing.notebook")]
 
 
 def __getattr__(name: str) -> object:

@@ -116,8 +116,8 @@ def test_the_forces_are_seen_within_long_steps() -> None:
     truth = exact(scene, np.linspace(0, end, 200_001), 3.0).record
     found = recorder.record
     assert found.lowest_normal == pytest.approx(truth.lowest_normal, rel=0.011)
-    assert found.fastest == pytest.approx(truth.fastest, rel=0.011)
-    assert found.fails_at == pytest.approx(truth.fails_at, abs=1e-4)
+    assert found.largest_rate == pytest.approx(truth.largest_rate, rel=0.011)
+    assert found.rolling_ends_at == pytest.approx(truth.rolling_ends_at, abs=1e-4)
 
 
 def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
@@ -143,8 +143,8 @@ def test_every_step_is_seen_once(last: int) -> None:
     model, recorder = build(frozen()), SmoothRecorder(frozen())
     times, integrator = 1e-3 * np.arange(last + 1), GaussJackson(model)
     found = integrator.run(start(model, frozen(), 1.0, 0.0), times, 1e-3, EVEN, recorder)
-    assert recorder.record.path == pytest.approx(np.abs(np.diff(found[:, 0])).sum(), rel=1e-13)
-    assert recorder.record.turned == pytest.approx(np.abs(found[:, 0] - 1.0).max(), rel=1e-13)
+    assert recorder.record.angle_covered == pytest.approx(np.abs(np.diff(found[:, 0])).sum(), rel=1e-13)
+    assert recorder.record.largest_turn == pytest.approx(np.abs(found[:, 0] - 1.0).max(), rel=1e-13)
     assert np.abs(found[:, 0] - exact(frozen(), times, 1.0).phi).max() < 1e-11
     # Two a step where the pace is none of the scene's, those of the law, and those of the first steps until they agree.
     assert (integrator.evaluations - _ANGLES - 2 - _CHECKS - 2 * max(0, last + LAG - COUNT // 2)) % COUNT == 0

@@ -20,7 +20,7 @@ from mjbeer.model.state import read
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import accelerations, stiffness
+from mjbeer.theory.equations import accelerations, relaxation_rate
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
 from tests.support import damped_motion
@@ -213,7 +213,7 @@ def test_stiffness_is_the_fast_root(phi: float) -> None:
         above, below = (accelerations(scene, phi, *(rates + sign * change)) for sign in (1, -1))
         columns.append([(up - down) / (2 * aside) for up, down in zip(above[::-1], below[::-1], strict=True)])
     root = -np.linalg.eigvals(np.array(columns).T).real.min()
-    assert stiffness(scene, np.array(phi), rates[0], rates[1]) == pytest.approx(root, rel=1e-4)
+    assert relaxation_rate(scene, np.array(phi), rates[0], rates[1]) == pytest.approx(root, rel=1e-4)
 
 
 @pytest.mark.parametrize("damping", [1e-12, 1e-3])
@@ -245,7 +245,7 @@ def test_the_forces_of_all_steps_are_those_of_the_motion() -> None:
     truth = exact(MIXED, np.linspace(0, 1, 1001), 1.0, 5.0)
     # An eighth of a step of 1/30 s does not meet the extremes, flat as they are, by (25/s / 240/s)^2 / 2.
     assert run.record.lowest_normal == pytest.approx(truth.forces.normal.min(), rel=5e-3)
-    assert run.record.needed == pytest.approx(truth.forces.needed.max(), rel=5e-3)
+    assert run.record.needed_friction == pytest.approx(truth.forces.needed_friction.max(), rel=5e-3)
 
 
 BEER = liquid("beer", 0.1862714527002634, 0.5462536680818177, METAL)

@@ -78,8 +78,11 @@ def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, An
         for name in ("phi", "u", "phi_dot", "u_dot"):
             assert found[name] == getattr(single, name)[-1]
         assert (found["error"], found["trusted"]) == (single.error_estimate, single.trusted)
-        assert (found["energy_drift"], found["friction_needed"]) == (single.energy_drift, single.record.needed)
-        assert (found["lowest_normal"], found["parting_time"]) == (single.record.lowest_normal, single.record.fails_at)
+        assert (found["energy_drift"], found["friction_needed"]) == (single.energy_drift, single.record.needed_friction)
+        assert (found["lowest_normal"], found["parting_time"]) == (
+            single.record.lowest_normal,
+            single.record.rolling_ends_at,
+        )
 
 
 def test_a_run_ends_at_the_first_timestep_after_the_duration_as_in_simulate() -> None:

@@ -55,7 +55,7 @@ def render(
       OutputError: if the file cannot be written.
     """
     if (target := require.path(path)).suffix.lower() != ".mp4":
-        raise ParameterError(f"the file's name must end in .mp4, got {require.shown(str(path))}")
+        raise ParameterError(f"the file's name must end in .mp4, got {require.format_value(str(path))}")
     console = terminal.STDERR if require.boolean("progress", progress) else None
     film = _plan(trajectory, camera, require.positive("speed", speed))
     with terminal.progress_bar(console, len(film.times(fps))) as begin:

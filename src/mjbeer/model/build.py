@@ -134,7 +134,7 @@ def refuse_others(**given: object) -> None:
     defaults = {name: each.default for name, each in inspect.signature(build).parameters.items()}
     for name, value in given.items():
         if value != defaults[name]:
-            raise ParameterError(f"a standing can has no {name}, got {require.shown(value)}")
+            raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
 
 
 def refuse_held(scene: Scene, free: bool) -> None:

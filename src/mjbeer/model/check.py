@@ -23,7 +23,7 @@ from mjbeer.model.setting import Rolling, Setting
 from mjbeer.model.state import START_DEPTH, places, read, write
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import Coordinates, accelerations, part, stiffness
+from mjbeer.theory.equations import Coordinates, accelerations, relaxation_rate, select_samples
 from mjbeer.theory.load import Load
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Attachment, Scene
@@ -106,9 +106,9 @@ def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, 
     than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
     """
     chosen = np.linspace(0, len(way.time) - 1, min(9, len(way.time))).astype(int)  # states, evenly spread
-    difference, relative = residual(model, scene, write(model, part(way, chosen)), exact_constraint)
-    missing = min(relative * max(record.path, 1.0), difference * float(way.time[-1]) ** 2 / 2)
-    return missing / max(1.0, record.turned)
+    difference, relative = residual(model, scene, write(model, select_samples(way, chosen)), exact_constraint)
+    missing = min(relative * max(record.angle_covered, 1.0), difference * float(way.time[-1]) ** 2 / 2)
+    return missing / max(1.0, record.largest_turn)
 
 
 def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> tuple[float, float]:
@@ -130,7 +130,7 @@ def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_cons
     differences = np.abs(found - right)
     if scene.dissipates:  # the rounding of a slip rate makes a torque that brings can and load together, and so is gone
         rates = np.abs(motion.phi_dot) + np.abs(motion.u_dot) / radius
-        together = stiffness(scene, motion.phi, motion.phi_dot, motion.u_dot)
+        together = relaxation_rate(scene, motion.phi, motion.phi_dot, motion.u_dot)
         differences = np.maximum(differences - 8 * np.finfo(float).eps * together * rates, 0.0)
     largest, difference = max(float(np.abs(right).max()), small), float(differences.max())
     return difference, difference / largest if largest > 0 else 0.0

@@ -67,7 +67,9 @@ def export(
         refuse_held(scene, free)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
+        raise ParameterError(
+            f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
+        )
     made = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     if made.integrator in setting.OWN:
         raise UnsupportedError(

@@ -86,9 +86,11 @@ def attach(
     for name, value, array, count in (("pos", pos, place[0], 3), ("quat", quat, place[1], 4)):
         if len(array) != count or (name == "quat" and not array.any()):
             zero = ", not all 0" if name == "quat" else ""
-            raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.shown(value)}")
+            raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.format_value(value)}")
     if not (isinstance(prefix, str) and prefix and prefix.isprintable()):  # MuJoCo's names end at the first "\0"
-        raise ParameterError(f"prefix must be a text that can be printed and is not empty, got {require.shown(prefix)}")
+        raise ParameterError(
+            f"prefix must be a text that can be printed and is not empty, got {require.format_value(prefix)}"
+        )
     if parent.body(f"{prefix}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
@@ -96,7 +98,7 @@ def attach(
     listed = friction if several else [friction]
     coefficients = [] if friction is None else [require.non_negative("friction", each) for each in listed]
     if friction is not None and not 1 <= len(coefficients) <= 3:
-        raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.shown(friction)}")
+        raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
     lying = isinstance(can, Scene)
     child = _lying(can) if lying else _standing(require.instance("can", can, Standing))
     option = parent.option
@@ -137,7 +139,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     """
     require.instance("model", model, mujoco.MjModel)
     if not (isinstance(prefix, str) and prefix.isprintable()):
-        raise ParameterError(f"prefix must be a text that can be printed, got {require.shown(prefix)}")
+        raise ParameterError(f"prefix must be a text that can be printed, got {require.format_value(prefix)}")
     if isinstance(can, Scene):
         spec, drawn = _lying(can, visuals=False), {}
     else:
@@ -175,8 +177,9 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
     size = [shell.radius, shell.length / 2]  # written to MJCF with 6 digits or more
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
         raise ParameterError(
-            f"the model must have a can under the prefix {require.shown(prefix)} with radius and half length {size} m "
-            f"and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, got {require.shown(can)}"
+            f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
+            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
+            f"got {require.format_value(can)}"
         )
 
 
@@ -190,7 +193,7 @@ def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     elif can.modes > 0 and (turned := option.timestep * float(can.frequencies()[-1])) > _COARSE:
         reasons.append(
             f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by "
-            f"{require.above(turned, _COARSE)} rad in it, not {_COARSE:g} or less"
+            f"{require.format_above(turned, _COARSE)} rad in it, not {_COARSE:g} or less"
         )
     if explicit and option.timestep * decay > _RK4:
         remedy = "" if isinstance(can, Scene) else ", or another integrator"
@@ -229,7 +232,7 @@ def _decay(can: Standing | Scene) -> float:
     if isinstance(can, Scene):
         if not can.damping_law:
             return 0.0
-        load, slope = can.load, can.damping_law.slope(math.sqrt(can.gravity / can.can.radius))
+        load, slope = can.load, can.damping_law.derivative(math.sqrt(can.gravity / can.can.radius))
         return float(slope * (1 / can.can.inertia + 1 / (load.inertia + load.moment * load.offset)))
     if can.modes == 0:
         return 0.0

@@ -209,7 +209,7 @@ def _frozen(scene: Scene) -> _Parts:
     if mass * offset**2 > oscillator.base / 2:
         mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
     body = Inertial(mass, offset, oscillator.base - mass * offset**2)
-    return [("can", body)], {"force": oscillator.slope, "chord": oscillator.chord}
+    return [("can", body)], {"force": oscillator.ramp, "chord": oscillator.chord}
 
 
 def _constrained(scene: Scene) -> _Parts:

@@ -57,7 +57,7 @@ class Setting:
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
         require.choice("integrator", self.integrator, (*INTEGRATORS, *OWN))
-        require.store(
+        require.set_fields(
             self,
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             # MuJoCo raises a smaller one to this (mjMINMU), and says nothing
@@ -99,7 +99,7 @@ def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     if own is None and (own := os.environ.get(VARIABLE)) is None:
         return _installed(FOLDERS)
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
-        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.shown(own)}")
+        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.format_value(own)}")
     return pathlib.Path(own)
 
 

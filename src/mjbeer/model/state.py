@@ -31,7 +31,7 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     values = _values(begin(scene, *require.start(phi0, phi_dot0)))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
-        raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
+        raise ParameterError(f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}")
     mujoco.mj_resetData(model, data)
     for name in joints & values.keys():
         data.joint(name).qpos[:], data.joint(name).qvel[:] = values[name]

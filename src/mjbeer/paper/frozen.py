@@ -86,7 +86,7 @@ def long_run(form: Oscillator) -> float:
     dphi. The trapezoid rule for the mean converges geometrically, since J is smooth and periodic.
     """
     turn = 2 * np.pi * np.arange(64) / 64
-    return form.slope / float(np.mean(np.sqrt(form.inertia(turn)))) ** 2
+    return form.ramp / float(np.mean(np.sqrt(form.inertia(turn)))) ** 2
 
 
 @cache

@@ -108,7 +108,7 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     rolling = exact(contact.scene, times, math.pi)
     parts = rolling.rolls_until()
     friction, moved = panels
-    needed = np.where((rolling.forces.needed < 2.5) & (times < parts), rolling.forces.needed, np.nan)
+    needed = np.where((rolling.forces.needed_friction < 2.5) & (times < parts), rolling.forces.needed_friction, np.nan)
     friction.plot(times, needed, label="needed to roll, exact theory", color="black")
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))

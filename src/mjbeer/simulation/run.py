@@ -19,7 +19,7 @@ from mjbeer.model.numbers import Kind, Numbers
 from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.record import ERROR, Record, departures, doubts
+from mjbeer.theory.record import ERROR, Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
@@ -217,11 +217,11 @@ class Run(Trajectory):
         """
         friction = require.friction(friction)
         if friction == self.record.friction:
-            return self.record.fails_at
+            return self.record.rolling_ends_at
         prepared = Prepared(self.scene, self.setting)
         solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.spread.time, friction)
         assert solution.record is not None
-        return solution.record.fails_at
+        return solution.record.rolling_ends_at
 
     @cached_property
     def error_estimate(self) -> float:
@@ -237,43 +237,43 @@ class Run(Trajectory):
         return second(self)
 
     @cached_property
-    def doubts(self) -> tuple[str, ...]:
+    def failed_checks(self) -> tuple[str, ...]:
         """Return those reasons to doubt that the equations were solved that take no second run."""
-        found = doubts(self.record, self.rolling)
-        turn = self.record.fastest * (timestep := self.timestep or 0.0)
+        found = failed_checks(self.record, self.rolling)
+        turn = self.record.largest_rate * (timestep := self.timestep or 0.0)
         if turn > _TURN and self.integrator != DOP853:
             # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
             rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
                 found.append(
-                    f"the load turns by {require.above(turn, _TURN)} rad in a timestep (trusted up to {_TURN:g}), in "
-                    "which its weight and inertia change unseen"
+                    f"the load turns by {require.format_above(turn, _TURN)} rad in a timestep (trusted up to "
+                    f"{_TURN:g}), in which its weight and inertia change unseen"
                 )
         return tuple(found)
 
     @cached_property
     def rolling_warnings(self) -> tuple[str, ...]:
         """Return where the can did not, or could not, roll without slipping, one sentence for each."""
-        return tuple(departures(self.record, self.rolling, self.setting.friction))
+        return tuple(rolling_failures(self.record, self.rolling, self.setting.friction))
 
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
         if self.solution.error is None and (lost := self._second[1]) > ERROR:
             return (
-                *self.doubts,
+                *self.failed_checks,
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
                 f"by an error of {lost:.2g} rad",
             )
         if (error := self.error_estimate) <= ERROR:
-            return self.doubts
+            return self.failed_checks
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
-            off = require.above(error, ERROR)
+            off = require.format_above(error, ERROR)
             found = f"phi and u/a are off by {off} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
         else:
             found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
-        return (*self.doubts, found)
+        return (*self.failed_checks, found)
 
 
 def second(run: Run) -> tuple[float, float]:

@@ -25,7 +25,7 @@ from mjbeer.exceptions import (
     MjbeerError,
     ParameterError,
     ToleranceError,
-    liquid_notes,
+    collect_liquid_warnings,
 )
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output import files
@@ -67,8 +67,8 @@ ALWAYS: Mapping[str, Quantity] = {
     "u_dot": Quantity(lambda run: run.u_dot[-1], "m/s", "velocity at the end"),
     "error": Quantity(lambda run: run.error_estimate, "rad", "estimated error of φ and u/a"),
     "lowest_normal": Quantity(lambda run: run.record.lowest_normal, "N", "lowest normal force"),
-    "friction_needed": Quantity(lambda run: run.record.needed, "", "friction coefficient that rolling needs"),
-    "parting_time": Quantity(lambda run: run.record.fails_at, "s", "time from which N < 0"),
+    "friction_needed": Quantity(lambda run: run.record.needed_friction, "", "friction coefficient that rolling needs"),
+    "parting_time": Quantity(lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
     "energy_drift": Quantity(lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
 }
 """The quantities that every sweep has, besides "trusted" and "status"."""
@@ -140,18 +140,18 @@ def sweep(
     for name, value in (("paired", paired), ("overwrite", overwrite), ("progress", progress)):
         require.boolean(name, value)
     if executor is not None and not isinstance(executor, Executor):
-        raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.shown(executor)}")
+        raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.format_value(executor)}")
     path = None if output is None else _netcdf(output)
     if not callable(make):
-        raise ParameterError(f"make must be a function that returns a scene, got {require.shown(make)}")
+        raise ParameterError(f"make must be a function that returns a scene, got {require.format_value(make)}")
     try:
         inspect.signature(make).bind(**parameters)
     except TypeError as error:
-        raise ParameterError(f"make is {require.shown(make)}: {error}") from error
+        raise ParameterError(f"make is {require.format_value(make)}: {error}") from error
     except ValueError:  # a function in C without a signature
         pass
     axes, fixed = _arranged({**parameters, "phi0": phi0, "phi_dot0": phi_dot0}, paired)
-    require.radians(float(np.abs(axes.get("phi0", fixed.get("phi0"))).max()))
+    require.warn_of_degrees(float(np.abs(axes.get("phi0", fixed.get("phi0"))).max()))
     setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
     measures = _asked(quantity, axes)
     times = _times(require.positive("duration", duration, "s"), setting, bool(measures))
@@ -218,8 +218,8 @@ class Work:
         values = {**self.fixed, **dict(zip(self.varied, row.tolist(), strict=True))}
         start = require.start(values.pop("phi0"), values.pop("phi_dot0"))
         if not isinstance(made := self.make(**values), Scene):
-            called = require.shown(self.make)
-            raise ParameterError(f"make must return a scene, got {called}, which returns {require.shown(made)}")
+            called = require.format_value(self.make)
+            raise ParameterError(f"make must return a scene, got {called}, which returns {require.format_value(made)}")
         return made, *start
 
 
@@ -230,7 +230,7 @@ def measure(work: Work, rows: np.ndarray) -> tuple[list[list[float]], list[str]]
     not 0.
     """
     found, reasons, began = [], [], time.perf_counter()
-    with liquid_notes():  # the sweep has said them
+    with collect_liquid_warnings():  # the sweep has said them
         for row in rows:
             values = [math.nan] * (len(ALWAYS) + len(work.measures))
             trusted, status, reason = _outcome(work, row, values)
@@ -303,7 +303,9 @@ def _asked(quantity: Asked | Sequence[Asked], axes: Mapping[str, Any]) -> dict[s
                 raise ParameterError(f"quantity {name!r} is there already: give the function another name")
             found[name] = each
         elif not isinstance(each, str):
-            raise ParameterError(f"quantity must be a name or a function of a trajectory, got {require.shown(each)}")
+            raise ParameterError(
+                f"quantity must be a name or a function of a trajectory, got {require.format_value(each)}"
+            )
         elif require.choice("quantity", each, there) == PERIOD:
             found = {PERIOD: _PERIOD.of} | found
     return found
@@ -337,7 +339,7 @@ def _checked(work: Work, grid: Grid) -> list[str]:
     notes: dict[str, str] = {}
 
     def problem(number: int) -> ParameterError | None:
-        with liquid_notes() as told:
+        with collect_liquid_warnings() as told:
             try:
                 work.scene(grid.rows(np.array([number]))[0])
             except ParameterError as error:
@@ -407,7 +409,7 @@ def _label(function: Any) -> str:
 def _netcdf(path: str | os.PathLike[str]) -> pathlib.Path:
     target = require.path(path)
     if target.suffix != ".nc":
-        raise ParameterError(f"the file's name must end in .nc, got {require.shown(str(target))}")
+        raise ParameterError(f"the file's name must end in .nc, got {require.format_value(str(target))}")
     return target
 
 

@@ -31,7 +31,7 @@ class Damping:
     """Slip rate [rad/s] from which a film all round the wall can hold a third of that liquid."""
 
     def __post_init__(self) -> None:
-        require.store(
+        require.set_fields(
             self,
             linear=require.non_negative("damping", self.linear, "N m s"),
             quadratic=require.non_negative("quadratic damping", self.quadratic, "N m s^2"),
@@ -51,12 +51,12 @@ class Damping:
         size = np.abs(rate)
         return rate * (self.linear + size * (self.quadratic + size * self.cubic))
 
-    def slope(self, rate: np.ndarray | float) -> np.ndarray | float:
+    def derivative(self, rate: np.ndarray | float) -> np.ndarray | float:
         """Return the derivative of the torque by the slip rate [N m s] at a slip rate [rad/s]."""
         size = np.abs(rate)
         return self.linear + size * (2 * self.quadratic + size * 3 * self.cubic)
 
-    def rate(self, torque: float) -> float:
+    def slip_rate(self, torque: float) -> float:
         """Return the slip rate [rad/s] at which the torque is `torque` [N m]; it is infinite if there is no damping."""
         if torque == 0:
             return 0.0
@@ -64,7 +64,7 @@ class Damping:
         terms = enumerate(self.coefficients, start=1)
         rate = min(((abs(torque) / c) ** (1 / power) for power, c in terms if c > 0), default=math.inf)
         while rate < math.inf:
-            lower = rate - float((self.torque(rate) - abs(torque)) / self.slope(rate))
+            lower = rate - float((self.torque(rate) - abs(torque)) / self.derivative(rate))
             if not lower < rate:
                 break
             rate = lower

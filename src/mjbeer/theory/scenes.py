@@ -19,7 +19,7 @@ def named(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
     @functools.wraps(make)
     def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.store(scene, made_by=(made, arguments, others))
+        require.set_fields(scene, made_by=(made, arguments, others))
         return scene
 
     return made

@@ -204,7 +204,7 @@ def fall_slope(scene: Scene) -> float:
     frozen load on an incline.
     """
     form = scene.oscillator
-    return -math.sqrt(float(form.inertia(scene.separatrix()[1])) / form.crest.curvature)
+    return -math.sqrt(float(form.inertia(scene.separatrix()[1])) / form.potential.curvature)
 
 
 def _fold_exponent() -> float:
@@ -277,10 +277,10 @@ def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator
     x = np.pi / 2 * node
     phi, stretch = rest + amplitude * np.sin(x), amplitude * np.cos(x) * np.pi / 2 * weight
     inertia = oscillator.inertia(phi)
-    inertia_slope = oscillator.chord * np.sin(phi) / 2 + oscillator.swing * np.sin(2 * phi)
+    inertia_slope = oscillator.chord * np.sin(phi) / 2 + oscillator.coupling * np.sin(2 * phi)
     w = 2 * oscillator.drop(phi, rest + amplitude) / inertia
     torque = -oscillator.depth * np.sin(phi - oscillator.bottom)
-    w_slope = (2 * torque + 2 * oscillator.slope - inertia_slope * w) / inertia
+    w_slope = (2 * torque + 2 * oscillator.ramp - inertia_slope * w) / inertia
     gain = timestep / 2 * np.sum(inertia_slope * np.sqrt(np.maximum(w, 0)) * w_slope * stretch)
     return float((-1 if integrator == "implicit" else 1) * gain / oscillator.drop(rest, rest + amplitude))
 
