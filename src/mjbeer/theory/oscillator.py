@@ -25,80 +25,74 @@ from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
 
-TURN = 2 * math.pi
-_SHALLOW = 0.5
-"""Width of a well [rad] below which a turn is reckoned from the steepest place of V, and not from the equilibrium."""
-_GAP = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
-"""Coefficients of (1 - sin(x)/x) / x^2 in -x^2, to rounding up to 1."""
+_SINC_SERIES = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
 
 
 class Potential:
-    """The shape of V = -slope phi - depth cos(phi - bottom) about its crest, for ramp >= 0.
+    """The shape of V = -ramp phi - depth cos(phi - bottom) about its crest, for ramp >= 0.
 
     V falls with growing phi. If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well`
     before it. On a steeper incline V only falls, and its crest is where it falls least; there the well has no width. In
-    both cases the torque downhill at a distance x past the crest is
+    both cases the torque downhill at an angle x past the crest is
 
         -V'(crest + x) = excess + 2 balanced sin^2(x/2) + curvature sin(x).
 
-    Every turn is the same, but lower by `step`. V looks the same upside down: the torque at a distance y past the
-    equilibrium is that at -y past the crest.
+    Every turn is the same, but lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past
+    the equilibrium is that at -y past the crest.
     """
 
     def __init__(self, ramp: float, depth: float, bottom: float) -> None:
         self.ramp, self.depth, self.bottom = ramp, depth, bottom
         self.balanced = min(ramp, depth)
         self.excess = ramp - self.balanced  # torque at the crest, 0 if there is a barrier
-        self.curvature = math.sqrt(depth - self.balanced) * math.sqrt(
-            depth + self.balanced
-        )  # V'' at rest, -V'' at the crest
+        # V'' at rest, and -V'' at the crest:
+        self.curvature = math.sqrt(depth - self.balanced) * math.sqrt(depth + self.balanced)
         # The equilibrium is past the minimum of the cosine by so much, and the crest, less pi, before it.
         self.lean = math.atan2(ramp, self.curvature) if self.curvature > 0 else math.pi / 2
-        self.offset, self.rest = bottom - self.lean, bottom + self.lean
-        self.step = TURN * ramp
+        self.crest_past_pi, self.rest = bottom - self.lean, bottom + self.lean
+        self.drop_per_turn = math.tau * ramp
         self.well = 2 * math.atan2(self.curvature, self.balanced) if self.curvature > 0 else 0.0
-        # A turn begins where no load is slow; to come from there takes `rise` more than to be at the crest [J].
-        self.begins = -math.pi if self.well < _SHALLOW else -self.well
-        self.rise = max(0.0, -float(self.below(self.begins)))
+        # A turn begins where no load is slow: at the equilibrium, or in a narrow well where V is steepest. From there
+        # it may be uphill to the crest, by `highest` [J].
+        self.turn_begins = -math.pi if self.well < 0.5 else -self.well
+        self.highest = max(0.0, -float(self.below(self.turn_begins)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
         """Return V(crest) - V(crest + x) [J] for `x` [rad] of either sign; at x = -y it is V(rest + y) - V(rest)."""
         return self.excess * x + self.balanced * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
 
     def torque(self, x: np.ndarray | float) -> np.ndarray:
-        """Return -V' [N m] at a distance `x` [rad] past the crest."""
+        """Return -V' [N m] at an angle `x` [rad] past the crest."""
         return self.excess + 2 * self.balanced * np.sin(x / 2) ** 2 + self.curvature * np.sin(x)
 
     def mean_torque(self, x: float, length: np.ndarray | float) -> np.ndarray:
         """Return (V(crest + x) - V(crest + x + length)) / length [N m], which is smooth through length 0."""
         middle, half = x + length / 2, length / 2
         flattened = 2 * np.sin(middle / 2) ** 2 + np.cos(middle) * sinc_gap(half)
-        return self.excess + self.balanced * flattened + self.curvature * np.sin(middle) * sinc(half)
+        return self.excess + self.balanced * flattened + self.curvature * np.sin(middle) * (1 - sinc_gap(half))
 
-    def place(self, phi: float) -> tuple[float, float]:
+    def distances(self, phi: float) -> tuple[float, float]:
         """Return how far `phi` [rad], of any size, is past the crest of its turn and past the rest of its well [rad].
 
         The second is counted from the well between that crest and the next one if phi is past the crest.
         """
-        past = math.remainder(_past_pi(phi) - self.offset, TURN)
-        from_rest = math.remainder(reduced(phi) - self.rest, TURN)
-        by_rest = self.well > 0 and abs(from_rest) < abs(past)
-        return self.place_by_rest(from_rest) if by_rest else self.place_by_crest(past)
+        past_crest = math.remainder(_past_pi(phi) - self.crest_past_pi, math.tau)
+        past_rest = math.remainder(reduced(phi) - self.rest, math.tau)
+        if self.well > 0 and abs(past_rest) < abs(past_crest):
+            return self.distances_by_rest(past_rest)
+        past_crest += 0.0 if past_crest >= self.turn_begins else math.tau
+        return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
 
-    def place_by_crest(self, past: float) -> tuple[float, float]:
-        """Return a place by its distance [rad] past a crest, up to a turn beside its own."""
-        past += 0.0 if past >= self.begins else TURN
-        return past, past + self.well if past < 0 else past + (self.well - TURN)
+    def distances_by_rest(self, past_rest: float) -> tuple[float, float]:
+        """Return what `distances` does, by the angle [rad] past the equilibrium of a well."""
+        past_crest = _past_pi(past_rest) + 2 * self.lean
+        return past_crest - (math.tau if past_crest >= self.turn_begins + math.tau else 0.0), past_rest
 
-    def place_by_rest(self, from_rest: float) -> tuple[float, float]:
-        """Return a place by its distance [rad] past the equilibrium of its well."""
-        past = _past_pi(from_rest) + 2 * self.lean
-        return past - (TURN if past >= self.begins + TURN else 0.0), from_rest
-
-    def below_ahead(self, past: float, from_rest: float) -> float:
-        """Return by how much V at a place is below the next crest downhill [J]."""
-        ahead = past if past < 0 else from_rest - self.well
-        return float(self.below(ahead)) if abs(ahead) <= abs(past) else float(self.below(past)) - self.step
+    def below_next_crest(self, past_crest: float, past_rest: float) -> float:
+        """Return by how much V at these `distances` is below the next crest downhill [J]."""
+        ahead = past_crest if past_crest < 0 else past_rest - self.well
+        by_next = abs(ahead) <= abs(past_crest)
+        return float(self.below(ahead)) if by_next else float(self.below(past_crest)) - self.drop_per_turn
 
 
 @dataclass(frozen=True)
@@ -156,15 +150,11 @@ class Oscillator:
         """Return J [kg m^2] at `phi` [rad]."""
         return self.base + self.chord * np.sin(phi / 2) ** 2 + self.coupling * np.sin(phi) ** 2
 
-    def inertia_past_pi(self, x: np.ndarray | float) -> np.ndarray:
-        """Return J [kg m^2] at pi + `x` [rad], where pi need not be added."""
-        return self.base + self.chord * np.cos(x / 2) ** 2 + self.coupling * np.sin(x) ** 2
-
     def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
-        turned = phi - start
+        delta_phi = phi - start
         middle = (phi + start) / 2 - self.bottom
-        return self.ramp * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
+        return self.ramp * delta_phi - 2 * self.depth * np.sin(middle) * np.sin(delta_phi / 2)
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
         """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
@@ -202,11 +192,9 @@ class Oscillator:
     def separatrix(self) -> tuple[float, float]:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
         potential = self.potential
-        barrier = float(
-            potential.below(-potential.well)
-        )  # above the equilibrium; `root` finds where V is as high behind it
-        behind = root(lambda distance: float(potential.below(distance)) - barrier, 0, TURN - potential.well)
-        low, high = potential.rest - behind, math.pi + potential.offset
+        barrier = float(potential.below(-potential.well))  # above the equilibrium, as V is at an angle behind it
+        behind = root(lambda angle: float(potential.below(angle)) - barrier, 0, math.tau - potential.well)
+        low, high = potential.rest - behind, math.pi + potential.crest_past_pi
         return (low, high) if self.sign > 0 else (-high, -low)
 
 
@@ -223,16 +211,11 @@ def reduced(angle: float) -> float:
     return angle if abs(angle) <= math.pi else math.atan2(math.sin(angle), math.cos(angle))
 
 
-def sinc(x: np.ndarray | float) -> np.ndarray:
-    """Return sin(x)/x to full relative precision, at its zeros too, unlike np.sinc."""
-    x = np.where(x == 0, 1e-300, x)
-    return np.sin(x) / x
-
-
 def sinc_gap(x: np.ndarray | float) -> np.ndarray:
-    """Return 1 - sin(x)/x, by its series where the difference would cancel."""
+    """Return 1 - sin(x)/x, up to 1 by its series, as the difference would cancel."""
     square = np.square(np.minimum(np.abs(x), 1))
-    return np.where(np.abs(x) < 1, square * np.polyval(_GAP, -square), 1 - sinc(x))
+    series = square * np.polyval(_SINC_SERIES, -square)
+    return np.where(np.abs(x) < 1, series, 1 - np.sinc(np.divide(x, math.pi)))
 
 
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:
