@@ -14,7 +14,7 @@ from mjbeer import require
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory import motion
 from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping, roots
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
 from mjbeer.theory.oscillator import Oscillator
 
@@ -308,13 +308,15 @@ class Scene:
           DissipationError, NoEquilibriumError: as `terminal_speed`.
         """
         (slip, _, k), tilt, a, mass = self._steady_rolling(), self.terminal_tilt(), self.can.radius, self.effective_mass
-        moment, drag = self.load.moment * math.cos(tilt), 2 * self.drag * a * abs(slip)
-        rub, swinging = float(self.damping_law.derivative(slip)), mass * float(self.oscillator.inertia(tilt))
-        square = (float(self.frozen.inertia(tilt)) * rub / a**2 + self.load.axis_inertia * drag) / swinging
-        linear, constant = (mass * k + rub * drag) / swinging, k * (rub / a**2 + drag) / swinging
-        # By M J_f - N = (M a - P)^2 and M I - N = P^2 this is a sum in which nothing cancels.
-        excess = k * (rub * (mass - moment / a) ** 2 + drag * moment**2) / swinging**2 + rub * drag / swinging * square
-        return roots(square, linear, constant, excess)
+        damping, drag = float(self.damping_law.derivative(slip)) / a**2, 2 * self.drag * a * abs(slip)
+        cubic = mass * float(self.oscillator.inertia(tilt))
+        square = damping * float(self.frozen.inertia(tilt)) + drag * self.load.axis_inertia
+        polynomial = np.array([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)])
+        roots = np.roots(polynomial).astype(complex)
+        for _ in range(2):  # Newton's method, as an eigenvalue is rounded by the largest one
+            steep = np.polyval(np.polyder(polynomial), roots)
+            roots -= np.divide(np.polyval(polynomial, roots), steep, out=np.zeros_like(roots), where=steep != 0)
+        return np.sort_complex(roots)
 
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
