@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
     from mjbeer.model.free import attach, refill
-    from mjbeer.model.state import reset
+    from mjbeer.model.joints import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep import sweep
 
@@ -62,7 +62,7 @@ _LAZY = {
     "build": "mjbeer.model.build",
     "specify": "mjbeer.model.build",
     "export": "mjbeer.model.export",
-    "reset": "mjbeer.model.state",
+    "reset": "mjbeer.model.joints",
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep",

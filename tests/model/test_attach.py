@@ -24,7 +24,7 @@ from mjbeer import (
 )
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
 from mjbeer.model import free
-from mjbeer.model.engine import quiet
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.studies.validation import standing_checks as measured
 from mjbeer.theory.standing import Standing
 from tests.support.scenes import METAL

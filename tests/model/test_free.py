@@ -14,7 +14,7 @@ from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import free, looks, setting
-from mjbeer.model.export import present_standing
+from mjbeer.model.export import standing_viewer_spec
 from mjbeer.model.setting import Setting
 from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
@@ -91,7 +91,7 @@ WRITTEN = 1e-11
 
 def test_the_template_of_a_standing_can_is_the_model() -> None:
     template = mujoco.MjModel.from_xml_path(str(setting.mjcf_folder() / "standing.xml"))
-    made = present_standing(standing(), True, Setting()).compile()
+    made = standing_viewer_spec(standing(), True, Setting()).compile()
     for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority", "geom_condim"):
         if name.startswith("geom"):  # the floor is made last
             pairs = [(getattr(template.geom(each), name[5:]), getattr(made.geom(each), name[5:])) for each in GEOMS]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, sliding
-from mjbeer.model import state
 from mjbeer.model.build import build
-from mjbeer.model.numbers import stiffest
+from mjbeer.model.joints import initial_state, joint_addresses
+from mjbeer.model.mechanics import stiffest
 from mjbeer.model.setting import Integrator, Rolling
 from mjbeer.studies.predictions import soft_rolling
 from mjbeer.studies.predictions.linear_stability import spectral_radius
@@ -28,8 +28,8 @@ ASIDE, CLOSE = 1e-4, 1e-5
 def steady(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     """The state of steady rolling, at the depth at which the can in contact is carried."""
     tilt, speed = scene.terminal_tilt(), scene.terminal_speed()
-    start = settle(model, state.start(model, scene, tilt, 0.0))
-    joints, turning = state.places(model), speed / scene.can.radius
+    start = settle(model, initial_state(model, scene, tilt, 0.0))
+    joints, turning = joint_addresses(model), speed / scene.can.radius
     for name, rate in {"slide": speed, "roll": turning, "swing": -turning}.items():
         if name in joints:
             start[model.nq + joints[name]] = rate
@@ -40,7 +40,7 @@ def step_of_mujoco(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     """The derivatives of the state after a step by the state before it; the can stays within a tenth of its depth."""
     rest, data, size = steady(model, scene), mujoco.MjData(model), model.nq
     asides = np.full(2 * size, ASIDE)
-    if (lift := state.places(model).get("lift")) is not None:
+    if (lift := joint_addresses(model).get("lift")) is not None:
         asides[:] = 1e-6  # friction must stay within its cone
         asides[lift] = -rest[lift] / 50
         asides[size + lift] = asides[lift] / model.opt.timestep
@@ -65,10 +65,10 @@ def step_of_theory(model: mujoco.MjModel, scene: Scene, rolling: Rolling, integr
     elif rolling == "equality":
         system = soft_rolling.by_equality(scene, excess=0.0, angle=tilt)
     else:
-        depth = -steady(model, scene)[state.places(model)["lift"]]
+        depth = -steady(model, scene)[joint_addresses(model)["lift"]]
         system = soft_rolling.by_contact(scene, depth, 2, float(model.opt.impratio), tilt)
     unit = np.repeat([1.0, TIMESTEP], model.nq)
-    joints = state.places(model)
+    joints = joint_addresses(model)
     order = [system.coordinates.index(joint) for joint in sorted(joints, key=joints.__getitem__)]
     both = [*order, *(model.nq + place for place in order)]
     return (system.step(integrator, row, TIMESTEP) * unit / unit[:, None])[np.ix_(both, both)]

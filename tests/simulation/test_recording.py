@@ -8,7 +8,7 @@ import pytest
 from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import build
-from mjbeer.model.state import start
+from mjbeer.model.joints import initial_state
 from mjbeer.simulation.smooth_recorder import _NAMES, SmoothRecorder
 from mjbeer.simulation.stepping import Recorder
 from mjbeer.simulation.tolerance import _longest, even_at_most
@@ -22,7 +22,7 @@ def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
     model, recorders = build(scene), (SmoothRecorder(scene, friction), Recorder(build(scene), scene, friction))
 
     times = np.arange(0, 1.5, 1e-3)
-    states = GaussJackson(model).run(start(model, scene, 2.5, 3.0), times, 1e-3, even_at_most(scene))
+    states = GaussJackson(model).run(initial_state(model, scene, 2.5, 3.0), times, 1e-3, even_at_most(scene))
     for piece in np.array_split(np.arange(len(times)), 3):
         for recorder in recorders:
             recorder(times[piece], states[piece])

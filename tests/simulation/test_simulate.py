@@ -15,7 +15,7 @@ from mjbeer.cli.app import parse
 from mjbeer.cli.motions import trajectory_of
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
 from tests.support import damped_motion
@@ -240,13 +240,13 @@ def test_the_estimate_of_a_contact_has_all_of_its_errors(
 
 
 def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    run, solve = simulate(frozen(), 0.1, 1.0), Prepared.solve
+    run, solve = simulate(frozen(), 0.1, 1.0), Simulator.solve
 
-    def diverge(self: Prepared, start: np.ndarray, times: np.ndarray) -> None:
+    def diverge(self: Simulator, start: np.ndarray, times: np.ndarray) -> None:
         solve(self, start, times)
         raise DivergenceError("its state is no longer finite")
 
-    monkeypatch.setattr(Prepared, "solve", diverge)
+    monkeypatch.setattr(Simulator, "solve", diverge)
     assert run.error_estimate == math.inf
     assert run.warnings == ("a run at other timesteps diverges: take a much smaller timestep or a better integrator",)
 

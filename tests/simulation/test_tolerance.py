@@ -16,7 +16,7 @@ from mjbeer.exceptions import ParameterError, ToleranceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.model.build import build
-from mjbeer.model.state import read
+from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
 from mjbeer.theory.damping import Damping
@@ -307,10 +307,13 @@ def test_the_distance_of_two_runs_is_that_of_their_motions(scene: Scene) -> None
     size, start = 2 * model.nv, random.normal(size=2 * model.nv)
     fine = start + np.cumsum(random.normal(size=(50, size)), axis=0)
     coarse = fine + 1e-3 * random.normal(size=(50, size))
-    solver = tolerances.Solver(model, scene, Dynamics(model))
-    begin = read(model, scene, start[None], np.zeros(1))
+    solver = tolerances.ToleranceLoop(model, scene, Dynamics(model))
+    begin = to_coordinates(model, scene, start[None], np.zeros(1))
     apart = distance(
-        read(model, scene, coarse, times), read(model, scene, fine, times), scene.can.radius, (begin.phi[0], begin.u[0])
+        to_coordinates(model, scene, coarse, times),
+        to_coordinates(model, scene, fine, times),
+        scene.can.radius,
+        (begin.phi[0], begin.u[0]),
     )
     rounding = 1e-10  # of angles that are ten thousand times as large as what they differ by
     assert tolerances._distance(solver._angles, coarse, fine, start) == pytest.approx(apart, rel=rounding)

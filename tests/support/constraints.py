@@ -3,8 +3,8 @@
 import mujoco
 import numpy as np
 
-from mjbeer.model.engine import quiet
-from mjbeer.model.state import places
+from mjbeer.model.joints import joint_addresses
+from mjbeer.model.mujoco_library import quiet
 
 
 def applied_share(model: mujoco.MjModel, state: np.ndarray) -> float | None:
@@ -31,7 +31,7 @@ def settle(model: mujoco.MjModel, at: np.ndarray) -> np.ndarray:
     A model without a lift gets its state back. The contact force is linear in the depth, so that two trials give the
     wanted depth.
     """
-    if "lift" not in (joints := places(model)):
+    if "lift" not in (joints := joint_addresses(model)):
         return at
     index = joints["lift"]
     data, balanced = mujoco.MjData(model), at.copy()

@@ -137,7 +137,7 @@ def simulated(motion: Trajectory, setting: Setting, estimate: float) -> Run:
     """A motion as if it had been simulated in a setting."""
     values = {field.name: getattr(motion, field.name) for field in fields(motion)}
     solution = Solution(np.zeros((0, 0)), motion.record, estimate)
-    return Run(**values, setting=setting, solution=solution, spread=motion)
+    return Run(**values, setting=setting, solution=solution, checkpoints=motion)
 
 
 def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:

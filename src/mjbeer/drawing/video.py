@@ -75,7 +75,7 @@ def write(
     plan: RenderPlan, path: pathlib.Path, width: int, height: int, fps: float, seen: Callable[[np.ndarray], None]
 ) -> None:
     """Write a film as a video, as `render` does, and call `seen` with each picture."""
-    with files.whole(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
+    with files.atomic_write(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
 
         def watched() -> Iterator[np.ndarray]:
             for picture in pictures:

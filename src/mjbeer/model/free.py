@@ -19,7 +19,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
-from mjbeer.model import looks, mechanics, numbers
+from mjbeer.model import looks, mechanics, mjcf_file
 from mjbeer.model.setting import INTEGRATORS, Integrator, mjcf_folder
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
@@ -114,7 +114,7 @@ def attach(
     if isinstance(can, Scene):
         kind = _KINDS(parent.option.integrator).name.removeprefix("mjINT_")
         integrator = next(each for each in INTEGRATORS if each.upper() == kind)
-        touching.solref = [numbers.stiffest(integrator, parent.option.timestep, contact=True), 1]
+        touching.solref = [mechanics.stiffest(integrator, parent.option.timestep, contact=True), 1]
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
     root = child.body("can")
     root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
@@ -143,7 +143,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     if isinstance(can, Scene):
         spec, drawn = _lying(can, visuals=False), {}
     else:
-        spec, drawn = _standing(require.instance("can", can, Standing), visuals=False), looks.column(can)
+        spec, drawn = _standing(require.instance("can", can, Standing), visuals=False), looks.beer_column(can)
     _require_parts(model, prefix, spec, can)
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
@@ -245,7 +245,7 @@ def _shares(can: Standing) -> np.ndarray:
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
 
 
-def compose(
+def standing_spec(
     can: Standing,
     visuals: bool,
     free: bool,
@@ -267,7 +267,7 @@ def _standing(
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
     root, path = _read("standing", folder or mjcf_folder())
     if not free:
-        mechanics.remove(root, "freejoint", "geom[@name='surface']")
+        mjcf_file.remove(root, "freejoint", "geom[@name='surface']")
     parents = [*root.iterfind(".//body[@name='can']"), *root.iterfind("sensor")]
     first = [(parent, each) for parent in parents for each in parent if "slosh1" in each.get("name", "")]
     for mode in range(2, can.modes + 1):
@@ -276,12 +276,12 @@ def _standing(
     if can.modes == 0:
         for parent, each in first:
             parent.remove(each)
-    mechanics.write(root, standing_values(can), path)
+    mjcf_file.write(root, standing_values(can), path)
     if visuals:
-        looks.dress(root, "standing")
-    spec = mechanics.to_spec(root, path)
+        looks.include_looks(root, "standing")
+    spec = mjcf_file.to_spec(root, path)
     if visuals:
-        looks.fit_upright(spec, can, path.parents[1])
+        looks.fit_to_standing(spec, can, path.parents[1])
     return spec
 
 
@@ -289,30 +289,30 @@ def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a lying can, which has no free joint yet."""
     values = lying_values(scene)
     root, path = _read("lying", mjcf_folder())
-    mechanics.remove(root, "freejoint")
+    mjcf_file.remove(root, "freejoint")
     if scene.attachment == "frozen":
-        mechanics.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
+        mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
     values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
-    mechanics.write(root, values, path)
+    mjcf_file.write(root, values, path)
     if visuals:
-        looks.dress(root, looks.name(scene))
-    spec = mechanics.to_spec(root, path)
+        looks.include_looks(root, looks.name(scene))
+    spec = mjcf_file.to_spec(root, path)
     if visuals:
-        looks.fit(spec, scene, path.parents[1])
+        looks.fit_to_scene(spec, scene, path.parents[1])
     return spec
 
 
 def _read(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:
     """Return a mechanics file without keyframes, and its path; numbers that somebody has changed are an error."""
     path = folder / "mechanics" / f"{name}.xml"
-    root = mechanics.read(path)
-    if edited := mechanics.differences(root, _paper(name)):
+    root = mjcf_file.read(path)
+    if edited := mjcf_file.differences(root, _paper(name)):
         raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
-    mechanics.remove(root, "keyframe")
+    mjcf_file.remove(root, "keyframe")
     return root, path
 
 
-def standing_values(can: Standing) -> mechanics.Values:
+def standing_values(can: Standing) -> mjcf_file.Parameters:
     """Return the parameters of a standing can, in whose file the origin is the middle of the inside of the bottom.
 
     What does not slosh is the body "liquid". Each mode is a body "slosh1", "slosh2" ... on a ball joint of its name.
@@ -320,7 +320,7 @@ def standing_values(can: Standing) -> mechanics.Values:
     """
     shell, half = can.can, can.can.length / 2
     across = transverse_inertia(shell)
-    found: mechanics.Values = {
+    found: mjcf_file.Parameters = {
         ("option", "gravity"): (0, 0, -can.gravity),
         ("geom can", "size"): (shell.radius, half),
         ("geom can", "pos"): (0, 0, half),
@@ -348,14 +348,14 @@ def standing_values(can: Standing) -> mechanics.Values:
     return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
 
 
-def lying_values(scene: Scene) -> mechanics.Values:
+def lying_values(scene: Scene) -> mjcf_file.Parameters:
     """Return the parameters of a lying can, in whose file the origin is on the axis."""
     shell, beer = scene.can, scene.load
     if beer.fill is None:
         raise UnsupportedError(f"a can that is free in space has beer in it, got a load without a fill: {scene!r}")
     if scene.drag > 0:
         raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
-    found: mechanics.Values = {("geom can", "size"): (shell.radius, shell.length / 2)}
+    found: mjcf_file.Parameters = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
         if shell.mass == 0 or shell.inertia == 0:
             raise UnsupportedError(
@@ -372,12 +372,12 @@ def lying_values(scene: Scene) -> mechanics.Values:
 
 
 @functools.cache
-def _paper(name: str) -> mechanics.Values:
+def _paper(name: str) -> mjcf_file.Parameters:
     """Return the parameters that a file has as it stands."""
     return lying_values(sliding(can=Can.sheet_metal())) if name == "lying" else standing_values(standing())
 
 
-def _inertial(body: str, mass: float, height: float, inertia: tuple[float, ...]) -> mechanics.Values:
+def _inertial(body: str, mass: float, height: float, inertia: tuple[float, ...]) -> mjcf_file.Parameters:
     name = f"inertial {body}"
     return {(name, "mass"): (mass,), (name, "pos"): (0, 0, height), (name, "diaginertia"): inertia}
 

@@ -112,7 +112,7 @@ def chart(
         named = {"Title": title, "Description": subtitle} if used else dict.fromkeys(("Creator", "Format", "Type"))
         file = io.StringIO()
         figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata={"Date": None, **named})
-        svg = _lighter(file.getvalue())
+        svg = _minify_svg(file.getvalue())
         if isinstance(path, Picture):
             path.title, path.subtitle, path.width, path.svg = title, subtitle, width, svg[svg.index("<svg") :]
         else:
@@ -137,7 +137,7 @@ def ticks(axis: Axis, values: Sequence[float]) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def tell(line: Line2D, texts: Sequence[str]) -> None:
+def add_tooltips(line: Line2D, texts: Sequence[str]) -> None:
     """Let each point of a line with markers tell a text of one line where a pointer rests on it, in the SVG."""
     line.set_gid(_TOLD + "\n".join(texts))
 
@@ -155,7 +155,7 @@ def _power(value: float, _: int | None) -> str:
     return "10" + str(round(math.log10(value))).translate(_RAISED)
 
 
-def _lighter(svg: str) -> str:
+def _minify_svg(svg: str) -> str:
     """Return an SVG without what costs room: digits below hundredths of a point, fonts and styles said again and again.
 
     Names that nothing refers to go too: on a page with several plots, all would have the same.

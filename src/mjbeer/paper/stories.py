@@ -220,7 +220,7 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     orders = films(folder) if filmed else []
     missing = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
     files.make_folder(folder)
-    with files.whole(folder / "stories.md") as summary:
+    with files.atomic_write(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
         letters = pathlib.Path(__file__).with_name("letters.svg")
         files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))

@@ -12,9 +12,9 @@ from mjbeer.integrators.dynamics import Dynamics, compiled
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.integrators.uneven_time import OwnTime, own_time
 from mjbeer.model import check
-from mjbeer.model.engine import LARGEST
+from mjbeer.model.joints import joint_addresses, to_coordinates
+from mjbeer.model.mujoco_library import LARGEST
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
-from mjbeer.model.state import places, read
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.stepping import Recorder, Solution
 from mjbeer.theory.equations import relaxation_rate
@@ -113,12 +113,12 @@ _TRIES = 3
 """Largest number of finer runs of Gauss-Jackson."""
 
 
-class Solver:
+class ToleranceLoop:
     """A model of a scene, set up to be integrated to global tolerances."""
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics) -> None:
         self._model, self._scene, self._dynamics = model, scene, dynamics
-        self._scale, joints, radius = scales(model, scene), places(model), scene.can.radius
+        self._scale, joints, radius = scales(model, scene), joint_addresses(model), scene.can.radius
         parts = {"slide": (0.0, 1 / radius), "lift": (0.0, 0.0)}  # phi and u/a are sums of components of the state
         angle = 1.0, 0.0 if "slide" in joints else 1.0
         self._angles = np.array([parts.get(name, angle) for name in joints] + [(0.0, 0.0)] * model.nv)
@@ -252,9 +252,9 @@ class Solver:
         """Return the error [rad] that a joint equality makes whose sums lose what moves the load, in all runs alike."""
         if not self._model.neq:
             return 0.0
-        motion = read(self._model, self._scene, found.states, times)
+        motion = to_coordinates(self._model, self._scene, found.states, times)
         assert found.record is not None
-        lost = check.lost(self._model, self._scene, motion, found.record, exact_constraint=True)
+        lost = check.rounding_error(self._model, self._scene, motion, found.record, exact_constraint=True)
         if lost > tolerance:
             raise _not_reached(
                 tolerance,
@@ -363,6 +363,6 @@ def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
     """
     radius = scene.can.radius
-    positions = [radius if name in ("slide", "lift") else 1.0 for name in places(model)]
+    positions = [radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)]
     rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
     return np.array([*positions, *(rate * each for each in positions)])

@@ -415,7 +415,7 @@ def _netcdf(path: str | os.PathLike[str]) -> pathlib.Path:
 
 def _save(found: "xarray.Dataset", path: pathlib.Path) -> None:
     """Write a sweep as NetCDF, whole or not at all."""
-    with files.whole(path) as temporary:
+    with files.atomic_write(path) as temporary:
         found.to_netcdf(temporary, engine="scipy")
 
 

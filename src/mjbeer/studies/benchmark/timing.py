@@ -15,10 +15,10 @@ from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
+from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
-from mjbeer.model.state import read, start
 from mjbeer.output.terminal import progress_bar
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
@@ -121,16 +121,16 @@ class Rung:
         if point.model in USUAL:
             model = usual_model(point.model, case.scene)
             stepper, steps = Stepper(model), np.rint(case.times / value).astype(np.int64)
-            begin = start(model, case.scene, case.phi0, 0.0)
+            begin = initial_state(model, case.scene, case.phi0, 0.0)
             solve = lambda: stepper.run(begin, steps)  # noqa: E731
         else:
-            prepared = Prepared(case.scene, point.curve.setting(value))
+            prepared = Simulator(case.scene, point.curve.setting(value))
             model, begin = prepared.model, prepared.start(case.phi0, 0.0)
             solve = lambda: prepared.solve(begin, case.times).states  # noqa: E731
         self.solve = solve
 
         def run() -> Motion:
-            motion = read(model, case.scene, solve(), case.times)
+            motion = to_coordinates(model, case.scene, solve(), case.times)
             return motion.phi, motion.u, None
 
         self.run: Callable[[], Motion] = run

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
-from mjbeer.output.plots import COLOURS, chart, name_below, tell
+from mjbeer.output.plots import COLOURS, add_tooltips, chart, name_below
 from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
 
 _DARK, _GREY, _PALE = "#333333", "#777777", "#A0A0A0"
@@ -65,7 +65,7 @@ def _draw(axes: Axes, found: Sequence[Point]) -> None:
             times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
             size = 5 if curve else 10
             (drawn,) = axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)
-            tell(drawn, [_told(point, name) for point in shown])
+            add_tooltips(drawn, [_told(point, name) for point in shown])
 
 
 def _told(point: Point, name: str) -> str:

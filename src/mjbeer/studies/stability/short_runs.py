@@ -14,9 +14,9 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.model.build import build, specify
-from mjbeer.model.numbers import stiffest
+from mjbeer.model.joints import joint_addresses
+from mjbeer.model.mechanics import stiffest
 from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting
-from mjbeer.model.state import places
 from mjbeer.simulation.run import integrate
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.predictions import linear_stability, soft_constraint, soft_rolling
@@ -96,7 +96,7 @@ class Swings:
                 constraint.solimp[:2] = _IMPEDANCE
             self._model = spec.compile()
         self._start = np.zeros(self._model.nq + self._model.nv)
-        for name, at in places(self._model).items():
+        for name, at in joint_addresses(self._model).items():
             self._start[at] = _SWING * (radius * (1 + _SEED) if name == "slide" else 1.0)
 
     def measure(self, timestep: float) -> int:
@@ -135,7 +135,7 @@ class Swings:
         return max(_STEPS, math.ceil(math.pi / (self._frequency * timestep)))
 
     def _judge(self, states: np.ndarray, timestep: float) -> int:
-        count, joints = self._model.nq, places(self._model)
+        count, joints = self._model.nq, joint_addresses(self._model)
         with np.errstate(invalid="ignore"):
             if not (np.abs(states[:, :count]) < GROWTH * self._start[:count]).all():
                 return EXPLODED

@@ -12,7 +12,7 @@ from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, Setti
 from mjbeer.paper.frozen import equilibrium_53, frequency_55
 from mjbeer.paper.sliding import frequency_10
 from mjbeer.paper.witness import TOP, fall_from_top
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
@@ -250,7 +250,7 @@ def _drift(scene: Scene, integrator: Integrator, steps: int, swings: int = 1000)
     period, window = scene.period(1.0), np.arange(steps)
     counts = np.unique(np.rint(np.geomspace(1, swings, 1 + round(8 * math.log10(swings)))).astype(int))
     samples = np.unique(np.concatenate([window, *(steps * count + window for count in counts)]))
-    prepared = Prepared(scene, Setting(integrator=integrator, timestep=period / steps))
+    prepared = Simulator(scene, Setting(integrator=integrator, timestep=period / steps))
     times = period / steps * samples
     start = prepared.start(scene.equilibrium() + 1.0, 0.0)
     motion, form = prepared.coordinates(prepared.solve(start, times).states, times), scene.oscillator

@@ -10,8 +10,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.checks import Check
 from mjbeer.model.build import build
-from mjbeer.model.engine import quiet
 from mjbeer.model.free import attach, transverse_inertia
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import MujocoIntegrator
 from mjbeer.studies import attached_can
 from mjbeer.theory.can import Can
