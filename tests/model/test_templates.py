@@ -155,10 +155,9 @@ def fits(name: str, files: str) -> bool:
 # What is missing
 
 
-def test_no_mjcf_at_all(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(setting, "FOLDERS", (tmp_path / "wheel", tmp_path / "checkout"))
-    with pytest.raises(TemplateError, match=r"no MJCF: neither .*wheel nor .*checkout holds it; reinstall"):
-        simulate(frozen(), 0.1, 1.0)
+def test_no_mjcf_at_all(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(TemplateError, match=r"no MJCF in .*package; reinstall mjbeer"):
+        setting._installed_folder(tmp_path / "checkout" / "src" / "package" / "model" / "setting.py")
 
 
 @pytest.mark.parametrize("file", ["mechanics/frozen_reduced.xml", "looks/board.xml"])

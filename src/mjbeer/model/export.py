@@ -9,13 +9,19 @@ import mujoco
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
 from mjbeer.model import looks, setting
-from mjbeer.model.build import START, add_start, compile_spec, edited, require_defaults, require_rolling, rolling_spec
+from mjbeer.model.build import (
+    START,
+    add_start,
+    compile_spec,
+    mechanics_fault,
+    require_defaults,
+    require_rolling,
+    rolling_spec,
+)
 from mjbeer.model.free import standing_spec
-from mjbeer.model.joints import initial_coordinates
 from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import Setting
 from mjbeer.output import files
-from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import QUANTITATIVE, Standing
 
@@ -107,13 +113,11 @@ def viewer_spec(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mu
     The errors are those of `build` with `visuals`.
     """
     spec = rolling_spec(scene, made, visuals=True)
-    u = scene.start(phi0, phi_dot0)[0]
-    # The board is for ten seconds. Beyond 1e5 radii single precision draws a can a percent of its radius off its place.
-    way = min(farthest(scene, phi0, phi_dot0, 10.0), 1e5 * scene.can.radius)
-    looks.lengthen_board(spec, scene, u - way, u + way)
+    u, far = scene.start(phi0, phi_dot0)[0], 1e4 * scene.can.radius  # a can of 33 mm takes 20 s for it on 10 degrees
+    looks.lengthen_board(spec, scene, u - far, u + far)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec)
-    if fault := edited(scene, made, model):
+    if fault := mechanics_fault(scene, made, model):
         raise TemplateError(fault)
     spec.visual.global_.cameraid = model.camera(CAMERA).id
     return spec
@@ -124,7 +128,7 @@ def standing_viewer_spec(can: Standing, free: bool, made: Setting) -> mujoco.MjS
 
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
-    spec = standing_spec(can, True, free, made.integrator, made.timestep, made.mjcf)
+    spec = standing_spec(can, made, visuals=True, free=free)
     spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
     if not free:
         return spec
@@ -138,19 +142,6 @@ def standing_viewer_spec(can: Standing, free: bool, made: Setting) -> mujoco.MjS
         spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
     spec.add_key(name="fall", qpos=[0, 0, above, *leaning, *rest])
     return spec
-
-
-def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> float:
-    """Return a distance that the axis does not exceed within a `duration` [s], from its start uphill or downhill [m].
-
-    The centre of mass is within m b/m_t of the axis, and has m_t v^2/2 <= E + m_t g s sin(alpha), where E is the
-    kinetic energy of the start and what the load gains in half a turn: s <= sqrt(2 E/m_t) t + g sin(alpha) t^2/2.
-    """
-    energy = (
-        float(kinetic_energy(scene, initial_coordinates(scene, phi0, phi_dot0))) + 2 * scene.load.moment * scene.gravity
-    )
-    fallen = scene.gravity * abs(math.sin(scene.incline)) * duration**2 / 2
-    return math.sqrt(2 * energy / scene.mass) * duration + fallen + 2 * scene.load.moment / scene.mass
 
 
 def _text(spec: mujoco.MjSpec) -> str:
@@ -195,15 +186,15 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
         if light.get("type") == "directional":
             del light.attrib["type"]
             light.set("directional", "true")
-    _dissolve(root, model)
+    _dissolve_frames(root, model)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _dissolve(parent: ET.Element, model: mujoco.MjModel) -> None:
+def _dissolve_frames(parent: ET.Element, model: mujoco.MjModel) -> None:
     """Replace frames, down the tree, by what is in them, at the places in its body that the compiled model has."""
     for child in list(parent):
-        _dissolve(child, model)
+        _dissolve_frames(child, model)
         if child.tag == "frame":
             for element in child:
                 there = getattr(model, element.tag)(element.get("name"))

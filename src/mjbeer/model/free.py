@@ -8,7 +8,6 @@ cylinder.
 
 import functools
 import math
-import os
 import pathlib
 import warnings
 import xml.etree.ElementTree as ET
@@ -20,7 +19,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mechanics, mjcf_file
-from mjbeer.model.setting import INTEGRATORS, Integrator, mjcf_folder
+from mjbeer.model.setting import INTEGRATORS, Setting, mjcf_folder
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
 from mjbeer.theory.scene import Scene
@@ -100,7 +99,7 @@ def attach(
     if friction is not None and not 1 <= len(coefficients) <= 3:
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
     lying = isinstance(can, Scene)
-    child = _lying(can) if lying else _standing(require.instance("can", can, Standing))
+    child = _lying_spec(can) if lying else _standing_spec(require.instance("can", can, Standing))
     option = parent.option
     if option.cone == _CONES.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
@@ -108,7 +107,7 @@ def attach(
         option.impratio = child.option.impratio
     if lying and option.integrator == _KINDS.mjINT_EULER:
         option.integrator = child.option.integrator
-    reasons = [*_spoilt(parent.option, can), *_bounded(parent.compiler, child)]
+    reasons = _spoiling_options(parent.option, can)
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
     if isinstance(can, Scene):
@@ -141,9 +140,9 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     if not (isinstance(prefix, str) and prefix.isprintable()):
         raise ParameterError(f"prefix must be a text that can be printed, got {require.format_value(prefix)}")
     if isinstance(can, Scene):
-        spec, drawn = _lying(can, visuals=False), {}
+        spec, drawn = _lying_spec(can, visuals=False), {}
     else:
-        spec, drawn = _standing(require.instance("can", can, Standing), visuals=False), looks.beer_column(can)
+        spec, drawn = _standing_spec(require.instance("can", can, Standing), visuals=False), looks.beer_column(can)
     _require_parts(model, prefix, spec, can)
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
@@ -164,7 +163,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
             geom = model.geom(f"{prefix}{name}")
             geom.pos[2], geom.size[1] = (low + high) / 2, (high - low) / 2
     mujoco.mj_setConst(model, mujoco.MjData(model))  # which it takes as its workspace
-    if reasons := _spoilt(model.opt, can):
+    if reasons := _spoiling_options(model.opt, can):
         warnings.warn(f"the model's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
 
 
@@ -183,10 +182,10 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
         )
 
 
-def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
+def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     """Return what a world's options spoil."""
     reasons, size = [], float(np.linalg.norm(option.gravity))
-    explicit, decay = option.integrator == _KINDS.mjINT_RK4, _decay(can)
+    explicit, decay = option.integrator == _KINDS.mjINT_RK4, _fastest_decay(can)
     if isinstance(can, Scene):
         if not explicit:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
@@ -209,21 +208,7 @@ def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     return reasons
 
 
-def _bounded(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str]:
-    """Return what a parent's compiler does to the masses of a can."""
-    reasons, moving = [], [body for body in child.bodies if body.mass > 0]
-    if compiler.settotalmass > 0:
-        reasons.append("settotalmass scales its masses")
-    for name, least in (
-        ("boundmass", min(body.mass for body in moving)),
-        ("boundinertia", min(min(body.inertia) for body in moving)),
-    ):
-        if getattr(compiler, name) > least:
-            reasons.append(f"{name} raises what is less, from {least:.2g} on, once the world is saved and read again")
-    return reasons
-
-
-def _decay(can: Standing | Scene) -> float:
+def _fastest_decay(can: Standing | Scene) -> float:
     """Return the largest rate [1/s] at which damping slows a spin, of a bob or of a can that turns around its load.
 
     Where damping grows with the rate, it is that at the frequency of the first mode, or at sqrt(g/a): thrown at 1 m/s,
@@ -237,31 +222,24 @@ def _decay(can: Standing | Scene) -> float:
     if can.modes == 0:
         return 0.0
     ratios, omega = can.damping_ratios(), can.frequencies()
-    return float(np.max(2 * (ratios * omega + _BREAKING * omega[0] ** 2 / omega) / _shares(can)))
+    return float(np.max(2 * (ratios * omega + _BREAKING * omega[0] ** 2 / omega) / _bob_shares(can)))
 
 
-def _shares(can: Standing) -> np.ndarray:
+def _bob_shares(can: Standing) -> np.ndarray:
     """Return the share of each pendulum's inertia that its bob has about itself."""
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
 
 
-def standing_spec(
-    can: Standing,
-    visuals: bool,
-    free: bool,
-    integrator: Integrator,
-    timestep: float,
-    mjcf: str | os.PathLike[str] | None = None,
-) -> mujoco.MjSpec:
+def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
     """Return the specification of a standing can: on the floor if it is `free`, or else held by the world."""
-    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free), mjcf_folder(mjcf))
-    integrator = require.choice("integrator", integrator, INTEGRATORS)
+    integrator = require.choice("integrator", setting.integrator, INTEGRATORS)
+    spec = _standing_spec(can, visuals, free, setting.folder)
     spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
-    spec.option.timestep = require.within("timestep", timestep, *require.TIMESTEP, "s")
+    spec.option.timestep = setting.timestep
     return spec
 
 
-def _standing(
+def _standing_spec(
     can: Standing, visuals: bool = True, free: bool = False, folder: pathlib.Path | None = None
 ) -> mujoco.MjSpec:
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
@@ -276,7 +254,7 @@ def _standing(
     if can.modes == 0:
         for parent, each in first:
             parent.remove(each)
-    mjcf_file.write(root, standing_values(can), path)
+    mjcf_file.write(root, standing_parameters(can), path)
     if visuals:
         looks.include_looks(root, "standing")
     spec = mjcf_file.to_spec(root, path)
@@ -285,9 +263,9 @@ def _standing(
     return spec
 
 
-def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
+def _lying_spec(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a lying can, which has no free joint yet."""
-    values = lying_values(scene)
+    values = lying_parameters(scene)
     root, path = _read("lying", mjcf_folder())
     mjcf_file.remove(root, "freejoint")
     if scene.attachment == "frozen":
@@ -306,13 +284,13 @@ def _read(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:
     """Return a mechanics file without keyframes, and its path; numbers that somebody has changed are an error."""
     path = folder / "mechanics" / f"{name}.xml"
     root = mjcf_file.read(path)
-    if edited := mjcf_file.differences(root, _paper(name)):
+    if edited := mjcf_file.differences(root, _paper_parameters(name)):
         raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
     mjcf_file.remove(root, "keyframe")
     return root, path
 
 
-def standing_values(can: Standing) -> mjcf_file.Parameters:
+def standing_parameters(can: Standing) -> mjcf_file.Parameters:
     """Return the parameters of a standing can, in whose file the origin is the middle of the inside of the bottom.
 
     What does not slosh is the body "liquid". Each mode is a body "slosh1", "slosh2" ... on a ball joint of its name.
@@ -331,7 +309,7 @@ def standing_values(can: Standing) -> mjcf_file.Parameters:
     lengths = can.gravity / can.frequencies() ** 2
     critical = 2 * can.frequencies() * can.slosh_masses() * lengths**2
     dampers = can.damping_ratios() * critical, _BREAKING / can.frequencies() ** 2 * critical
-    parts = can.slosh_masses(), lengths, can.pivots(), *dampers, can.elevations(), _shares(can)
+    parts = can.slosh_masses(), lengths, can.pivots(), *dampers, can.elevations(), _bob_shares(can)
     for number, each in enumerate(zip(*map(np.ndarray.tolist, parts), strict=True), 1):
         mass, length, pivot, damper, cubic, rise, share = each
         name, own = f"slosh{number}", share * mass * length**2
@@ -348,7 +326,7 @@ def standing_values(can: Standing) -> mjcf_file.Parameters:
     return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
 
 
-def lying_values(scene: Scene) -> mjcf_file.Parameters:
+def lying_parameters(scene: Scene) -> mjcf_file.Parameters:
     """Return the parameters of a lying can, in whose file the origin is on the axis."""
     shell, beer = scene.can, scene.load
     if beer.fill is None:
@@ -372,9 +350,9 @@ def lying_values(scene: Scene) -> mjcf_file.Parameters:
 
 
 @functools.cache
-def _paper(name: str) -> mjcf_file.Parameters:
+def _paper_parameters(name: str) -> mjcf_file.Parameters:
     """Return the parameters that a file has as it stands."""
-    return lying_values(sliding(can=Can.sheet_metal())) if name == "lying" else standing_values(standing())
+    return lying_parameters(sliding(can=Can.sheet_metal())) if name == "lying" else standing_parameters(standing())
 
 
 def _inertial(body: str, mass: float, height: float, inertia: tuple[float, ...]) -> mjcf_file.Parameters:

@@ -56,7 +56,7 @@ def initial_state(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: fl
 
 
 def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
-    """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion: the inverse of `read`."""
+    """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion."""
     values, states = _values(motion), np.zeros((len(motion.time), model.nq + model.nv))
     for name, place in joint_addresses(model).items():
         states[:, place], states[:, model.nq + place] = values[name]

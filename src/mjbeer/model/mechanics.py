@@ -1,6 +1,6 @@
 """A scene in a setting as MuJoCo's numbers: which mechanics file a model is read from, and what is written into it.
 
-Models of one `kind` have the same elements and differ in numbers alone. `Mechanics.parameters` has these numbers by
+Models of one `structure` have the same elements and differ in numbers alone, which `Mechanics.parameters` has by
 element and attribute of MJCF, as `mjcf/README.md` lists them.
 """
 
@@ -12,7 +12,7 @@ from typing import NamedTuple, TypeAlias
 
 from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.mjcf_file import Parameters
-from mjbeer.model.setting import DOP853, OWN, Setting, mjcf_folder
+from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.theory.scene import Scene
 
 Structure: TypeAlias = tuple[Hashable, ...]
@@ -93,11 +93,17 @@ class Mechanics:
         """Return the name of the mechanics file, without its folder and ending."""
         return f"{self.scene.attachment}_{self.setting.rolling}"
 
+    @property
+    def acting(self) -> tuple[str, ...]:
+        """Return the names of the tendons and the actuators that exert a force."""
+        damped = self.scene.damping_law and self.setting.rolling == "reduced"
+        acting = {"weight": self.force != 0, "chord": self.chord > 0, "damper": damped}
+        return tuple(name for name, acts in acting.items() if acts)
+
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        forces = self.force != 0, self.chord > 0, bool(self.scene.damping_law), self.scene.dissipates
-        return mjcf_folder(self.setting.mjcf), self.file, *forces
+        return self.setting.folder, self.file, self.acting, self.scene.dissipates
 
     @cached_property
     def parameters(self) -> Parameters:

@@ -5,7 +5,7 @@ import functools
 import math
 import pathlib
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any, TypeAlias
 
 import mujoco
@@ -15,10 +15,6 @@ from mjbeer.exceptions import TemplateError
 
 Parameters: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
 """Numbers by element and attribute, as `Mechanics.parameters`."""
-_STAGES = {"spring": ("stiffness", "springdamper"), "damper": ("damping", "springdamper")}
-"""Stages of a step, and the attributes that a model needs them for."""
-_FORCELESS = {"fixed": ("name",), "spatial": ("name", "rgba"), "general": ("name", "joint", "biastype")}
-"""What a tendon or actuator may have besides numbers that are 0, if it exerts no force."""
 
 
 def read(path: pathlib.Path) -> ET.Element:
@@ -88,42 +84,25 @@ def remove(root: ET.Element, *elements: str) -> None:
                 parent.remove(each)
 
 
-def leave_out(root: ET.Element) -> None:
-    """Take from a tree what only is seen or measured, and disable the stages of a step that it does not need."""
+def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> None:
+    """Take from a tree what only is seen or measured, and disable the stages of a step that it does not need.
+
+    Of tendons and actuators those stay that are `acting`, by their names.
+    """
     ET.SubElement(root, "compiler", fusestatic="true", discardvisual="true")
     remove_energies(root)
     remove(root, "sensor")
-    remove_idle(root)
-    flags = ET.SubElement(ET.SubElement(root, "option"), "flag", sensor="disable")
-    for stage, attributes in _STAGES.items():
-        if not any(_acts(each.get(attribute, "0")) for each in root.iter() for attribute in attributes):
-            flags.set(stage, "disable")
-    if not root.findall("actuator/*"):
-        flags.set("actuation", "disable")
-
-
-def remove_idle(root: ET.Element) -> None:
-    """Take tendons and actuators from a tree that exert no force, as their numbers are 0, and that measure nothing."""
-    for section in root:
-        for element in list(section) if section.tag in ("tendon", "actuator") else ():
-            others = [value for name, value in element.items() if name not in _FORCELESS.get(element.tag, ())]
-            used = root.find(f".//*[@tendon='{element.get('name')}']") is not None
-            if element.tag in _FORCELESS and not used and not any(map(_acts, others)):
-                section.remove(element)
+    for section in (*root.iterfind("tendon"), *root.iterfind("actuator")):
+        section[:] = [each for each in section if each.get("name") in acting]
+    stages = {"sensor": False, "spring": False, "damper": damped, "actuation": bool(root.findall("actuator/*"))}
+    idle = {stage: "disable" for stage, needed in stages.items() if not needed}
+    ET.SubElement(ET.SubElement(root, "option"), "flag", idle)
 
 
 def remove_energies(root: ET.Element) -> None:
     """Disable energies in a tree: MuJoCo counts no constant force that stands for a weight as potential."""
     for flag in root.iter("flag"):
         flag.attrib.pop("energy", None)
-
-
-def _acts(text: str) -> bool:
-    """Return whether an attribute has a number that is not 0, or is no number."""
-    try:
-        return any(float(each) != 0 for each in text.split())
-    except ValueError:
-        return True
 
 
 def to_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
@@ -183,7 +162,7 @@ def compiled_views(model: mujoco.MjModel, values: Parameters) -> dict[tuple[str,
 def write_compiled(
     model: mujoco.MjModel, values: Parameters, where: Mapping[tuple[str, str], list[np.ndarray]]
 ) -> None:
-    """Write numbers into a compiled model, at its `places`."""
+    """Write numbers into a compiled model, at its `compiled_views`."""
     for key, value in values.items():
         if key[0] == "option":
             setattr(model.opt, key[1], _option(value))

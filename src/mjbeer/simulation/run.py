@@ -247,8 +247,8 @@ class Run(Trajectory):
             rate = min(abs(self.phi_dot0), _MAX_TURN_PER_STEP / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
                 found.append(
-                    f"the load turns by {require.format_above(turn, _MAX_TURN_PER_STEP)} rad in a timestep (trusted up to "
-                    f"{_MAX_TURN_PER_STEP:g}), in which its weight and inertia change unseen"
+                    f"the load turns by {require.format_above(turn, _MAX_TURN_PER_STEP)} rad in a timestep (trusted up "
+                    f"to {_MAX_TURN_PER_STEP:g}), in which its weight and inertia change unseen"
                 )
         return tuple(found)
 
