@@ -382,7 +382,9 @@ def _empty(work: Work, grid: Grid) -> "xarray.Dataset":
         for name, values in grid.axes.items()
     }
     given = {"make": _label(work.make), "duration": float(work.times[-1]), "paired": str(grid.paired)}
-    given |= {name: "none" if value is None else value for name, value in vars(work.setting).items()}
+    given |= {
+        name: "none" if value is None else value for name, value in vars(work.setting).items() if name != "folder"
+    }
     if work.setting.tolerance is not None:
         del given["integrator"]
     given |= {name: value if isinstance(value, float) else _shown(value) for name, value in work.fixed.items()}
