@@ -150,6 +150,10 @@ class Oscillator:
         """Return J [kg m^2] at `phi` [rad]."""
         return self.base + self.chord * np.sin(phi / 2) ** 2 + self.coupling * np.sin(phi) ** 2
 
+    def kinetic_energy(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
+        """Return J phi_dot^2 / 2 [J], the kinetic energy of the swing."""
+        return self.inertia(phi) * np.square(phi_dot) / 2
+
     def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
         delta_phi = phi - start
