@@ -141,8 +141,7 @@ def liquid(
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
-    with require.naming_given(viscosity=used.viscosity):
-        scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
+    scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
     try:
         speed = scene.terminal_speed()
     except NoEquilibriumError:  # none on so steep an incline

@@ -98,10 +98,9 @@ class Scene:
         if self.dissipates:  # how fast damping and drag brake where the load resists least, phi = pi, at 1 rad/s
             mass, limits = self.effective_mass, (_LEAST_RATE, require.DAMPING_RATE)
             resists = float(self.frozen.inertia(math.pi)) / (a**2 * mass * self.oscillator.base)
-            with require.naming_given(damping=self.damping, drag=self.drag):
-                rate = float(self.damping_law.derivative(1.0)) * resists
-                require.within("rate of damping", rate, *limits, "1/s", zero=True)
-                require.within("rate of drag", 2 * self.drag * a / mass, *limits, "1/s", zero=True)
+            rate = float(self.damping_law.derivative(1.0)) * resists
+            require.within("rate of damping", rate, *limits, "1/s", zero=True)
+            require.within("rate of drag", 2 * self.drag * a / mass, *limits, "1/s", zero=True)
 
     def _made(self) -> tuple[Callable[..., "Scene"], dict[str, Any]]:
         """Return what makes the scene, and with which arguments."""
