@@ -24,7 +24,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.equations import accelerations
 from mjbeer.theory.motion import EPS, ROUNDINGS, UNCERTAIN, Start
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
@@ -68,29 +68,26 @@ _EYE = np.eye(2 * _STAGES)
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def _equations(scene: Scene) -> Rates:
+def _rates_of(scene: Scene) -> Rates:
     """Return a function of phi, phi_dot and w, arrays of one shape.
 
     Its values are phi_ddot and w_dot [rad/s^2], of shape (2, ...), and their derivatives by those three, (2, 3, ...).
     """
-    radius, oscillator, mass = scene.can.radius, scene.oscillator, scene.effective_mass
-    unit = mass * radius**2
-    push, beta = scene.downhill_weight / mass / radius, scene.load.moment / mass / radius
-    base, depth, bottom = oscillator.base / unit, oscillator.depth / unit, oscillator.bottom
-    law, air = Damping(*(each / unit for each in scene.damping_law.coefficients)), scene.drag * radius / mass
+    oscillator, law, radius, mass = scene.oscillator, scene.damping_law, scene.can.radius, scene.effective_mass
+    unit, beta, air = mass * radius**2, scene.load.moment / mass / radius, scene.drag * radius / mass
 
     def rates(phi: np.ndarray, phi_dot: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        torque, steep, roll_dot = law.torque(slip), law.derivative(slip), phi_dot + slip
-        drag, steep_drag = air * roll_dot * np.abs(roll_dot), 2 * air * np.abs(roll_dot)
-        arm, lean, square, turned = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot, phi - bottom
-        inertia, open_arm = base + lean * lean, 1 - arm
-        phi_ddot = (-depth * np.sin(turned) - lean * arm * square + open_arm * torque - arm * drag) / inertia
-        slip_dot = push - lean * square - torque - drag - open_arm * phi_ddot
-        by_phi = -depth * np.cos(turned) - (arm * arm - lean * lean) * square + lean * (torque + drag)
-        steeps = by_phi - 2 * lean * arm * phi_ddot, -2 * lean * arm * phi_dot - arm * steep_drag
-        swing = np.array([*steeps, open_arm * steep - arm * steep_drag]) / inertia
-        slide = np.array([-arm * square - lean * phi_ddot, -2 * lean * phi_dot - steep_drag, -steep - steep_drag])
-        return np.array([phi_ddot, slip_dot]), np.array([swing, slide - open_arm * swing])
+        roll_dot = phi_dot + slip
+        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip)
+        arm, lean, square = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot
+        d_torque, d_drag, open_arm = law.derivative(slip) / unit, 2 * air * np.abs(roll_dot), 1 - arm
+        braking = law.torque(slip) / unit + d_drag * roll_dot / 2
+        by_phi = -oscillator.depth / unit * np.cos(phi - oscillator.bottom) - (arm * arm - lean * lean) * square
+        by_phi += lean * braking - 2 * lean * arm * phi_ddot
+        swing = np.array([by_phi, -2 * lean * arm * phi_dot - arm * d_drag, open_arm * d_torque - arm * d_drag])
+        swing /= oscillator.inertia(phi) / unit
+        slide = np.array([-arm * square - lean * phi_ddot, -2 * lean * phi_dot - d_drag, -d_torque - d_drag])
+        return np.array([phi_ddot, u_ddot / radius - phi_ddot]), np.array([swing, slide - open_arm * swing])
 
     return rates
 
@@ -110,7 +107,7 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
     pace = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
     start = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
     kinks = np.array([[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)).reshape(-1, 2)
-    followed = _follow(_equations(scene), time[order], start, pace, kinks)
+    followed = _follow(_rates_of(scene), time[order], start, pace, kinks)
     turned, rolled, phi_dot, slip = followed[:, np.argsort(order)]
     return phi0 + turned, phi_dot, u0 + radius * rolled, radius * (phi_dot + slip)
 

@@ -154,22 +154,22 @@ class Scene:
         """Return what `oscillator` is with a frozen load: its J is J_f, against which can and load turn as one."""
         return Oscillator.frozen(self.can, self.load, self.incline, self.gravity)
 
-    @property
+    @cached_property
     def dissipates(self) -> bool:
         """Return whether damping or drag takes energy from the motion."""
         return bool(self.damping_law) or self.drag > 0
 
-    @property
+    @cached_property
     def mass(self) -> float:
         """Return the mass of can and load together, m_t [kg]."""
         return self.can.mass + self.load.mass
 
-    @property
+    @cached_property
     def effective_mass(self) -> float:
         """Return the mass against a force along the incline when the can rolls, M = m + m_can + I_can/a^2 [kg]."""
         return self.load.mass + self.can.effective_mass
 
-    @property
+    @cached_property
     def downhill_weight(self) -> float:
         """Return the weight along the incline, m_t g sin(alpha) [N]."""
         return self.mass * self.gravity * math.sin(self.incline)
