@@ -26,7 +26,6 @@ RATIO = 1e6  # of two masses, or of inertias compared with masses at the radius,
 GRAVITY = 1e-3, 1e3  # that is not 0 [m/s^2]
 ANGLE = 1e4  # at the start, either way [rad]
 RATE = 1e6  # at the start, either way [rad/s]
-DAMPING_RATE = 1e9  # at which damping may decay [1/s]
 TIMESTEP = 1e-7, 10.0  # [s]
 
 _SHORT = reprlib.Repr()

@@ -97,7 +97,7 @@ def test_what_is_no_scene_is_refused(message: str, make: Callable[[], object]) -
 )
 def test_something_has_to_resist_rotation(attachment: str, offset: float) -> None:
     """J(0) = 0: at phi = 0 the load neither turns nor moves, and the can weighs nothing."""
-    with pytest.raises(ParameterError, match=r"nothing resists rotation at phi = 0: .* can mass 0.0 kg"):
+    with pytest.raises(ParameterError, match=r"nothing resists rotation at phi = 0: .* and Can\(radius"):
         Scene(Can.massless(), Load.point(0.2, offset), 0.1, attachment)
 
 

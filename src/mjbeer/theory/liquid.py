@@ -32,7 +32,7 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import segment
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
-from mjbeer.theory.scenes import named, sliding
+from mjbeer.theory.scenes import remembers_call, sliding
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
 NAMES: tuple[Name, ...] = get_args(Name)
@@ -116,7 +116,7 @@ class Liquid:
         )
 
 
-@named
+@remembers_call
 def liquid(
     name: str = "water",
     incline: float = INCLINE,
