@@ -18,11 +18,10 @@ from mjbeer.theory.scene import Scene
 Structure: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
 
-_SMALLEST = 1e-9
-"""Smallest mass [kg] and inertia [kg m^2] that is not scaled: MuJoCo's smallest value (mjMINVAL, 1e-15), a million
-times smaller, changes no sum noticeably."""
-_LARGEST = 1e3
-"""Largest mass [kg] that is not scaled: MuJoCo's smallest softness, 1e-15 /kg, is then 1e-12 of the inverse mass."""
+_UNSCALED = 1e-9, 1e3
+"""Smallest mass [kg] and inertia [kg m^2], and largest mass, that are not scaled. MuJoCo's smallest value (mjMINVAL,
+1e-15), a million times smaller, changes no sum noticeably; as its smallest softness, 1e-15 /kg, it is 1e-12 of the
+inverse of the largest."""
 _FORCES_SEEN = 2.0**60
 """Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
 [N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
@@ -30,11 +29,6 @@ _TOLERANCE = 1e-14
 """The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
 load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
 Newton's method brings all digits, and 1e-14 costs none in the four scenes; 1e-18 costs a third of the run time."""
-_LIGHTEST, _WEIGHTLESS = 1e-10, 1e-5
-"""The least share of the tolerance that a light load has, and the least gravity [m/s^2] it is reckoned with. At a
-tolerance of 0 the solver would spend all its iterations on rounding."""
-_STIFF_INTEGRATORS = ("RK4", "discrete", DOP853)
-"""The integrators that are stable with a time constant of half a timestep."""
 
 
 class Inertial(NamedTuple):
@@ -75,7 +69,7 @@ class Mechanics:
             bodies, forces = _constrained(scene)
         else:
             bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
-        unit = mass_unit(scene)
+        unit = _mass_unit(scene, bodies)
         if setting.rolling == "reduced" and setting.integrator == "discrete" and scene.damping_law and not visuals:
             unit *= _FORCES_SEEN
         return cls(
@@ -145,31 +139,24 @@ class Mechanics:
         if contact:
             found[rolling, "friction"] = setting.friction, setting.friction, 0.005, 1e-4, 1e-4
             found["geom can", "size"] = radius, scene.can.length / 2
-            # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia.
+            # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia. At
+            # a tolerance of 0 the solver would spend all its iterations on rounding.
             light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
-            share = min(1.0, max(light, _LIGHTEST))
-            found["option", "tolerance"] = (_TOLERANCE * share * max(g, _WEIGHTLESS) ** 2,)
+            found["option", "tolerance"] = (_TOLERANCE * min(1.0, max(light, 1e-10)) * max(g, 1e-5) ** 2,)
         else:
             found[rolling, "polycoef"] = 0, radius, 0, 0, 0
         return found
 
 
-def mass_unit(scene: Scene) -> float:
+def _mass_unit(scene: Scene, bodies: list[tuple[str, Inertial]]) -> float:
     """Return the power of two by which all masses of a scene are multiplied: 1 unless they are tiny or huge.
 
     Only ratios of masses enter the motion, and a power of two causes no rounding. In a scene with both tiny and huge
     masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them.
     """
-    can, base = scene.can, scene.oscillator.base
-    if scene.attachment == "frozen":  # one body
-        values = scene.mass, _frozen_inertia(scene), base
-    else:
-        moved = _moved_to_point(scene)
-        load = _load_with(scene, moved)
-        values = can.mass - moved, can.inertia, load.mass, load.inertia, base
+    values = [scene.oscillator.base, *(value for _, body in bodies for value in (body.mass, body.inertia))]
     smallest = min(value for value in values if value > 1e-30 * max(values))  # what is less adds nothing to any sum
-    up = math.ceil(math.log2(_SMALLEST / smallest))
-    down = math.floor(math.log2(_LARGEST / scene.effective_mass))
+    up, down = math.ceil(math.log2(_UNSCALED[0] / smallest)), math.floor(math.log2(_UNSCALED[1] / scene.effective_mass))
     return 2.0 ** max(up, min(0, down))
 
 
@@ -180,7 +167,7 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is stable with DOP853 too; "discrete"
     has no limit. A `contact` opens and closes: with less than a timestep RK4 chatters.
     """
-    if integrator not in _STIFF_INTEGRATORS:
+    if integrator not in ("RK4", "discrete", DOP853):
         return 2 * timestep
     return timestep if contact else timestep / 2
 
