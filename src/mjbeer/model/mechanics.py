@@ -58,6 +58,8 @@ class Mechanics:
     """Constant force [N] or torque [N m] on the first joint, by the actuator "weight"."""
     chord: float = 0.0
     """Armature of the tendon "chord" [kg]."""
+    damped: bool = False
+    """Whether a torque brings can and load together."""
 
     @classmethod
     def of(cls, scene: Scene, setting: Setting, visuals: bool = False, timestep: float | None = None) -> "Mechanics":
@@ -69,8 +71,8 @@ class Mechanics:
             bodies, forces = _constrained(scene)
         else:
             bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
-        unit = _mass_unit(scene, bodies)
-        if setting.rolling == "reduced" and setting.integrator == "discrete" and scene.damping_law and not visuals:
+        unit, damped = _mass_unit(scene.oscillator.base, bodies), bool(scene.damping_law)
+        if setting.rolling == "reduced" and setting.integrator == "discrete" and damped and not visuals:
             unit *= _FORCES_SEEN
         return cls(
             scene=scene,
@@ -80,6 +82,7 @@ class Mechanics:
             unit=unit,
             bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in bodies},
             **{name: unit * force for name, force in forces.items()},
+            damped=damped,
         )
 
     @property
@@ -90,14 +93,14 @@ class Mechanics:
     @property
     def acting(self) -> tuple[str, ...]:
         """Return the names of the tendons and the actuators that exert a force."""
-        damped = self.scene.damping_law and self.setting.rolling == "reduced"
+        damped = self.damped and self.setting.rolling == "reduced"  # else joints are
         acting = {"weight": self.force != 0, "chord": self.chord > 0, "damper": damped}
         return tuple(name for name, acts in acting.items() if acts)
 
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        return self.setting.folder, self.file, self.acting, self.scene.dissipates
+        return self.setting.folder, self.file, self.acting, self.damped or self.scene.drag > 0
 
     @cached_property
     def parameters(self) -> Parameters:
@@ -148,15 +151,18 @@ class Mechanics:
         return found
 
 
-def _mass_unit(scene: Scene, bodies: list[tuple[str, Inertial]]) -> float:
+def _mass_unit(base: float, bodies: list[tuple[str, Inertial]]) -> float:
     """Return the power of two by which all masses of a scene are multiplied: 1 unless they are tiny or huge.
 
     Only ratios of masses enter the motion, and a power of two causes no rounding. In a scene with both tiny and huge
-    masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them.
+    masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them. `base` is the least inertia of phi
+    [kg m^2].
     """
-    values = [scene.oscillator.base, *(value for _, body in bodies for value in (body.mass, body.inertia))]
-    smallest = min(value for value in values if value > 1e-30 * max(values))  # what is less adds nothing to any sum
-    up, down = math.ceil(math.log2(_UNSCALED[0] / smallest)), math.floor(math.log2(_UNSCALED[1] / scene.effective_mass))
+    values = base, *(value for _, (mass, _, inertia) in bodies for value in (mass, inertia))
+    largest = max(values)
+    smallest = min(value for value in values if value > 1e-30 * largest)  # what is less adds nothing to any sum
+    heaviest = max(mass for _, (mass, _, _) in bodies)
+    up, down = math.ceil(math.log2(_UNSCALED[0] / smallest)), math.floor(math.log2(_UNSCALED[1] / heaviest))
     return 2.0 ** max(up, min(0, down))
 
 
@@ -198,7 +204,8 @@ def _frozen(scene: Scene) -> _Parts:
     oscillator, moment = scene.oscillator, scene.load.moment
     # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that has more than half
     # of the inertia, a larger mass on a shorter arm that has exactly half.
-    mass, offset = scene.mass, scene.centre_of_mass
+    mass = scene.mass
+    offset = moment / mass
     if mass * offset**2 > oscillator.base / 2:
         mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
     body = Inertial(mass, offset, oscillator.base - mass * offset**2)

@@ -4,7 +4,7 @@ import functools
 import math
 import os
 import pathlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
 from mjbeer import require
@@ -51,6 +51,8 @@ class Setting:
     """Friction coefficient of a contact."""
     mjcf: str | os.PathLike[str] | None = None
     """A folder of MJCF to be read instead of mjbeer's; None for that of the environment's MJBEER_MJCF, if any."""
+    folder: pathlib.Path = field(init=False, repr=False)
+    """The folder of MJCF that is read."""
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
@@ -61,7 +63,7 @@ class Setting:
             # MuJoCo raises a smaller one to this (mjMINMU), and says nothing
             friction=require.within("friction", self.friction, 1e-5, math.inf),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
-            mjcf=None if self.mjcf is None else mjcf_folder(self.mjcf),
+            folder=mjcf_folder(self.mjcf),
         )
         if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
             raise ParameterError(
@@ -74,11 +76,6 @@ class Setting:
                 f"'reduced' or 'equality', got 'contact' and {self.tolerance!r} rad; a contact is the harder, the "
                 "shorter its timestep is, and error_estimate says how good it is"
             )
-
-    @property
-    def folder(self) -> pathlib.Path:
-        """Return the folder of MJCF that is read."""
-        return mjcf_folder(self.mjcf)
 
     @classmethod
     def of(cls, integrator: Integrator | None, tolerance: float | None, **fields: Any) -> "Setting":
