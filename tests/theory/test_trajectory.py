@@ -13,7 +13,6 @@ from mjbeer import MjbeerError, Scene, Trajectory, exact, frozen, hoop, pendulum
 from mjbeer.exceptions import OutputError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run
-from mjbeer.simulation.stepping import Solution
 from mjbeer.theory.equations import Coordinates, select_samples
 from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, failed_checks
 from mjbeer.theory.trajectory import csv
@@ -135,8 +134,8 @@ def test_a_second_run_that_differs_is_a_warning(estimate: float, warning: str) -
 def simulated(motion: Trajectory, setting: Setting, estimate: float) -> Run:
     """A motion as if it had been simulated in a setting."""
     values = {field.name: getattr(motion, field.name) for field in fields(motion)}
-    solution = Solution(np.zeros((0, 0)), motion.record, estimate)
-    return Run(**values, setting=setting, solution=solution, checkpoints=motion)
+    own = {"record": motion.record, "chosen": setting.integrator, "error": estimate, "checkpoints": motion}
+    return Run(**values, setting=setting, **own)
 
 
 def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:

@@ -10,8 +10,8 @@ import numpy as np
 from mjbeer import require
 from mjbeer.model.build import build
 from mjbeer.model.joints import joint_addresses
-from mjbeer.model.mechanics import mass_unit
-from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
+from mjbeer.model.mechanics import Mechanics
+from mjbeer.model.setting import DOP853, ROLLINGS, Rolling, Setting
 from mjbeer.paper.claim import Bound, Motion, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
@@ -40,11 +40,12 @@ def measure_motion(run: Trajectory) -> Motion:
     s is read from the position of the load's centre of mass, and accelerations are those of mj_forward.
     """
     scene, timestep = run.scene, run.timestep or 1e-3
-    model = build(scene, require.choice("rolling", run.rolling, ROLLINGS), integrator=DOP853, timestep=timestep)
+    setting = Setting(require.choice("rolling", run.rolling, ROLLINGS), DOP853, timestep)
+    model, unit = build(scene, setting.rolling, integrator=DOP853, timestep=timestep), Mechanics.of(scene, setting).unit
     data = mujoco.MjData(model)
     rows = [_evaluate(model, data, scene, run, i) for i in range(len(run.time))]
     axis, load, turn, energy, force = (np.array(column) for column in zip(*rows, strict=True))
-    energy, force = energy / mass_unit(scene), force / mass_unit(scene)
+    energy, force = energy / unit, force / unit
     arm = load[:, 0] - axis[:, 0]
     across = load[:, :, 2] - axis[:, :, 2]
     down = model.opt.gravity / scene.gravity

@@ -18,8 +18,8 @@ from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
 from mjbeer.output.terminal import progress_bar
+from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
-from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Motion
@@ -120,13 +120,13 @@ class Rung:
             return
         if point.model in USUAL:
             model = usual_model(point.model, case.scene)
-            stepper, steps = Stepper(model), np.rint(case.times / value).astype(np.int64)
+            data, steps = mujoco.MjData(model), np.rint(case.times / value).astype(np.int64)
             begin = initial_state(model, case.scene, case.phi0, 0.0)
-            solve = lambda: stepper.run(begin, steps)  # noqa: E731
+            solve = lambda: states_after(model, data, begin, steps)  # noqa: E731
         else:
-            prepared = Simulator(case.scene, point.curve.setting(value))
-            model, begin = prepared.model, prepared.start(case.phi0, 0.0)
-            solve = lambda: prepared.solve(begin, case.times).states  # noqa: E731
+            simulator = Simulator(case.scene, point.curve.setting(value))
+            model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
+            solve = lambda: simulator.solve(begin, case.times).states  # noqa: E731
         self.solve = solve
 
         def run() -> Motion:

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
@@ -17,8 +18,8 @@ from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.mechanics import stiffest
 from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting
+from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import integrate
-from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.predictions import linear_stability, soft_constraint, soft_rolling
 from mjbeer.studies.predictions.linear_stability import ACCURACY, GROWTH
 from mjbeer.studies.predictions.soft_constraint import MAX_IMPEDANCE, SoftRow, spring
@@ -107,7 +108,7 @@ class Swings:
             if self._plan.integrator == DOP853:
                 states = Dop853(self._model).run(self._start, samples * timestep, timestep)
             else:
-                states = Stepper(self._model).run(self._start, samples)
+                states = states_after(self._model, mujoco.MjData(self._model), self._start, samples)
         except DivergenceError:
             return EXPLODED
         return self._judge(states, timestep)
