@@ -76,7 +76,7 @@ def write(study: Study, folder: pathlib.Path) -> None:
     lines = ["# mjbeer: stability", "", verdict, _READ]
     for name, draw in stability_maps.figures(json.loads(maps)).items():
         draw(folder / name)
-        lines += [f"![{name}]({name}.svg)", "", stability_maps.FIGURES[name.removeprefix("stability-")].caption, ""]
+        lines += [f"![{name}]({name}.svg)", "", stability_maps.FAMILIES[name.removeprefix("stability-")].caption, ""]
     known = [search.table_of_cases(study.of(search.KNOWN))] if study.of(search.KNOWN) else []
     lines += [table.markdown() for table in (*tables(study), *known)]
     files.write(folder / "summary.md", "\n".join(lines))
