@@ -57,7 +57,8 @@ def sweep(given: Namespace) -> int:
     NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
     1e-6 rad.
     """
-    from mjbeer.studies.sweep import STATUSES, WELL, sweep
+    from mjbeer.studies.sweep import sweep
+    from mjbeer.studies.sweep_runs import STATUSES, WELL
 
     if given.output.suffix not in ENDINGS:
         raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")

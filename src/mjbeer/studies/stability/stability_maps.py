@@ -79,7 +79,7 @@ FAMILIES = {
         (1e2, 1e10),
         "stiffness K of solref [1/s²]",
         "A constraint with a direct (negative) solref",
-        "Timestep against stiffness K of solref = (−K, −2√K), which refsafe does not touch.",
+        "Timestep against K of solref = (−K, −2√K), which refsafe does not touch.",
     ),
     "gravity": Family(
         (1e-3, 10.0),
