@@ -23,7 +23,7 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting
 from mjbeer.paper.witness import loop
-from mjbeer.require import shown
+from mjbeer.require import format_value
 from mjbeer.theory.scene import ATTACHMENTS
 
 VALUES: dict[str, Callable[[], object]] = {
@@ -130,11 +130,13 @@ def named(value: object) -> set[str]:
     """What an error may show of a value: the value, how many entries it has, or an entry, as it came or as a double."""
     several = isinstance(value, (list, tuple, range)) or (isinstance(value, np.ndarray) and value.ndim > 0)
     entries = list(value) if several else [value]
-    texts = {shown(value), f" {len(entries)}, got ", f"got {len(entries)}"} | {shown(each) for each in entries}
-    texts |= {shown(str(value))} if isinstance(value, pathlib.PurePath) else set()
+    texts = {format_value(value), f" {len(entries)}, got ", f"got {len(entries)}"} | {
+        format_value(each) for each in entries
+    }
+    texts |= {format_value(str(value))} if isinstance(value, pathlib.PurePath) else set()
     for each in entries:
         with contextlib.suppress(ParameterError):
-            texts.add(shown(require.number("entry", each)))
+            texts.add(format_value(require.number("entry", each)))
     return texts
 
 

@@ -15,11 +15,11 @@ NO_SAMPLES = [[], [[0.0], [0.0, 1.0]], [[0.0]], ["0"], [0.0, None], {0.0: 1.0}, 
               np.ma.array([0.0], mask=[1])]  # fmt: skip
 
 
-@pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: require.shown(value)[:20])
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: require.format_value(value)[:20])
 def test_a_number_is_finite_and_real(value: object) -> None:
     with pytest.raises(ParameterError) as caught:
         require.number("mass", value, "kg")
-    assert str(caught.value) == f"mass must be a finite number [kg], got {require.shown(value)}"
+    assert str(caught.value) == f"mass must be a finite number [kg], got {require.format_value(value)}"
 
 
 def test_numbers_and_samples_of_any_kind_become_doubles() -> None:
@@ -69,7 +69,7 @@ def test_an_error_lists_the_names(value: str) -> None:
     ],
 )
 def test_a_number_above_its_bound_is_shown_above_it(value: float, bound: float, text: str) -> None:
-    assert require.above(value, bound) == text
+    assert require.format_above(value, bound) == text
 
 
 @pytest.mark.parametrize("value", ["", "a\0", "\ud800.csv", b"run.csv", None, 1])
@@ -78,7 +78,7 @@ def test_a_path_is_the_name_of_a_file(value: object) -> None:
     assert require.path("\udc80.csv").name == "\udc80.csv"
     with pytest.raises(ParameterError) as caught:
         require.path(value)
-    assert str(caught.value) == f"path must be the name of a file, got {require.shown(value)}"
+    assert str(caught.value) == f"path must be the name of a file, got {require.format_value(value)}"
 
 
 class Unprintable:
@@ -88,7 +88,7 @@ class Unprintable:
 
 @pytest.mark.parametrize("make", [lambda: "x" * 1000, lambda: [["deep"] * 100] * 100, Unprintable, lambda: 10**5000])
 def test_a_value_is_shown_in_one_short_line_and_a_number_as_a_plain_one(make: Callable[[], object]) -> None:
-    text = require.shown(make())
+    text = require.format_value(make())
     assert "\n" not in text
     assert len(text) < 500
-    assert {require.shown(each) for each in (np.float64(0.1), np.array(0.1), 0.1)} == {"0.1"}
+    assert {require.format_value(each) for each in (np.float64(0.1), np.array(0.1), 0.1)} == {"0.1"}

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import NamedTuple
 
-from mjbeer.model import looks, mechanics, state
-from mjbeer.model.numbers import Numbers
+from mjbeer.model import looks, mjcf_file
+from mjbeer.model.joints import initial_joints
+from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import Setting
 from mjbeer.output import files
-from mjbeer.theory.named import hoop, pendulum
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import hoop, pendulum
 
 _DIGITS = 12
 """Digits of the numbers in the files."""
@@ -59,14 +60,14 @@ def text(name: str, folder: pathlib.Path) -> str:
     """Return the file of a name in TEMPLATES, from the mechanics in a folder."""
     template = TEMPLATES[name]
     path = folder / "mechanics" / f"{template.mechanics}.xml"
-    root = mechanics.read(path)
+    root = mjcf_file.read(path)
     if template.scene:
-        mechanics.write(root, Numbers.of(template.scene, template.setting, visuals=True).parameters, path, _DIGITS)
+        mjcf_file.write(root, Mechanics.of(template.scene, template.setting, visuals=True).parameters, path, _DIGITS)
         joints = [each.get("name", "") for body in root.iter("body") for each in body.findall("joint")]
         keyframe = root.find("keyframe")
         assert keyframe is not None
         keyframe[:] = [_key(key, joints, template.scene, *start) for key, start in template.keys.items()]
-    looks.dress(root, template.looks)
+    looks.include_looks(root, template.looks)
     root.set("model", name)
     written = f"from mechanics/{template.mechanics}.xml, which has the reasons, and looks/. Edit those"
     root.insert(0, ET.Comment(f" {template.about}. Written by `make templates` {written}. "))
@@ -76,7 +77,9 @@ def text(name: str, folder: pathlib.Path) -> str:
 
 def _key(name: str, joints: list[str], scene: Scene, phi0: float, phi_dot0: float) -> ET.Element:
     """Return a keyframe."""
-    qpos, qvel = (" ".join(f"{each:.{_DIGITS}g}" for each in row) for row in state.at(joints, scene, phi0, phi_dot0))
+    qpos, qvel = (
+        " ".join(f"{each:.{_DIGITS}g}" for each in row) for row in initial_joints(joints, scene, phi0, phi_dot0)
+    )
     return ET.Element("key", {"name": name, "qpos": qpos} | ({"qvel": qvel} if phi_dot0 else {}))
 
 

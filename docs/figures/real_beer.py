@@ -11,16 +11,17 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
+from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, label, name_below, note, ticks
 from mjbeer.paper.segment import area_33
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
-from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal, liquid_in
+from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
 from mjbeer.theory.load import segment
-from mjbeer.theory.named import frozen, in_degrees, in_words, sliding
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
+from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 CAN = Can.sheet_metal(thickness=THICKNESS * 0.013 / Can.sheet_metal().mass)
@@ -87,7 +88,7 @@ def lump_until(motion: Trajectory) -> float:
 
     From there on the liquid need not stay at the bottom as one lump. It is infinite for a can that stays slower.
     """
-    fast = np.flatnonzero(centrifugal(motion.scene, motion.u_dot) > 1)
+    fast = np.flatnonzero(centrifugal_ratio(motion.scene, motion.u_dot) > 1)
     return float(motion.u[fast[0]] - motion.u[0]) if fast.size else math.inf
 
 

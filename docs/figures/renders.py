@@ -14,5 +14,7 @@ WIDTH, HEIGHT, FPS = 720, 405, 20
 for name, film in FILMS.items():
     plan = film.plan()
     first, *others = (Image.fromarray(each) for each in plan.draw(plan.times(FPS), WIDTH, HEIGHT))
-    with files.whole(pathlib.Path(sys.argv[1]) / f"{name}.webp") as temporary:  # at 60, letters of 13 pixels are sharp
+    with files.atomic_write(
+        pathlib.Path(sys.argv[1]) / f"{name}.webp"
+    ) as temporary:  # at 60, letters of 13 pixels are sharp
         first.save(temporary, "WEBP", save_all=True, append_images=others, duration=1000 // FPS, loop=0, quality=60)

@@ -13,8 +13,8 @@ from mjbeer.theory.damping import Damping
 from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import liquid
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
-from mjbeer.theory.scene import Scene, pictures
+from mjbeer.theory.scene import Scene, load_drawing
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import standing
 from mjbeer.theory.trajectory import Trajectory
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from mjbeer.model.build import build, specify
     from mjbeer.model.export import export
     from mjbeer.model.free import attach, refill
-    from mjbeer.model.state import reset
+    from mjbeer.model.joints import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep import sweep
 
@@ -62,12 +62,12 @@ _LAZY = {
     "build": "mjbeer.model.build",
     "specify": "mjbeer.model.build",
     "export": "mjbeer.model.export",
-    "reset": "mjbeer.model.state",
+    "reset": "mjbeer.model.joints",
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep",
 }
-pictures[:] = [lambda: import_module("mjbeer.drawing.notebook")]
+load_drawing[:] = [lambda: import_module("mjbeer.drawing.notebook")]
 
 
 def __getattr__(name: str) -> object:

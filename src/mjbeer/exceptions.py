@@ -66,7 +66,7 @@ _NOTES: ContextVar[list[str] | None] = ContextVar("notes", default=None)
 
 
 def warn_of_liquid(message: str, stacklevel: int) -> None:
-    """Give a `LiquidWarning`, with the `stacklevel` of the caller's; in a block of `liquid_notes`, note it there."""
+    """Give a `LiquidWarning`, with the `stacklevel` of the caller's, or add it to those that a block collects."""
     if (notes := _NOTES.get()) is None:
         warnings.warn(message, LiquidWarning, stacklevel=stacklevel + 1)
     else:
@@ -74,7 +74,7 @@ def warn_of_liquid(message: str, stacklevel: int) -> None:
 
 
 @contextmanager
-def liquid_notes() -> Generator[list[str]]:
+def collect_liquid_warnings() -> Generator[list[str]]:
     """Yield a list that gets what liquids warn of in this block and this thread, instead of the user."""
     notes: list[str] = []
     token = _NOTES.set(notes)

@@ -75,7 +75,7 @@ def start(phi0: Any, phi_dot0: Any) -> tuple[float, float]:
     return within("phi0", phi0, -ANGLE, ANGLE, "rad"), within("phi_dot0", phi_dot0, -RATE, RATE, "rad/s")
 
 
-def radians(phi0: float) -> None:
+def warn_of_degrees(phi0: float) -> None:
     """Warn, where the calling function is called, of a start angle [rad] beyond a whole turn, as one in degrees is."""
     if abs(phi0) > 2 * math.pi:
         warnings.warn(
@@ -111,7 +111,7 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
         non_negative(f"{name}[{index}]", array[index], "s")
     if increasing and (falls := array[1:] <= array[:-1]).any():
         index = int(np.argmax(falls)) + 1
-        earlier, later = (shown(array[place]) for place in (index - 1, index))
+        earlier, later = (format_value(array[place]) for place in (index - 1, index))
         raise ParameterError(f"{name} must increase, but {name}[{index}] is {later} s after {earlier} s")
     return array
 
@@ -121,7 +121,7 @@ def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
     names = {str(each): each for each in allowed}
     if isinstance(value, str) and value in names:
         return names[value]
-    raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {shown(value)}")
+    raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {format_value(value)}")
 
 
 def path(value: Any) -> pathlib.Path:
@@ -132,11 +132,11 @@ def path(value: Any) -> pathlib.Path:
     except UnicodeEncodeError:  # half of a surrogate pair, which stands for no character
         possible = False
     if not possible:
-        raise ParameterError(f"path must be the name of a file, got {shown(value)}")
+        raise ParameterError(f"path must be the name of a file, got {format_value(value)}")
     return pathlib.Path(name)
 
 
-def above(value: float, bound: float, digits: int = 2) -> str:
+def format_above(value: float, bound: float, digits: int = 2) -> str:
     """Return a number above a bound in so many digits, or in more if it would be rounded to the bound otherwise."""
     texts = (f"{value:.{each}g}" for each in range(digits, 18))
     return next((text for text in texts if float(text) > bound), f"{value:g}")  # NaN is above nothing
@@ -145,34 +145,34 @@ def above(value: float, bound: float, digits: int = 2) -> str:
 def boolean(name: str, value: Any) -> bool:
     """Return `value` as True or False; a text such as "no" would count as true."""
     if not isinstance(value, (bool, np.bool_)):
-        raise ParameterError(f"{name} must be True or False, got {shown(value)}")
+        raise ParameterError(f"{name} must be True or False, got {format_value(value)}")
     return bool(value)
 
 
 def instance(name: str, value: Any, kind: type[T]) -> T:
     """Return `value` if it is an instance of a class of mjbeer."""
     if not isinstance(value, kind):
-        raise ParameterError(f"{name} must be a {kind.__name__}, got {shown(value)}")
+        raise ParameterError(f"{name} must be a {kind.__name__}, got {format_value(value)}")
     return value
 
 
-def store(instance: object, **values: object) -> None:
+def set_fields(instance: object, **values: object) -> None:
     """Set fields of a frozen dataclass to their checked values."""
     for name, value in values.items():
         object.__setattr__(instance, name, value)
 
 
 @contextmanager
-def from_given(**given: object) -> Generator[None]:
+def naming_given(**given: object) -> Generator[None]:
     """Add to an error in the `with` block, about computed values, the values that were given."""
     try:
         yield
     except ParameterError as error:
-        listed = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
+        listed = ", ".join(f"{name} = {format_value(value)}" for name, value in given.items())
         raise ParameterError(f"{error}, which follows from {listed}") from None
 
 
-def shown(value: object) -> str:
+def format_value(value: object) -> str:
     """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
     try:
         text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)
@@ -182,7 +182,7 @@ def shown(value: object) -> str:
 
 
 def _refused(what: str, unit: str, value: object) -> ParameterError:
-    return ParameterError(f"{what}{f' [{unit}]' if unit else ''}, got {shown(value)}")
+    return ParameterError(f"{what}{f' [{unit}]' if unit else ''}, got {format_value(value)}")
 
 
 def _float(value: Any) -> float:

@@ -44,7 +44,7 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
         "highest lift [radii]": (lift / radius).max(),
         "least normal force needed [N]": run.forces.normal.min(),
         "largest normal force needed [N]": run.forces.normal.max(),
-        "friction coefficient needed": run.record.needed,
+        "friction coefficient needed": run.record.needed_friction,
         "estimated error of phi and u/a [rad]": run.error_estimate,
         "can roll without slipping": [
             {"friction coefficient": friction, "to the end": end, "until [s]": None if end else until[friction]}
@@ -122,13 +122,13 @@ def test_until_when_a_can_rolls_with_a_friction(friction: float) -> None:
     assert f"until t = {until:.6g} s with friction {friction:g}\n" in summary.text()
     assert f"from t = {until:.6g} s with a friction coefficient of {friction:g}" in note
     # The time is interpolated between steps on a straight line: the coefficient is off by up to 0.0013 near its top.
-    assert exact(frozen(), [until], START).forces.needed[0] == pytest.approx(friction, rel=2e-3)
+    assert exact(frozen(), [until], START).forces.needed_friction[0] == pytest.approx(friction, rel=2e-3)
 
 
 def test_a_can_that_needs_no_more_has_no_note_and_is_not_simulated_again(monkeypatch: pytest.MonkeyPatch) -> None:
     run = simulate(frozen(), 0.5, 1.0)
     monkeypatch.setattr(Run, "rolls_until", lambda *_: pytest.fail("it was simulated again"))
-    assert run.record.needed < 0.5
+    assert run.record.needed_friction < 0.5
     assert Summary(run, 0.5).rolls_until == {0.5: math.inf, 1.0: math.inf}
     assert Summary(run, 0.5).notes == ()
 

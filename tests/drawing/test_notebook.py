@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
-from mjbeer import exact, frozen, simulate, sliding
+from mjbeer import Damping, exact, frozen, pendulum, simulate, sliding
 from mjbeer.drawing.strip import charts
+from mjbeer.drawing.words import damping_in_words, in_words
 from mjbeer.exceptions import ParameterError
 
 
@@ -101,3 +102,9 @@ def test_a_damped_run_is_drawn_with_the_speed_of_damped_theory() -> None:
     chart = charts(simulate(sliding(damping=1e-3), 0.1, 1.0, tolerance=1e-9), ["u_dot"])[0]
     simulated, theory = chart.lines
     assert np.interp(simulated.time, theory.time, theory.values) == pytest.approx(simulated.values, abs=1e-4)
+
+
+def test_a_scene_in_words() -> None:
+    assert in_words(frozen()) == "half-full massless can, beer frozen, incline 10°"
+    assert in_words(pendulum(0.0), {"load", "incline"}) == "wheel with a pendulum"
+    assert damping_in_words(sliding(damping=Damping(1e-5, 0.0, 2e-8))) == "1e-05 N m s + 2e-08 N m s^3 w^2"

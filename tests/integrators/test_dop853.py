@@ -10,7 +10,7 @@ from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.dynamics import Dynamics, derivative
 from mjbeer.model.build import build
-from mjbeer.model.state import read, start
+from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import SCENES
 
@@ -25,7 +25,7 @@ def test_fixed_step_is_scipy_s_step() -> None:
     reference = DOP853(slope, 0.0, begin, 1.0, first_step=step, max_step=step, rtol=1e-2, atol=1e-2)
     reference.step()
     model = build(scene)
-    ours = Dop853(model).run(start(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
+    ours = Dop853(model).run(initial_state(model, scene, 1.0, 0.5), np.array([0.0, step / 3, step]), step)
     # Twelve slopes of size 50 and 5 times a step of 0.02, each with the rounding of its forward dynamics.
     assert ours[2] == pytest.approx(reference.y[1::2], rel=1e-13)
     assert ours[1] == pytest.approx(reference.dense_output()(step / 3)[1::2], rel=1e-13)
@@ -35,10 +35,10 @@ def test_continuous_output_is_of_seventh_order() -> None:
     """Between steps: a tenth of a step in, the error falls at least as step^7 until rounding."""
     scene = frozen()
     model = build(scene)
-    begin, steps, errors = start(model, scene, 0.3, 0.0), 0.16 / 2.0 ** np.arange(4), []
+    begin, steps, errors = initial_state(model, scene, 0.3, 0.0), 0.16 / 2.0 ** np.arange(4), []
     for step in steps:
         times = step * (np.arange(int(2 / step)) + 0.1)
-        found = read(model, scene, Dop853(model).run(begin, times, float(step)), times).phi
+        found = to_coordinates(model, scene, Dop853(model).run(begin, times, float(step)), times).phi
         errors.append(np.abs(found - exact(scene, times, 0.3).phi).max())
     assert np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(7.5, abs=0.8)
 
@@ -59,7 +59,7 @@ def test_a_run_without_an_end_is_a_divergence(rate: float, end: float, setting: 
 def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     """The functions called for a smooth model give mj_forward's acceleration, constant forces included."""
     model = build(scene)
-    begin = start(model, scene, 0.7, 2.0)
+    begin = initial_state(model, scene, 0.7, 2.0)
     dynamics, rates = Dynamics(model), np.empty_like(begin)
     assert len(dynamics.kernel[0][0]) > 1
     derivative(*dynamics.kernel, begin, rates)

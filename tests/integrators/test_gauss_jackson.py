@@ -16,7 +16,7 @@ from mjbeer.exceptions import DivergenceError, ParameterError, UnsupportedError
 from mjbeer.integrators.gauss_jackson import _ANGLES, _CHECKS, GaussJackson
 from mjbeer.integrators.uneven_time import BLOCK, COUNT, LAG, OwnTime, own_time, weights
 from mjbeer.model.build import build
-from mjbeer.model.state import read, start
+from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.simulation import tolerance
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.tolerance import pendulum_time
@@ -54,9 +54,9 @@ def test_weights_are_exact_for_polynomials_of_twelfth_degree(power: int, back: i
 def errors(scene: Scene, phi0: float, steps: np.ndarray, times: np.ndarray, own: OwnTime | None = None) -> list[float]:
     """The largest errors of phi and u/a [rad] with some timesteps [s]."""
     model, truth, own = build(scene), exact(scene, times, phi0), own or pendulum_time(scene, phi0, 1e-15)
-    begin, method = start(model, scene, phi0, 0.0), GaussJackson(model)
+    begin, method = initial_state(model, scene, phi0, 0.0), GaussJackson(model)
     states = (method.run(begin, times, float(step), own) for step in steps)
-    return [distance(read(model, scene, each, times), truth, scene.can.radius) for each in states]
+    return [distance(to_coordinates(model, scene, each, times), truth, scene.can.radius) for each in states]
 
 
 EVEN = own_time(1.0, 0.0, 1.0, 1e-15)
@@ -112,23 +112,23 @@ def test_the_forces_are_seen_within_long_steps() -> None:
     scene, end = pendulum(0.1, wheel_mass=1e-3), 1.0
     model, recorder = build(scene), SmoothRecorder(scene)
     own = pendulum_time(scene, 3.0, 1e-9)
-    GaussJackson(model).run(start(model, scene, 3.0, 0.0), np.array([end]), 2e-3, own, recorder)
+    GaussJackson(model).run(initial_state(model, scene, 3.0, 0.0), np.array([end]), 2e-3, own, recorder)
     truth = exact(scene, np.linspace(0, end, 200_001), 3.0).record
     found = recorder.record
     assert found.lowest_normal == pytest.approx(truth.lowest_normal, rel=0.011)
-    assert found.fastest == pytest.approx(truth.fastest, rel=0.011)
-    assert found.fails_at == pytest.approx(truth.fails_at, abs=1e-4)
+    assert found.largest_rate == pytest.approx(truth.largest_rate, rel=0.011)
+    assert found.rolling_ends_at == pytest.approx(truth.rolling_ends_at, abs=1e-4)
 
 
 def test_samples_between_steps_err_no_more_than_those_at_steps() -> None:
     """The polynomial of the last accelerations is that of the method, so that it adds next to nothing."""
     scene, step = frozen(), 5e-3
     model = build(scene)
-    begin, at = start(model, scene, 1.0, 0.0), step * np.arange(401)
+    begin, at = initial_state(model, scene, 1.0, 0.0), step * np.arange(401)
     between = np.sort(np.random.default_rng(3).uniform(0, 2, 1000))
     worst = []
     for times in (at, between):
-        found = read(model, scene, GaussJackson(model).run(begin, times, step, EVEN), times)
+        found = to_coordinates(model, scene, GaussJackson(model).run(begin, times, step, EVEN), times)
         truth = exact(scene, times, 1.0)
         worst.append(np.abs(found.phi - truth.phi).max())
         # The rates err by the frequency, 13/s, times the error of phi, or by that of an overtone: the fourth at most.
@@ -142,9 +142,9 @@ def test_every_step_is_seen_once(last: int) -> None:
     """Also if a run is shorter than the steps that start it, or over blocks."""
     model, recorder = build(frozen()), SmoothRecorder(frozen())
     times, integrator = 1e-3 * np.arange(last + 1), GaussJackson(model)
-    found = integrator.run(start(model, frozen(), 1.0, 0.0), times, 1e-3, EVEN, recorder)
-    assert recorder.record.path == pytest.approx(np.abs(np.diff(found[:, 0])).sum(), rel=1e-13)
-    assert recorder.record.turned == pytest.approx(np.abs(found[:, 0] - 1.0).max(), rel=1e-13)
+    found = integrator.run(initial_state(model, frozen(), 1.0, 0.0), times, 1e-3, EVEN, recorder)
+    assert recorder.record.angle_covered == pytest.approx(np.abs(np.diff(found[:, 0])).sum(), rel=1e-13)
+    assert recorder.record.largest_turn == pytest.approx(np.abs(found[:, 0] - 1.0).max(), rel=1e-13)
     assert np.abs(found[:, 0] - exact(frozen(), times, 1.0).phi).max() < 1e-11
     # Two a step where the pace is none of the scene's, those of the law, and those of the first steps until they agree.
     assert (integrator.evaluations - _ANGLES - 2 - _CHECKS - 2 * max(0, last + LAG - COUNT // 2)) % COUNT == 0

@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import check, state
-from mjbeer.model.build import Stepped, compile_spec, compose
-from mjbeer.model.numbers import Numbers
+from mjbeer.model import check
+from mjbeer.model.build import ReusableModel, compile_spec, rolling_spec
+from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
+from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
-from mjbeer.model.state import places, read
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, kinetic_energy
 from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
@@ -54,10 +54,10 @@ def forward(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float, u_d
     values |= {"swing": (phi, phi_dot - roll_dot), "phi": (phi, phi_dot)}
     if scene.attachment == "frozen":
         values |= {"slide": (scene.can.radius * phi, u_dot), "roll": (phi, phi_dot)}
-    for name in places(model):
+    for name in joint_addresses(model):
         data.joint(name).qpos, data.joint(name).qvel = values[name]
     mujoco.mj_forward(model, data)
-    moved = read(model, scene, np.concatenate([data.qvel, data.qacc])[None], times=np.zeros(1))
+    moved = to_coordinates(model, scene, np.concatenate([data.qvel, data.qacc])[None], times=np.zeros(1))
     return float(moved.u_dot[0]), float(moved.phi_dot[0])
 
 
@@ -65,7 +65,7 @@ def assert_theory(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: floa
     found, expected = forward(model, scene, phi, phi_dot, u_dot), accelerations(scene, phi, phi_dot, u_dot)
     radius, base = scene.can.radius, scene.oscillator.base
     # A torque alone accelerates the load, and where a constraint rolls the can, first of all the can.
-    least = base if "roll" not in places(model) else min(base, scene.can.inertia or base)
+    least = base if "roll" not in joint_addresses(model) else min(base, scene.can.inertia or base)
     torque = abs(float(scene.damping_law.torque(u_dot / radius - phi_dot))) + scene.drag * u_dot**2 * radius
     scale = torque / least + phi_dot**2 + scene.gravity / radius + abs(expected[1]) + abs(expected[0]) / radius
     assert abs(found[1] - expected[1]) <= ROUNDING * scale
@@ -74,11 +74,11 @@ def assert_theory(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: floa
 
 def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     """A skeleton that had the numbers of other scenes before."""
-    made = Numbers.of(scene, setting)
-    stepped = Stepped(made)
+    made = Mechanics.of(scene, setting)
+    stepped = ReusableModel(made)
     braked = replace(scene, drag=scene.drag + 1.0, gravity=5.0) if scene.dissipates else replace(scene, incline=0.1)
     for other in (scene, braked, scene):
-        if (before := Numbers.of(other, setting)).kind == made.kind:
+        if (before := Mechanics.of(other, setting)).structure == made.structure:
             stepped.write(before)
     return stepped.model
 
@@ -103,7 +103,7 @@ def test_extreme_skeletons_accelerate_as_theory_says(scene: Scene) -> None:
 
 def test_a_wrong_model_is_found_out() -> None:
     """Another chord; and the equality as MuJoCo compiles it, whose impedance of 0.9999 lacks 1e-4 of the force."""
-    chord, soft = build(frozen()), compose(frozen(), Setting("equality")).compile()
+    chord, soft = build(frozen()), rolling_spec(frozen(), Setting("equality")).compile()
     chord.tendon_armature[:] *= 1 + 1e-9
     for wrong in (chord, soft):
         with pytest.raises(AssertionError):
@@ -117,7 +117,7 @@ def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, ro
     if not supported(scene, rolling):
         return
     setting, ways = Setting(rolling, "implicit", 2e-4, friction=0.7), []
-    for model in (written(scene, setting), compile_spec(compose(scene, setting), rolling == "equality")):
+    for model in (written(scene, setting), compile_spec(rolling_spec(scene, setting), rolling == "equality")):
         data = mujoco.MjData(model)
         mjbeer.reset(model, data, scene, 0.7, 3.0)
         for _ in range(20):
@@ -126,17 +126,19 @@ def test_a_skeleton_is_the_model_that_is_compiled_for_its_scene(scene: Scene, ro
     assert ways[0] == ways[1]
 
 
-def test_models_with_other_elements_are_of_another_kind_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is of one kind is compiled once.
+def test_models_with_other_elements_have_another_structure_and_no_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What has one structure is compiled once.
 
     The flag of a model without dampers says that there are none: a scene written into it would not be damped.
     """
     scenes = sliding(can=METAL), sliding(can=METAL, damping=1e-3), sliding(can=METAL, drag=1e-3)
-    for rolling in ROLLINGS:
-        assert len({Numbers.of(scene, Setting(rolling)).kind for scene in scenes}) == 3
-    assert len({Numbers.of(frozen(), Setting("equality", each)).kind for each in INTEGRATORS}) == 1
+    for rolling in ROLLINGS:  # with a constraint, all damping is that of joints
+        structures = [Mechanics.of(scene, Setting(rolling)).structure for scene in scenes]
+        assert structures[0] not in structures[1:]
+        assert (structures[1] == structures[2]) == (rolling != "reduced")
+    assert len({Mechanics.of(frozen(), Setting("equality", each)).structure for each in INTEGRATORS}) == 1
     simulate(sliding(), 0.01, 1.0)
-    monkeypatch.setattr("mjbeer.model.build.compose", None)
+    monkeypatch.setattr("mjbeer.model.build.rolling_spec", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)
 
 
@@ -147,11 +149,11 @@ def test_constrained_models_have_the_scene_s_mass_matrix(name: str, rolling: Rol
     scene = SCENES[name]
     model = build(scene, rolling)
     data = mujoco.MjData(model)
-    wild = state.start(model, scene, 0.6, 1.7) * np.linspace(1, 2, model.nq + model.nv)
+    wild = initial_state(model, scene, 0.6, 1.7) * np.linspace(1, 2, model.nq + model.nv)
     data.qpos, data.qvel = np.split(wild, 2)
     model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
     mujoco.mj_forward(model, data)
-    kinetic = kinetic_energy(scene, read(model, scene, wild[None], times=np.zeros(1)))
+    kinetic = kinetic_energy(scene, to_coordinates(model, scene, wild[None], times=np.zeros(1)))
     assert data.energy[1] == pytest.approx(kinetic[0], rel=1e-13)  # a dozen products
 
 
@@ -164,7 +166,7 @@ def test_contact_has_the_forces_of_damping_and_drag() -> None:
     mujoco.mj_forward(model, data)
     torque = float(scene.damping_law.torque(1.5 / radius + 2))
     expected = {"slide": -0.2 * 1.5**2, "lift": 0.0, "roll": 0.0, "swing": torque}
-    for name, place in places(model).items():
+    for name, place in joint_addresses(model).items():
         assert data.qfrc_passive[place] == pytest.approx(expected[name], rel=1e-14), name
 
 
@@ -192,7 +194,7 @@ def test_no_force_is_too_small_to_move_a_damped_load(rolling: Rolling, integrato
         data = mujoco.MjData(model)
         mjbeer.reset(model, data, scene, math.pi - aside)
         mujoco.mj_step(model, data)
-        found = read(model, scene, np.concatenate([data.qpos, data.qvel])[None], np.zeros(1)).phi_dot[0]
+        found = to_coordinates(model, scene, np.concatenate([data.qpos, data.qvel])[None], np.zeros(1)).phi_dot[0]
         _, phi_ddot = accelerations(scene, math.pi - aside, 0.0, 0.0)
         assert found == pytest.approx(float(phi_ddot) * timestep, rel=0.01, abs=0)
 
@@ -214,7 +216,7 @@ def test_a_model_starts_where_it_is_asked_to_and_rolls(rolling: Rolling, visuals
     upright = -scene.gravity if visuals else -scene.gravity * math.cos(0.2)
     assert model.opt.gravity[2] == pytest.approx(upright, rel=1e-15)
     mujoco.mj_step(model, again, 1000)
-    found = read(model, scene, np.concatenate([again.qpos, again.qvel])[None], np.array([0.1]))
+    found = to_coordinates(model, scene, np.concatenate([again.qpos, again.qvel])[None], np.array([0.1]))
     truth = mjbeer.exact(scene, [0.1], phi0=0.7, phi_dot0=2.0)
     distance = abs(found.phi[0] - truth.phi[0]), abs(found.u[0] - truth.u[0]) / scene.can.radius
     assert max(distance) < 1e-7  # RK4, and the softness of a contact
@@ -239,6 +241,6 @@ def test_what_rounding_takes_from_a_model_is_found() -> None:
     """As a mass 1e13 times that of the load does, beyond any can; and what a wrong mass would do."""
     run = simulate(frozen(), 1.0, 1.0)
     model = build(frozen())
-    assert check.lost(model, run.scene, run.spread, run.record, exact_constraint=True) < 1e-13
+    assert check.rounding_error(model, run.scene, run.checkpoints, run.record, exact_constraint=True) < 1e-13
     model.body_mass *= 1 + 1e-4
-    assert check.lost(model, run.scene, run.spread, run.record, exact_constraint=True) > 1e-4
+    assert check.rounding_error(model, run.scene, run.checkpoints, run.record, exact_constraint=True) > 1e-4

@@ -12,24 +12,21 @@ import pathlib
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
-from dataclasses import replace
 
 import mujoco
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, exact, frozen, hoop, pendulum, sliding
-from mjbeer.exceptions import NoLibrationError, OutputError, ParameterError, UnsupportedError
-from mjbeer.model import state
+from mjbeer import Can, Scene, exact, frozen, pendulum, sliding
+from mjbeer.exceptions import OutputError, ParameterError, UnsupportedError
 from mjbeer.model.build import build
-from mjbeer.model.export import export, farthest, present
+from mjbeer.model.export import export, viewer_spec
+from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy, potential_energy
 from tests.support.constraints import applied_share
-from tests.support.scenes import METAL, SCENES, scenes
+from tests.support.scenes import METAL, SCENES
 from tools import portability as others
 from tools.portability import BY_NAME, FRICTION, START
 
@@ -61,11 +58,11 @@ def move(path: pathlib.Path, scene: Scene, start: tuple[float, float] = START, d
     model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)
-    assert np.array_equal(np.concatenate([data.qpos, data.qvel]), state.start(model, scene, *start))
+    assert np.array_equal(np.concatenate([data.qpos, data.qvel]), initial_state(model, scene, *start))
     mujoco.mj_step(model, data, round(duration / model.opt.timestep))
     assert not any(warning.number for warning in data.warning)
     time = np.array([data.time])
-    found = state.read(model, scene, np.concatenate([data.qpos, data.qvel])[None], time)
+    found = to_coordinates(model, scene, np.concatenate([data.qpos, data.qvel])[None], time)
     truth = exact(scene, time, *start)
     return max(abs(found.phi[0] - truth.phi[0]), abs(found.u[0] - truth.u[0]) / scene.can.radius)
 
@@ -102,7 +99,7 @@ def test_an_export_is_the_model_and_moves_exactly(
     assert f"Written by mjbeer: rolling={rolling!r}" in text
     assert move(path, scene) < TOLERANCE[rolling]
     if not portable:
-        assert_same(present(scene, Setting(rolling, timestep=timestep, friction=FRICTION), *START).compile(), path)
+        assert_same(viewer_spec(scene, Setting(rolling, timestep=timestep, friction=FRICTION), *START).compile(), path)
         return
     root = ET.parse(path).getroot()
     assert not re.search(r"diagexact|colorspace|<frame", text)
@@ -192,7 +189,7 @@ ENERGIES = "potential_energy", "kinetic_energy"
 def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[str, float]:
     """The sensors' values, and MuJoCo's energies if they are enabled."""
     data = mujoco.MjData(model)
-    data.qpos[:], data.qvel[:] = np.split(state.start(model, scene, phi, phi_dot), 2)
+    data.qpos[:], data.qvel[:] = np.split(initial_state(model, scene, phi, phi_dot), 2)
     mujoco.mj_forward(model, data)
     found = {model.sensor(i).name: float(data.sensor(i).data[0]) for i in range(model.nsensor)}
     enabled = model.opt.enableflags & int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -204,7 +201,7 @@ def at(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: float) -> dict[
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
     """And energies, or none where a constant force stands for a weight."""
     scene = SCENES[name]
-    model, (phi, phi_dot) = present(scene, Setting(rolling), 0.0, 0.0).compile(), (1.1, -7.0)
+    model, (phi, phi_dot) = viewer_spec(scene, Setting(rolling), 0.0, 0.0).compile(), (1.1, -7.0)
     found, (u, u_dot) = at(model, scene, phi, phi_dot), scene.start(phi, phi_dot)
     expected = {"u": u, "phi": phi, "u_dot": u_dot, "phi_dot": phi_dot}
     if rolling != "reduced":
@@ -221,29 +218,6 @@ def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> 
     # A can in contact starts 1e-9 radii deep.
     assert found == pytest.approx(expected, rel=ROUNDING, abs=(1e-8 if rolling == "contact" else ROUNDING) * scale)
     assert build(scene, rolling).nsensor == 0
-
-
-@pytest.mark.slow
-@settings(max_examples=20, deadline=None, derandomize=True)
-@given(scenes(), st.floats(-4, 4), st.floats(-5, 5), st.sampled_from([0.0, 1e-3, 1.0]))
-def test_no_can_goes_farther_than_the_bound(scene: Scene, phi0: float, swing: float, damping: float) -> None:
-    rate = math.sqrt(scene.gravity / scene.can.radius)
-    if scene.attachment == "sliding":
-        scene = replace(scene, damping=damping * scene.oscillator.base * rate)
-    try:
-        u = exact(scene, np.linspace(0, 3, 31), phi0, swing * rate).u
-    except NoLibrationError:
-        assume(False)
-    assert np.abs(u - u[0]).max() <= farthest(scene, phi0, swing * rate, 3.0) * (1 + 1e-9)  # rounding of a few products
-
-
-def test_a_board_is_as_long_as_ten_seconds_and_as_graphics_can_draw() -> None:
-    light = hoop(1.0, radius=1e-4, length=1e-3)
-    for scene, start, most in ((frozen(1.2), (1.0, 45.0), 1e4), (light, (0.0, 0.0), 10.01)):
-        board, u = present(scene, Setting(), *start).geom("board"), exact(scene, [0.0, 10.0], *start).u
-        low, high = board.pos[0] - board.size[0], board.pos[0] + board.size[0]
-        assert max(-low, high) < most
-        assert most < 11 or low < u.min() < u.max() < high
 
 
 # What others make of portable exports

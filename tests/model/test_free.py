@@ -14,7 +14,7 @@ from mjbeer import Can, attach, build, exact, export, frozen, sliding, standing
 from mjbeer.cli.app import main
 from mjbeer.exceptions import ParameterError, TemplateError
 from mjbeer.model import free, looks, setting
-from mjbeer.model.export import present_standing
+from mjbeer.model.export import standing_viewer_spec
 from mjbeer.model.setting import Setting
 from mjbeer.studies.validation import standing_checks as measured
 from tests.support.scenes import METAL
@@ -29,7 +29,7 @@ def test_a_lying_can_has_the_inertia_of_its_parts(fill: float) -> None:
     spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=exactly)
     spec.worldbody.add_body(name="beer").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=1000)
     model = spec.compile()
-    inertia = free.lying_values(frozen(fill=fill, can=METAL))["inertial load", "diaginertia"]
+    inertia = free.lying_parameters(frozen(fill=fill, can=METAL))["inertial load", "diaginertia"]
     # The mesh is a polygon of 256 edges, and short of the circle by 6e-4.
     assert np.sort(inertia) == pytest.approx(np.sort(model.body("beer").inertia), rel=2e-3)
     sheet = 2 * math.pi * METAL.radius * 0.27
@@ -91,7 +91,7 @@ WRITTEN = 1e-11
 
 def test_the_template_of_a_standing_can_is_the_model() -> None:
     template = mujoco.MjModel.from_xml_path(str(setting.mjcf_folder() / "standing.xml"))
-    made = present_standing(standing(), True, Setting()).compile()
+    made = standing_viewer_spec(standing(), True, Setting()).compile()
     for name in (*ARRAYS, "geom_size", "geom_pos", "geom_friction", "geom_solref", "geom_priority", "geom_condim"):
         if name.startswith("geom"):  # the floor is made last
             pairs = [(getattr(template.geom(each), name[5:]), getattr(made.geom(each), name[5:])) for each in GEOMS]
@@ -129,7 +129,7 @@ def test_the_template_of_a_lying_can_is_the_model_and_rolls_as_theory_says() -> 
 @pytest.mark.slow
 @pytest.mark.parametrize("portable", [False, True])
 def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> None:
-    """The export itself compares what it wrote; portable, it has only what MuJoCo 3.3 knows."""
+    """Portable, it has only what MuJoCo 3.3 knows."""
     export(standing(modes=2), tmp_path / "can.xml", portable=portable, timestep=2e-3, integrator="implicitfast")
     text = (tmp_path / "can.xml").read_text()
     model = mujoco.MjModel.from_xml_string(text)

@@ -8,7 +8,7 @@ import pytest
 
 from mjbeer import Can, Load, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.model import looks
-from mjbeer.model.build import compose
+from mjbeer.model.build import rolling_spec
 from mjbeer.model.setting import ROLLINGS, Setting, mjcf_folder
 from mjbeer.theory.can import LENGTH, RADIUS
 from mjbeer.theory.load import BEER, segment
@@ -23,7 +23,7 @@ CAMERAS = "side", "quarter", "overview"
 
 
 def shown(scene: Scene, rolling: str = "contact") -> tuple[mujoco.MjModel, mujoco.MjData]:
-    return posed(compose(scene, Setting(rolling), visuals=True).compile())
+    return posed(rolling_spec(scene, Setting(rolling), visuals=True).compile())
 
 
 def written(name: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
@@ -103,8 +103,8 @@ def test_the_load_is_the_true_segment_with_foam_on_it(fill: float) -> None:
 def test_the_board_outlasts_the_motion_and_a_stripe_is_a_quarter_turn(low: float, high: float) -> None:
     """And one begins at u = 0: so the can's mark comes round every four stripes."""
     scene = frozen(can=METAL)
-    spec = compose(scene, Setting(), visuals=True)
-    looks.lengthen(spec, scene, low, high)
+    spec = rolling_spec(scene, Setting(), visuals=True)
+    looks.lengthen_board(spec, scene, low, high)
     model = spec.compile()
     middle, half = model.geom("board").pos[0], model.geom("board").size[0]
     assert middle - half <= low - 1.5

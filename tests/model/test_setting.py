@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from mjbeer import build, frozen
-from mjbeer.model.state import start
+from mjbeer.model.joints import initial_state
 from mjbeer.studies.benchmark.points import USUAL
 from mjbeer.studies.benchmark.timing import usual_model
 from tests.support.constraints import applied_share
@@ -26,7 +26,7 @@ def test_constraints_are_mujoco_s_defaults(written: str) -> None:
 
 def started(model: mujoco.MjModel) -> tuple[mujoco.MjData, float]:
     """The frozen can on its way, as MuJoCo sees it, and the share of a hard constraint's force that it has there."""
-    data, at = mujoco.MjData(model), start(model, frozen(), 0.3, 1.0)
+    data, at = mujoco.MjData(model), initial_state(model, frozen(), 0.3, 1.0)
     data.qpos[:], data.qvel[:] = np.split(at, 2)
     mujoco.mj_forward(model, data)
     share = applied_share(model, at)
@@ -55,7 +55,7 @@ def test_constraints_are_tuned() -> None:
     data, share = started(model)
     assert (data.efc_KBIP[0, 2], data.contact[0].friction[0]) == (0.9999, 1e-5)
     assert share == pytest.approx(0.9999, abs=1e-12)
-    at = start(model, frozen(), 0.3, 0.0)
+    at = initial_state(model, frozen(), 0.3, 0.0)
     at[model.joint("lift").qposadr[0]] = 1.0
     assert applied_share(model, at) is None
     model.pair_solimp[0, :2], model.pair_friction[0, :2] = 0.99995, 9e-6  # beyond its limits

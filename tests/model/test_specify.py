@@ -9,8 +9,8 @@ import pytest
 
 from mjbeer import build, exact, frozen, specify
 from mjbeer.exceptions import UnsupportedError
+from mjbeer.model.joints import initial_state
 from mjbeer.model.setting import ROLLINGS
-from mjbeer.model.state import start
 from tests.support.scenes import METAL, SCENES
 
 LOST = "timestep", "integrator", "impratio", "cone", "tolerance", "enableflags", "disableflags", "gravity"
@@ -76,7 +76,7 @@ def test_an_attached_can_that_rolls_by_an_equality_moves_as_theory_says_if_its_d
         parent.frame("slope").quat = [math.cos(SCENE.incline / 2), 0, math.sin(SCENE.incline / 2), 0]
         model = compiled(parent)
         data = mujoco.MjData(model)
-        data.qpos[:], data.qvel[:] = np.split(start(build(SCENE, "equality"), SCENE, 2.0, 0.0), 2)
+        data.qpos[:], data.qvel[:] = np.split(initial_state(build(SCENE, "equality"), SCENE, 2.0, 0.0), 2)
         mujoco.mj_step(model, data, 2000)
         errors.append(abs(float(data.joint("own-roll").qpos[0]) - exact(SCENE, [data.time], 2.0).phi[0]))
     assert errors[0] < 1e-7

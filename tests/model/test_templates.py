@@ -13,9 +13,10 @@ import pytest
 
 from mjbeer import Scene, build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
 from mjbeer.exceptions import TemplateError, UntrustedWarning
-from mjbeer.model import mechanics, setting, state
-from mjbeer.model.check import of_file
-from mjbeer.model.numbers import Numbers
+from mjbeer.model import mjcf_file, setting
+from mjbeer.model.check import file_fault
+from mjbeer.model.joints import initial_joints, joint_addresses
+from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import ROLLINGS, Rolling, Setting
 from tests.support.scenes import METAL, SCENES
 from tools import templates
@@ -44,7 +45,7 @@ def load(name: str) -> mujoco.MjModel:
 
 
 def phi(model: mujoco.MjModel, data: mujoco.MjData) -> tuple[float, float]:
-    joints = [data.joint(name) for name in state.places(model) if name in ("roll", "swing", "phi")]
+    joints = [data.joint(name) for name in joint_addresses(model) if name in ("roll", "swing", "phi")]
     return sum(float(each.qpos[0]) for each in joints), sum(float(each.qvel[0]) for each in joints)
 
 
@@ -67,8 +68,8 @@ def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
     scene, model = FILES[name], load(name)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
-    start, joints = phi(model, data), state.places(model)
-    assert np.allclose(data.qpos, state.at(joints, scene, *start)[0], rtol=1e-11, atol=1e-15)
+    start, joints = phi(model, data), joint_addresses(model)
+    assert np.allclose(data.qpos, initial_joints(joints, scene, *start)[0], rtol=1e-11, atol=1e-15)
     hops = exact(scene, np.linspace(0, 2, 20_001), *start).rolls_until() if name == "hoop" else math.inf
     times, angles, data = roll(model, key, 2.0)
     before = times <= hops
@@ -108,8 +109,8 @@ def test_what_a_viewer_opens_is_made_from_mechanics_and_looks(name: str) -> None
 def test_python_s_default_is_the_file(name: str) -> None:
     """Written with the paper's numbers, a file stays as it is; so its model is the one that `build` makes."""
     (scene, rolling), path = MECHANICS[name], OWN / "mechanics" / f"{name}.xml"
-    values = Numbers.of(scene, Setting(rolling), visuals=True).parameters
-    assert mechanics.differences(mechanics.read(path), values) == []
+    values = Mechanics.of(scene, Setting(rolling), visuals=True).parameters
+    assert mjcf_file.differences(mjcf_file.read(path), values) == []
     model, data = load(f"mechanics/{name}"), []
     for each in (model, build(scene, rolling)):
         data.append(mujoco.MjData(each))
@@ -129,7 +130,7 @@ def test_the_readme_lists_the_parameters_and_what_can_be_named() -> None:
     table = re.findall(r"^\| `(.*?)` \| `(.*?)` \|.*\| ([^|]*) \|$", told["Parameters"], re.MULTILINE)
     rows = [(element, each, files) for element, attributes, files in table for each in attributes.split("`, `")]
     for name, (scene, rolling) in MECHANICS.items():
-        written = {(element, attribute) for element, attribute in Numbers.of(scene, Setting(rolling)).parameters}
+        written = {(element, attribute) for element, attribute in Mechanics.of(scene, Setting(rolling)).parameters}
         here = {(element, attribute) for element, attribute, files in rows if fits(name, files)}
         assert here == written, name
     for section, kind in (("Joints", "joints"), ("Cameras", "cameras"), ("Sensors", "sensors"), ("Keyframes", "keys")):
@@ -154,10 +155,9 @@ def fits(name: str, files: str) -> bool:
 # What is missing
 
 
-def test_no_mjcf_at_all(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(setting, "FOLDERS", (tmp_path / "wheel", tmp_path / "checkout"))
-    with pytest.raises(TemplateError, match=r"no MJCF: neither .*wheel nor .*checkout holds it; reinstall"):
-        simulate(frozen(), 0.1, 1.0)
+def test_no_mjcf_at_all(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(TemplateError, match=r"no MJCF in .*package; reinstall mjbeer"):
+        setting._installed_folder(tmp_path / "checkout" / "src" / "package" / "model" / "setting.py")
 
 
 @pytest.mark.parametrize("file", ["mechanics/frozen_reduced.xml", "looks/board.xml"])
@@ -288,7 +288,9 @@ def test_a_constraint_that_is_softer_is_stepped_as_it_stands(copy: pathlib.Path)
 
 
 def test_all_files_move_as_theory_says() -> None:
-    assert [of_file(OWN, scene.attachment, rolling) for scene, rolling in MECHANICS.values()] == [None] * len(MECHANICS)
+    assert [file_fault(OWN, scene.attachment, rolling) for scene, rolling in MECHANICS.values()] == [None] * len(
+        MECHANICS
+    )
 
 
 def test_a_folder_of_one_s_own_has_looks_of_its_own(copy: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -54,10 +54,10 @@ def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path, monke
 def test_two_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
     """It is whole whenever it is looked at: the one, and then the other."""
     target = tmp_path / "film.mp4"
-    with files.whole(target) as one:
+    with files.atomic_write(target) as one:
         # Only within a file system is a rename atomic; ffmpeg takes the format from the suffix.
         assert (one.parent, one.suffix) == (tmp_path, ".mp4")
-        with files.whole(target) as other:
+        with files.atomic_write(target) as other:
             one.write_text("one")
             other.write_text("other")
         assert target.read_text() == "other"
@@ -71,7 +71,7 @@ def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path,
     target.write_text("old")
 
     def fail() -> None:
-        with files.whole(target) as temporary:
+        with files.atomic_write(target) as temporary:
             temporary.write_text("ne")
             raise error
 

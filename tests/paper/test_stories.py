@@ -12,11 +12,11 @@ from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.race import Race
+from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
 from mjbeer.paper.hopping import MU
 from mjbeer.paper.plots_frozen import footnote_8_as_printed, skids
 from mjbeer.paper.witness import footnote_scene
-from mjbeer.theory.named import in_words
 from mjbeer.theory.trajectory import Trajectory
 from tests.support import stubs
 

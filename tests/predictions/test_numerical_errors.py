@@ -5,7 +5,7 @@ import pytest
 
 from mjbeer import Can, Scene, exact, frozen, pendulum, simulate, sliding
 from mjbeer.model.build import build
-from mjbeer.model.state import read, start
+from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies.benchmark.timing import usual_model
 from mjbeer.studies.predictions import reached_share
@@ -47,8 +47,8 @@ def test_a_can_that_sinks_in_slips(written: str) -> None:
     """
     model = build(METAL, "contact") if written == "tuned" else usual_model("contact, defaults", METAL)
     steps = np.arange(round(2.0 / model.opt.timestep) + 1)
-    states = Stepper(model).run(start(model, METAL, METAL.equilibrium(), 0.0), steps)
-    run = read(model, METAL, states, steps * model.opt.timestep)
+    states = Stepper(model).run(initial_state(model, METAL, METAL.equilibrium(), 0.0), steps)
+    run = to_coordinates(model, METAL, states, steps * model.opt.timestep)
     half, slips = len(run.time) // 2, run.u - METAL.can.radius * run.roll
     slip = float((slips[-1] - slips[half]) / (run.u[-1] - run.u[half]))
     predicted = float(run.lift[half:].mean()) / (2 * METAL.can.radius)

@@ -7,7 +7,7 @@ from mjbeer import frozen, pendulum, sliding
 from mjbeer.exceptions import DivergenceError, ToleranceError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation import run
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from tests.support.scenes import METAL
 
 SETTINGS = [
@@ -27,10 +27,10 @@ TIMES = np.linspace(0, 0.4, 5)
 
 @pytest.fixture(autouse=True)
 def none_idle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run, "_idle", {})
+    monkeypatch.setattr(run, "_pool", {})
 
 
-def bits(prepared: Prepared) -> bytes:
+def bits(prepared: Simulator) -> bytes:
     return prepared.solve(prepared.start(0.7, 2.0), TIMES).states.tobytes()
 
 
@@ -38,15 +38,15 @@ def bits(prepared: Prepared) -> bytes:
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
     for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
         for _ in range(2):  # the second time the model has the scene's numbers already
-            with Prepared.borrowed(scene, setting) as prepared:
-                assert bits(prepared) == bits(Prepared(scene, setting))
-    assert len(run._idle) < len(SCENES)
+            with Simulator.from_pool(scene, setting) as prepared:
+                assert bits(prepared) == bits(Simulator(scene, setting))
+    assert len(run._pool) < len(SCENES)
 
 
 def test_a_set_up_in_use_is_not_lent() -> None:
-    with Prepared.borrowed(SCENES[0], SETTINGS[0]) as one:
+    with Simulator.from_pool(SCENES[0], SETTINGS[0]) as one:
         before = bits(one)
-        with Prepared.borrowed(SCENES[1], SETTINGS[0]) as other:
+        with Simulator.from_pool(SCENES[1], SETTINGS[0]) as other:
             assert other.model is not one.model
         assert bits(one) == before
 
@@ -55,13 +55,13 @@ def test_a_set_up_comes_back_from_a_run_that_failed(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("mjbeer.simulation.tolerance._EVALUATIONS", 100_000)  # soon, and not after millions
     with (
         pytest.raises(DivergenceError),
-        Prepared.borrowed(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed,
+        Simulator.from_pool(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed,
     ):
         failed.solve(np.array([0.0, 0.7, 0.0, 1e9]), np.array([0.0, 100.0]))
-    with Prepared.borrowed(SCENES[0], Setting(tolerance=1e-13)) as prepared:
+    with Simulator.from_pool(SCENES[0], Setting(tolerance=1e-13)) as prepared:
         assert prepared.model is failed.model
         with pytest.raises(ToleranceError):
             prepared.solve(prepared.start(0.7, 2.0), np.array([0.0, 1e5]))
-    with Prepared.borrowed(SCENES[1], SETTINGS[0]) as prepared:
+    with Simulator.from_pool(SCENES[1], SETTINGS[0]) as prepared:
         assert prepared.model is failed.model
-        assert bits(prepared) == bits(Prepared(SCENES[1], SETTINGS[0]))
+        assert bits(prepared) == bits(Simulator(SCENES[1], SETTINGS[0]))

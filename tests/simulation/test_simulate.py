@@ -15,10 +15,10 @@ from mjbeer.cli.app import parse
 from mjbeer.cli.motions import trajectory_of
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
-from tests.support import damped
+from tests.support import damped_motion
 from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")
@@ -152,7 +152,7 @@ def test_far_turns_in_a_step_of_dop853_are_no_alarm() -> None:
     """Its stages are at twelve phases of them: the error is 2e-5 rad, and so says the second run."""
     scene = Scene(Can(0.033, 0.12, 20.0, 0.02), Load(0.2, 0.01, 3e-5), 0.2, "sliding")
     run = simulate(scene, 1, 0.0, 150.0, integrator="DOP853", timestep=0.02)
-    assert run.record.fastest * 0.02 > 2
+    assert run.record.largest_rate * 0.02 > 2
     assert scene.oscillator.unevenness(0.0, 150.0) > 1e-2
     assert error(run) < 1e-4
     assert run.trusted, run.warnings
@@ -162,7 +162,7 @@ def test_strong_damping_in_an_equality_is_no_alarm() -> None:
     """What it takes in a step was once known to fewer digits than the run has, and called a drift of 0.18 rad."""
     scene = sliding(can=METAL, damping=0.1)
     run = simulate(scene, 1, 1.0, rolling="equality", tolerance=7e-6, times=np.linspace(0, 1, 11))
-    assert distance(run, damped.motion(scene, run.time, 1.0), scene.can.radius) < 7e-6
+    assert distance(run, damped_motion.motion(scene, run.time, 1.0), scene.can.radius) < 7e-6
     assert run.trusted, run.warnings
 
 
@@ -185,7 +185,10 @@ def test_what_a_run_says_of_itself_does_not_depend_on_its_samples(rolling: str, 
     assert [re.sub(r"[\d.e-]+", "#", text) for text in one.warnings] == [
         re.sub(r"[\d.e-]+", "#", text) for text in all_samples.warnings
     ]
-    for name in ("slip", "lift", "turned", "rolled", "path", "fastest", "fails_at", "energy_drift"):
+    for name in (
+        *("slip", "lift", "largest_turn", "largest_distance", "angle_covered", "largest_rate"),
+        *("rolling_ends_at", "energy_drift"),
+    ):
         assert getattr(one.record, name) == pytest.approx(getattr(all_samples.record, name), rel=1e-6, abs=1e-15)
     assert one.rolls_until(0.3) == pytest.approx(all_samples.rolls_until(0.3), rel=1e-6)
 
@@ -237,13 +240,13 @@ def test_the_estimate_of_a_contact_has_all_of_its_errors(
 
 
 def test_a_second_run_that_diverges_is_an_infinite_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    run, solve = simulate(frozen(), 0.1, 1.0), Prepared.solve
+    run, solve = simulate(frozen(), 0.1, 1.0), Simulator.solve
 
-    def diverge(self: Prepared, start: np.ndarray, times: np.ndarray) -> None:
+    def diverge(self: Simulator, start: np.ndarray, times: np.ndarray) -> None:
         solve(self, start, times)
         raise DivergenceError("its state is no longer finite")
 
-    monkeypatch.setattr(Prepared, "solve", diverge)
+    monkeypatch.setattr(Simulator, "solve", diverge)
     assert run.error_estimate == math.inf
     assert run.warnings == ("a run at other timesteps diverges: take a much smaller timestep or a better integrator",)
 
@@ -268,7 +271,7 @@ def test_the_solver_of_a_contact_does_not_take_a_light_load_for_nothing() -> Non
     """
     can, load = Can(1e-4, 3e-4, 6e-4, 5e-12), Load(4e-7, 4e-10, 2.3e-15)
     run = simulate(Scene(can, load, 0.0, "sliding"), 15, -3.14, rolling="contact", integrator="DOP853", timestep=0.01)
-    assert run.record.turned > 1
+    assert run.record.largest_turn > 1
     assert run.trusted
     assert phi_error(run) < 2e-8
 

@@ -16,14 +16,14 @@ from mjbeer.exceptions import ParameterError, ToleranceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.model.build import build
-from mjbeer.model.state import read
+from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import accelerations, stiffness
+from mjbeer.theory.equations import accelerations, relaxation_rate
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
-from tests.support import damped
+from tests.support import damped_motion
 from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow
@@ -190,7 +190,7 @@ def test_damped_motions_keep_to_the_tolerance(
     times = np.linspace(0, 8 / unit, 41)
     assume(tolerances._stiffest(scene) * times[-1] < 2e3)  # the reference is explicit
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
-    truth = damped.motion(scene, times, phi0, swing * unit)
+    truth = damped_motion.motion(scene, times, phi0, swing * unit)
     assert distance(run, truth, scene.can.radius, (phi0, scene.start(phi0, 0.0)[0])) <= tolerance
     assert run.error_estimate <= tolerance
     assert run.integrator == "DOP853"
@@ -213,13 +213,13 @@ def test_stiffness_is_the_fast_root(phi: float) -> None:
         above, below = (accelerations(scene, phi, *(rates + sign * change)) for sign in (1, -1))
         columns.append([(up - down) / (2 * aside) for up, down in zip(above[::-1], below[::-1], strict=True)])
     root = -np.linalg.eigvals(np.array(columns).T).real.min()
-    assert stiffness(scene, np.array(phi), rates[0], rates[1]) == pytest.approx(root, rel=1e-4)
+    assert relaxation_rate(scene, np.array(phi), rates[0], rates[1]) == pytest.approx(root, rel=1e-4)
 
 
 @pytest.mark.parametrize("damping", [1e-12, 1e-3])
 def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
     scene, times = sliding(damping=damping), np.linspace(0, 4, 21)
-    truth = damped.motion(scene, times, 2.0)
+    truth = damped_motion.motion(scene, times, 2.0)
     for integrator, timestep, right in (("RK4", 1e-3, True), ("DOP853", 1e-3, True), ("Euler", 5e-3, False)):
         run = simulate(scene, 4, 2.0, integrator=integrator, timestep=timestep, times=times)
         found = distance(run, truth, scene.can.radius)
@@ -235,7 +235,7 @@ def test_a_second_run_estimates_the_error_of_implicit_methods(integrator: str, r
     """Where MuJoCo's accelerations are those of a whole step, they must not be taken for a loss of the model's."""
     scene = sliding(can=METAL, damping=1e-3)
     run = simulate(scene, 1, 1.0, rolling=rolling, integrator=integrator, times=np.linspace(0, 1, 11))
-    found = distance(run, damped.motion(scene, run.time, 1.0), scene.can.radius)
+    found = distance(run, damped_motion.motion(scene, run.time, 1.0), scene.can.radius)
     assert found < run.error_estimate < 5 * found
 
 
@@ -245,7 +245,7 @@ def test_the_forces_of_all_steps_are_those_of_the_motion() -> None:
     truth = exact(MIXED, np.linspace(0, 1, 1001), 1.0, 5.0)
     # An eighth of a step of 1/30 s does not meet the extremes, flat as they are, by (25/s / 240/s)^2 / 2.
     assert run.record.lowest_normal == pytest.approx(truth.forces.normal.min(), rel=5e-3)
-    assert run.record.needed == pytest.approx(truth.forces.needed.max(), rel=5e-3)
+    assert run.record.needed_friction == pytest.approx(truth.forces.needed_friction.max(), rel=5e-3)
 
 
 BEER = liquid("beer", 0.1862714527002634, 0.5462536680818177, METAL)
@@ -307,10 +307,13 @@ def test_the_distance_of_two_runs_is_that_of_their_motions(scene: Scene) -> None
     size, start = 2 * model.nv, random.normal(size=2 * model.nv)
     fine = start + np.cumsum(random.normal(size=(50, size)), axis=0)
     coarse = fine + 1e-3 * random.normal(size=(50, size))
-    solver = tolerances.Solver(model, scene, Dynamics(model))
-    begin = read(model, scene, start[None], np.zeros(1))
+    solver = tolerances.ToleranceLoop(model, scene, Dynamics(model))
+    begin = to_coordinates(model, scene, start[None], np.zeros(1))
     apart = distance(
-        read(model, scene, coarse, times), read(model, scene, fine, times), scene.can.radius, (begin.phi[0], begin.u[0])
+        to_coordinates(model, scene, coarse, times),
+        to_coordinates(model, scene, fine, times),
+        scene.can.radius,
+        (begin.phi[0], begin.u[0]),
     )
     rounding = 1e-10  # of angles that are ten thousand times as large as what they differ by
     assert tolerances._distance(solver._angles, coarse, fine, start) == pytest.approx(apart, rel=rounding)

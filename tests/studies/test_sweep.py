@@ -79,8 +79,11 @@ def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, An
         for name in ("phi", "u", "phi_dot", "u_dot"):
             assert found[name] == getattr(single, name)[-1]
         assert (found["error"], found["trusted"]) == (single.error_estimate, single.trusted)
-        assert (found["energy_drift"], found["friction_needed"]) == (single.energy_drift, single.record.needed)
-        assert (found["lowest_normal"], found["parting_time"]) == (single.record.lowest_normal, single.record.fails_at)
+        assert (found["energy_drift"], found["friction_needed"]) == (single.energy_drift, single.record.needed_friction)
+        assert (found["lowest_normal"], found["parting_time"]) == (
+            single.record.lowest_normal,
+            single.record.rolling_ends_at,
+        )
 
 
 def test_a_run_ends_at_the_first_timestep_after_the_duration_as_in_simulate() -> None:
@@ -193,7 +196,7 @@ def test_a_quantity_without_a_value_leaves_the_others() -> None:
 def test_units_and_the_call_are_attributes() -> None:
     swept = sweep_of_sliding(phi_dot0=0.5)
     assert (swept.phi.attrs["units"], swept.incline.attrs["units"]) == ("rad", "rad")
-    assert (swept.make, swept.tolerance, swept.phi0, swept.phi_dot0) == ("mjbeer.theory.named.sliding", 1e-6, 1.0, 0.5)
+    assert (swept.make, swept.tolerance, swept.phi0, swept.phi_dot0) == ("mjbeer.theory.scenes.sliding", 1e-6, 1.0, 0.5)
     assert swept.phi.sel(fill=0.5).dims == ("incline",)
 
 

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from mjbeer.model.engine import quiet
+from mjbeer.model.mujoco_library import quiet
 
 
 def applied_share(model: mujoco.MjModel, state: np.ndarray) -> float | None:

@@ -125,7 +125,7 @@ def call_and_sleep(port: int) -> dict[str, Any]:
 
 def draw_and_sleep(path: pathlib.Path) -> None:
     """Begin a plot that takes longer than any test, and say so."""
-    with files.whole(path.with_name(f"{path.name}.svg")):
+    with files.atomic_write(path.with_name(f"{path.name}.svg")):
         print("drawing", flush=True)
         time.sleep(3600)
 

@@ -67,11 +67,11 @@ def test_forces_move_the_centre_of_mass(scene: Scene) -> None:
         assert forces.friction[0] == pytest.approx(turning, abs=ROUNDING * scale)  # footnote 1: 0 without a can
     if scene.incline >= 0 and scene.attachment == "frozen":  # footnote 7: at rest it needs tan(alpha)
         forces = rolling_forces(scene, np.array([scene.equilibrium()]), np.zeros(1), 0.0)
-        assert forces.needed == pytest.approx([math.tan(scene.incline)], rel=ROUNDING, abs=ROUNDING)
+        assert forces.needed_friction == pytest.approx([math.tan(scene.incline)], rel=ROUNDING, abs=ROUNDING)
 
 
 def test_forces_where_the_incline_would_have_to_pull() -> None:
     forces = rolling_forces(hoop(), np.array([math.pi, 0.0]), np.full(2, 10.0 * math.sqrt(9.81 / 0.033)), 0.0)
     assert forces.normal[0] < 0 < forces.normal[1]
-    assert forces.needed[0] == math.inf
-    assert math.isfinite(forces.needed[1])
+    assert forces.needed_friction[0] == math.inf
+    assert math.isfinite(forces.needed_friction[1])

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 from mjbeer import LiquidWarning, exact, liquid, sliding
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.equations import slip_rate
-from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, about_run, liquid_in
+from mjbeer.theory.liquid import ENDS, FILM_LOAD, FIT_ERROR, WALL, liquid_in, run_warning
 from mjbeer.theory.load import segment
 from tests.support.scenes import METAL
 
@@ -156,7 +156,7 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     time = run.record.no_lump_at
     speed = float(np.interp(time, run.time, run.u_dot))
     assert speed == pytest.approx(math.sqrt(9.81 * math.cos(scene.incline) * 0.033), rel=2e-3)  # a sample later
-    assert run.record.fastest_slip == np.abs(slip_rate(scene, run.phi_dot, run.u_dot)).max()
+    assert run.record.largest_slip_rate == np.abs(slip_rate(scene, run.phi_dot, run.u_dot)).max()
     (told,) = run.liquid_warnings
     assert f"the liquid as one lump is an order of magnitude only: from t = {time:.6g} s on the wall's" in told
     assert told in run.warnings
@@ -167,7 +167,7 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
         (scene, 200.0, "17.8 to 178 rad/s between can and liquid, but 200"),
         (sliding(damping=1e-3), 1e9, None),  # what is no liquid's may be anything
     ):
-        about = about_run(own, fastest, math.inf, 0.0)
+        about = run_warning(own, fastest, math.inf, 0.0)
         assert about is None if reason is None else reason in (about or "")
 
 
@@ -179,7 +179,7 @@ def test_a_film_is_a_reason_once_the_wall_has_carried_it_up(degrees: float, seco
     """
     scene = liquid("honey", math.radians(degrees))
     run = exact(scene, np.linspace(0, seconds, 801), -scene.incline)
-    film = math.sqrt(7e-3 * 0.033 * run.record.fastest_slip / 9.81)
+    film = math.sqrt(7e-3 * 0.033 * run.record.largest_slip_rate / 9.81)
     carried = FILM_LOAD * film * 0.033 / (math.pi / 2 * 0.033**2)
     assert run.trusted == (share is None)
     if share:

@@ -202,8 +202,8 @@ def case(pick: np.random.Generator, longest: float) -> Case:
         except ParameterError:  # no inertia, or too small a share of it
             continue
     form = made.oscillator
-    torque = max(form.depth, abs(form.slope))
-    pace = math.sqrt(torque / (form.base + form.chord + form.swing)) if torque > 0 else 1.0
+    torque = max(form.depth, abs(form.ramp))
+    pace = math.sqrt(torque / (form.base + form.chord + form.coupling)) if torque > 0 else 1.0
     angles = [0.0, 1.0, 10 ** pick.uniform(-9, 1), *(pick.uniform(-most, most) for most in (3, 100, 1e4))]
     speeds = [0.0, 0.0, pick.uniform(-3, 3), 10 ** pick.uniform(-3, 3), -(10 ** pick.uniform(-3, 3))]
     phi_dot0 = float(pace * pick.choice(speeds))

@@ -73,6 +73,6 @@ def test_separatrix_beside_the_steepest_incline(short: float, sign: int) -> None
     """V is a cubic in a narrow well: as far uphill as half the way downhill to the barrier it is as high as there."""
     scene = frozen(sign * frozen().largest_incline() * (1 - short))
     low, high = (sign * each - abs(scene.equilibrium()) for each in scene.separatrix()[::sign])
-    well = scene.oscillator.crest.well  # its own square is a difference of slope and depth
+    well = scene.oscillator.potential.well  # its own square is a difference of slope and depth
     assert high == pytest.approx(well, abs=ANGLE)
     assert low == pytest.approx(-well / 2, rel=well, abs=ANGLE)

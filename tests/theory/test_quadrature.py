@@ -8,7 +8,7 @@ import pytest
 from mpmath import MPContext
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.quadrature import Clock
+from mjbeer.theory.quadrature import TravelTime
 
 mp = MPContext()
 mp.dps = 30
@@ -34,7 +34,7 @@ def test_pendulum(gap: float) -> None:
     """dt/dpsi = 1/sqrt(1 - m sin^2 psi): a period of 4 K(m), and psi the amplitude function."""
     # 1 - m sin^2 psi, arranged not to cancel where m = 1 - gap is near 1
     rate = Counted(lambda psi: 1 / np.sqrt(np.cos(psi) ** 2 + gap * np.sin(psi) ** 2))
-    clock, m = Clock(rate, 0.0, 2 * math.pi), 1 - mp.mpf(gap)
+    clock, m = TravelTime(rate, 0.0, 2 * math.pi), 1 - mp.mpf(gap)
     quarter = mp.ellipk(m)
     assert abs(clock.duration / (4 * quarter) - 1) < ROUNDING
     time = np.array([0.05, 0.5, 0.99, 1.01, 2.7, 3.9]) * float(quarter)
@@ -59,7 +59,7 @@ def test_pendulum(gap: float) -> None:
 )
 def test_round_trip(rate: Callable, time: Callable) -> None:
     """From edges at which doubles are dense: the peaks are at 0."""
-    clock, psi = Clock(rate, -3.0, 0.0, 30.0), np.linspace(-3, 30, 67)[::-1]
+    clock, psi = TravelTime(rate, -3.0, 0.0, 30.0), np.linspace(-3, 30, 67)[::-1]
     elapsed = time(psi) - time(-3.0)
     slowest = np.array([float(rate(np.array(each))) for each in psi])
     # What the times themselves are rounded by comes back divided by the rate.
@@ -85,5 +85,5 @@ def test_what_is_no_smooth_function_is_refused(rate: Callable) -> None:
     """A number that is wrong and says nothing would be worse; and halving panels must come to an end."""
     counted = Counted(rate)
     with np.errstate(over="ignore"), pytest.raises(ToleranceError, match="too many different orders of magnitude"):
-        Clock(counted, 0.0, 2 * math.pi)
+        TravelTime(counted, 0.0, 2 * math.pi)
     assert counted.evaluations < 1_000_000

@@ -1,4 +1,4 @@
-"""What a can, a load and a scene refuse and take, how scenes vary, and how they are shown and told in words."""
+"""What a can, a load and a scene refuse and take, how scenes vary, and how they are shown."""
 
 import math
 import pickle
@@ -12,7 +12,6 @@ import pytest
 import mjbeer
 from mjbeer import Can, Damping, Load, Scene, exact, frozen, liquid, pendulum, sliding
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.named import damping_in_words, in_words
 
 BEER = Load(0.2, 0.01, 1e-5)
 
@@ -149,9 +148,3 @@ def test_a_scene_is_shown_as_the_call_that_makes_it(scene: Scene, text: str) -> 
     assert eval(text, vars(mjbeer)) == scene
     assert pickle.loads(pickle.dumps(scene)) == scene
     assert repr(pickle.loads(pickle.dumps(scene))) == text
-
-
-def test_what_varies_is_left_out() -> None:
-    assert in_words(frozen(), {"fill", "can", "load"}) == "can, incline 10°"
-    assert in_words(sliding(damping=1e-3, drag=1e-3), {"damping"}) == in_words(sliding())
-    assert damping_in_words(sliding(damping=Damping(1e-5, 0.0, 2e-8))) == "1e-05 N m s + 2e-08 N m s^3 w^2"

@@ -15,8 +15,8 @@ from mjbeer.exceptions import OutputError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run
 from mjbeer.simulation.stepping import Solution
-from mjbeer.theory.equations import Coordinates, part
-from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, axis_drift, doubts
+from mjbeer.theory.equations import Coordinates, select_samples
+from mjbeer.theory.record import ERROR, LIFT, SLIP, Record, axis_drift, failed_checks
 from mjbeer.theory.trajectory import csv
 from tests.support.scenes import METAL, SCENES
 
@@ -137,19 +137,22 @@ def simulated(motion: Trajectory, setting: Setting, estimate: float) -> Run:
     """A motion as if it had been simulated in a setting."""
     values = {field.name: getattr(motion, field.name) for field in fields(motion)}
     solution = Solution(np.zeros((0, 0)), motion.record, estimate)
-    return Run(**values, setting=setting, solution=solution, spread=motion)
+    return Run(**values, setting=setting, solution=solution, checkpoints=motion)
 
 
 def test_a_record_does_not_depend_on_how_a_motion_is_cut() -> None:
     """Not even where rolling stops being possible between two pieces."""
     motion = exact(frozen(), TIME, math.pi)
     whole, pieces = Record.of(motion, motion.scene), Record(motion.scene)
-    fails = int(np.searchsorted(TIME, whole.fails_at))
+    fails = int(np.searchsorted(TIME, whole.rolling_ends_at))
     for samples in np.split(np.arange(len(TIME)), [1, 7, fails, 300]):
-        pieces.add(part(motion, samples))
-    for name in ("slip", "lift", "turned", "rolled", "fastest", "needed", "fails_at", "energy_drift", "axis_drift"):
+        pieces.add(select_samples(motion, samples))
+    for name in (
+        *("slip", "lift", "largest_turn", "largest_distance", "largest_rate", "needed_friction", "rolling_ends_at"),
+        *("energy_drift", "axis_drift"),
+    ):
         assert getattr(pieces, name) == getattr(whole, name)
-    assert pieces.path == pytest.approx(whole.path, rel=1e-12)  # the order of a sum
+    assert pieces.angle_covered == pytest.approx(whole.angle_covered, rel=1e-12)  # the order of a sum
 
 
 @pytest.mark.parametrize("name", ["phi", "u", "phi_dot", "roll", "lift"])
@@ -158,7 +161,7 @@ def test_a_number_that_is_not_finite_is_never_trusted(name: str) -> None:
     arrays = {each: getattr(motion, each).copy() for each in Coordinates.__dataclass_fields__}
     arrays[name][200] = np.nan
     with np.errstate(invalid="ignore"):
-        assert doubts(Record.of(Coordinates(**arrays), motion.scene), "reduced")
+        assert failed_checks(Record.of(Coordinates(**arrays), motion.scene), "reduced")
 
 
 def test_frozen_can_from_the_top_leaves_the_incline() -> None:
@@ -185,10 +188,10 @@ def test_friction_that_holds() -> None:
     assert rest.rolls_until(1.001 * abs(math.tan(scene.incline))) == math.inf
     assert rest.rolls_until(0.999 * abs(math.tan(scene.incline))) == 0
     motion = exact(scene, TIME, 0.0)
-    most = float(motion.forces.needed.max())
+    most = float(motion.forces.needed_friction.max())
     until = motion.rolls_until(0.9 * most)
     assert 0 < until < 2
-    first = np.flatnonzero(motion.forces.needed > 0.9 * most)[0]
+    first = np.flatnonzero(motion.forces.needed_friction > 0.9 * most)[0]
     assert TIME[first - 1] <= until <= TIME[first]
     assert motion.rolls_until(1.01 * most) == math.inf
 

@@ -21,8 +21,8 @@ from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, ROLLINGS
 from mjbeer.output.terminal import say
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import NAMES, liquid, liquid_in
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import DURATION, GRAVITY, PHI0, Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import Standing, standing
 
 SCENES: dict[str, Callable[..., Scene]] = {each.__name__: each for each in (sliding, liquid, frozen, pendulum, hoop)}

@@ -68,7 +68,7 @@ def simulate(given: Namespace) -> int:
     to_output = str(given.output) == "-"
     if to_output and given.json:
         raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
-    with files.whole(given.output) if given.output and not to_output else nullcontext() as temporary:
+    with files.atomic_write(given.output) if given.output and not to_output else nullcontext() as temporary:
         summary = Summary(trajectory_of(given), given.friction)
         if temporary:
             temporary.write_text(csv(summary.trajectory), encoding="utf-8")

@@ -73,7 +73,7 @@ def sweep(given: Namespace) -> int:
     maker = functools.partial(make, SCENES[given.scene])
     cast("Any", maker).__qualname__ = given.scene
     resumed = given.output if given.output.suffix == ".nc" else None
-    with files.whole(given.output) if resumed is None else contextlib.nullcontext() as temporary:
+    with files.atomic_write(given.output) if resumed is None else contextlib.nullcontext() as temporary:
         options |= {"quantity": given.quantity, "output": resumed, "overwrite": given.overwrite, **steps(given)}
         result = sweep(maker, given.duration, **options)
         if temporary and given.output.suffix in PLOTS:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
-from mjbeer.theory.named import damping_in_words
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
@@ -36,7 +36,7 @@ class Summary:
     @cached_property
     def rolls_until(self) -> Mapping[float, float]:
         """Return until when [s] rolling is possible at each coefficient of friction; infinity is to the end."""
-        needed = self.trajectory.record.needed
+        needed = self.trajectory.record.needed_friction
         # Where rolling needs no more than there is, this saves the run that looks for the first time at which it does.
         return {
             friction: math.inf if needed <= friction else self.trajectory.rolls_until(friction)
@@ -84,7 +84,7 @@ class Summary:
             ("highest lift", lift.max(), "radii", "{:.2e}"),
             ("least normal force needed", normal.min(), "N", "{:.4g}"),
             ("largest normal force needed", normal.max(), "N", "{:.4g}"),
-            ("friction coefficient needed", run.record.needed, "", _needed(run)),
+            ("friction coefficient needed", run.record.needed_friction, "", _needed(run)),
             ("can roll without slipping", frictions, "", f"\n{'':<32}".join(ends)),
             *_steady(run.scene),
             ("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
@@ -109,10 +109,10 @@ class Summary:
 
 
 def _needed(run: Trajectory) -> str:
-    if math.isfinite(run.record.needed):
+    if math.isfinite(run.record.needed_friction):
         return "{:.4g} to roll to the end without slipping"
-    ends = f"N < 0 from t = {run.record.fails_at:.6g} s"
-    return f"none is enough: {ends if math.isfinite(run.record.fails_at) else 'nothing presses (N = 0)'}"
+    ends = f"N < 0 from t = {run.record.rolling_ends_at:.6g} s"
+    return f"none is enough: {ends if math.isfinite(run.record.rolling_ends_at) else 'nothing presses (N = 0)'}"
 
 
 def _steady(scene: Scene) -> Generator[Row]:

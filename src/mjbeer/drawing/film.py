@@ -92,7 +92,7 @@ class Take:
         motion = self.trajectory()
         if (np.diff(motion.time) <= 0).any():
             raise ParameterError(
-                f"the times of a trajectory must increase for it to be drawn, got {require.shown(motion.time)}"
+                f"the times of a trajectory must increase for it to be drawn, got {require.format_value(motion.time)}"
             )
         drawn = partial(_pictures, motion, self.look or Look.usual(motion), self.speed)
         return RenderPlan(float(motion.time[0]), float(motion.time[-1]), self.speed, drawn)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mjbeer import require
+from mjbeer.drawing.words import damping_in_words, in_words
 from mjbeer.theory.exact import solution
-from mjbeer.theory.named import damping_in_words, in_words
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 

@@ -12,10 +12,10 @@ import numpy as np
 from mjbeer.drawing import strip
 from mjbeer.drawing.camera import Camera, View, circle, in_space, scale
 from mjbeer.drawing.sheet import INK, UNITS, Box, Colour, Sheet, overlap
+from mjbeer.drawing.words import in_words
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.named import in_words
 from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 

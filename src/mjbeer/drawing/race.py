@@ -15,10 +15,10 @@ from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
+from mjbeer.drawing.words import in_degrees
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import in_degrees
 from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long

@@ -18,9 +18,9 @@ from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import RenderingError
 from mjbeer.model import looks
-from mjbeer.model.build import compile_spec, compose
+from mjbeer.model.build import compile_spec, rolling_spec
+from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import Setting
-from mjbeer.model.state import places
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -78,10 +78,10 @@ class Display:
           UnsupportedError: if MuJoCo cannot compile the geoms of a template.
         """
         lanes = [lane * apart for lane in range(len(scenes))]
-        specs = [compose(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
+        specs = [rolling_spec(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
         for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):
             if scene.load.fill is not None:
-                looks.pour(spec, _resize(scene), _EDGES)
+                looks.shape_beer(spec, _resize(scene), _EDGES)
             for pair in spec.pairs:
                 spec.delete(pair)
             for geom in spec.geoms:
@@ -109,7 +109,7 @@ class Display:
 
     def pose(self, positions: np.ndarray) -> None:
         """Put each can at u [m], phi [rad], roll [rad] and lift [m], one row for each; a frozen load turns with it."""
-        joints = places(self.model)
+        joints = joint_addresses(self.model)
         for number, (scene, (u, phi, roll, lift)) in enumerate(zip(self.scenes, positions, strict=True)):
             values = {"slide": u * scale(scene), "lift": lift * scale(scene), "roll": roll, "swing": phi - roll}
             for name, value in values.items():

@@ -37,7 +37,9 @@ def require_pixels(name: str, pixels: float) -> int:
     """
     number = require.positive(name, pixels)
     if number % 1 != 0 or number > _LARGEST:
-        raise ParameterError(f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.shown(pixels)}")
+        raise ParameterError(
+            f"{name} must be a whole number of pixels up to {_LARGEST}, got {require.format_value(pixels)}"
+        )
     return int(number)
 
 

@@ -55,7 +55,7 @@ def render(
       OutputError: if the file cannot be written.
     """
     if (target := require.path(path)).suffix.lower() != ".mp4":
-        raise ParameterError(f"the file's name must end in .mp4, got {require.shown(str(path))}")
+        raise ParameterError(f"the file's name must end in .mp4, got {require.format_value(str(path))}")
     console = terminal.STDERR if require.boolean("progress", progress) else None
     film = _plan(trajectory, camera, require.positive("speed", speed))
     with terminal.progress_bar(console, len(film.times(fps))) as begin:
@@ -75,7 +75,7 @@ def write(
     plan: RenderPlan, path: pathlib.Path, width: int, height: int, fps: float, seen: Callable[[np.ndarray], None]
 ) -> None:
     """Write a film as a video, as `render` does, and call `seen` with each picture."""
-    with files.whole(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
+    with files.atomic_write(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
 
         def watched() -> Iterator[np.ndarray]:
             for picture in pictures:

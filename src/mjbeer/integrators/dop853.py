@@ -23,7 +23,7 @@ from mjbeer.integrators.dynamics import (
     inner,
     run_blocks,
 )
-from mjbeer.model.engine import LARGEST
+from mjbeer.model.mujoco_library import LARGEST
 
 _ROWS = 16
 """Number of derivatives that are kept: of twelve stages, of the end of the step, three for the continuous output."""

@@ -18,7 +18,7 @@ from numba.extending import intrinsic
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Observer
-from mjbeer.model.engine import address, quiet, untimed
+from mjbeer.model.mujoco_library import address, quiet, untimed
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""

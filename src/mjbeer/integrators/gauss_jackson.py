@@ -50,7 +50,7 @@ from mjbeer.integrators.uneven_time import (
     weighted,
     weights,
 )
-from mjbeer.model.engine import LARGEST
+from mjbeer.model.mujoco_library import LARGEST
 
 _MIDDLE = COUNT // 2
 _ITERATIONS = 30

@@ -5,7 +5,6 @@ is a skeleton: joints, masses, forces and what touches. One that is seen has loo
 """
 
 import copy
-import inspect
 import os
 import threading
 import warnings
@@ -14,11 +13,12 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
-from mjbeer.model import check, looks, mechanics, state
-from mjbeer.model import free as free_cans
-from mjbeer.model.engine import quiet
-from mjbeer.model.numbers import Kind, Numbers
-from mjbeer.model.setting import FRICTION, Integrator, Rolling, Setting, mjcf_folder
+from mjbeer.model import check, looks, mjcf_file
+from mjbeer.model.free import standing_spec
+from mjbeer.model.joints import initial_joints
+from mjbeer.model.mechanics import Mechanics, Structure
+from mjbeer.model.mujoco_library import quiet
+from mjbeer.model.setting import FRICTION, Integrator, Rolling, Setting
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
@@ -26,8 +26,8 @@ START = "start"
 """The name of the keyframe."""
 _SINGULAR = "Inertia matrix is too close to singular"
 """What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
-_skeletons: dict[Kind, mujoco.MjModel] = {}
-"""The skeleton of each kind, with the numbers of the scene that came first."""
+_skeletons: dict[Structure, mujoco.MjModel] = {}
+"""A compiled model of each structure, with the numbers of the scene that came first."""
 _compiling = threading.RLock()
 """Warnings are caught by the whole process, and so by one thread at a time."""
 
@@ -72,13 +72,12 @@ def build(
       UnsupportedError: if MuJoCo cannot have such a model, as for a massless can around a sliding load.
       TemplateError: if a file of MJCF is missing, or lacks an element into which a number is written.
     """
-    if isinstance(scene, Standing):
-        refuse_others(rolling=rolling, friction=friction, phi0=phi0, phi_dot0=phi_dot0)
-        return compile_spec(free_cans.compose(scene, visuals, free, integrator, timestep, mjcf))
-    refuse_held(scene, free)
-    visuals, (phi0, phi_dot0) = require.boolean("visuals", visuals), require.start(phi0, phi_dot0)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
-    spec = compose(scene, setting, visuals)
+    phi0, phi_dot0 = require.start(phi0, phi_dot0)
+    spec = _specification(scene, setting, visuals, free)
+    if isinstance(scene, Standing):
+        require_defaults(phi0=phi0, phi_dot0=phi_dot0)
+        return compile_spec(spec)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec, rigid=setting.rolling == "equality")
     _warn_of_edits(model if visuals else None, scene, setting)
@@ -102,77 +101,79 @@ def specify(
     specification, bodies keep their joints, masses and geoms, and lose all options: `mjcf/README.md` lists those that
     the parent needs.
     """
-    if isinstance(scene, Standing):
-        refuse_others(rolling=rolling, friction=friction)
-        return free_cans.compose(scene, visuals, free, integrator, timestep, mjcf)
-    refuse_held(scene, free)
-    visuals = require.boolean("visuals", visuals)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
-    spec = compose(scene, setting, visuals)
-    _warn_of_edits(compile_spec(spec.copy()) if visuals else None, scene, setting)
+    spec = _specification(scene, setting, visuals, free)
+    if isinstance(scene, Scene):
+        _warn_of_edits(compile_spec(spec.copy()) if visuals else None, scene, setting)
     return spec
+
+
+def _specification(scene: Scene | Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
+    visuals = require.boolean("visuals", visuals)
+    if isinstance(scene, Standing):
+        require_defaults(rolling=setting.rolling, friction=setting.friction)
+        return standing_spec(scene, setting, visuals, require.boolean("free", free))
+    require_rolling(scene, free)
+    return rolling_spec(scene, setting, visuals)
 
 
 def _warn_of_edits(seen: mujoco.MjModel | None, scene: Scene, setting: Setting) -> None:
     """Give a warning to whoever calls if the mechanics file, or a model with looks, does not move as theory says."""
-    if fault := edited(scene, setting, seen):
+    if fault := mechanics_fault(scene, setting, seen):
         warnings.warn(f"{fault}; the model is as the file has it", UntrustedWarning, stacklevel=3)
 
 
-def edited(scene: Scene, setting: Setting, seen: mujoco.MjModel | None = None) -> str | None:
+def mechanics_fault(scene: Scene, setting: Setting, seen: mujoco.MjModel | None = None) -> str | None:
     """Return what is wrong with the mechanics file of a scene, or with a model of it with looks; None if nothing is."""
-    folder = mjcf_folder(setting.mjcf)
-    if fault := check.of_file(folder, scene.attachment, setting.rolling):
+    if fault := check.file_fault(setting.folder, scene.attachment, setting.rolling):
         return fault
-    if seen is not None and (fault := check.of_model(seen, scene, setting)):
-        return f"{folder / 'looks'}, in {looks.name(scene)}, {fault}"
+    if seen is not None and (fault := check.model_fault(seen, scene, setting)):
+        return f"{setting.folder / 'looks'}, in {looks.name(scene)}, {fault}"
     return None
 
 
-def refuse_others(**given: object) -> None:
+def require_defaults(**given: object) -> None:
     """Refuse what is said of a standing can that has a meaning for a can that rolls on an incline only."""
-    defaults = {name: each.default for name, each in inspect.signature(build).parameters.items()}
     for name, value in given.items():
-        if value != defaults[name]:
-            raise ParameterError(f"a standing can has no {name}, got {require.shown(value)}")
+        if value != {"rolling": "reduced", "friction": FRICTION}.get(name, 0.0):
+            raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
 
 
-def refuse_held(scene: Scene, free: bool) -> None:
+def require_rolling(scene: Scene, free: bool) -> None:
     """Check that what is no standing can is a scene, and that it is not to be held: its can always rolls."""
     require.instance("scene", scene, Scene)
     if not require.boolean("free", free):
         raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
 
 
-def compose(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
+def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:
     """Return the specification of a scene in a setting, from its mechanics file and, with `visuals`, from the looks.
 
     What is only stepped lacks what is only seen or measured, and what exerts no force. A file that does not move as
     theory says is left whole.
     """
-    made, folder = Numbers.of(scene, setting, visuals), mjcf_folder(setting.mjcf)
-    path = folder / "mechanics" / f"{made.file}.xml"
-    root = mechanics.read(path)
-    mechanics.write(root, made.parameters, path)
-    mechanics.remove(root, "keyframe")  # of the file's own scene
-    right = check.of_file(folder, scene.attachment, setting.rolling) is None
+    mechanics, folder = Mechanics.of(scene, setting, visuals), setting.folder
+    path = folder / "mechanics" / f"{mechanics.file}.xml"
+    root = mjcf_file.read(path)
+    mjcf_file.write(root, mechanics.parameters, path)
+    mjcf_file.remove(root, "keyframe")  # of the file's own scene
     if visuals:
-        if right:
-            mechanics.remove_idle(root)
-        looks.dress(root, looks.name(scene))
-        if made.force or made.unit != 1:
-            mechanics.remove_energies(root)
-    elif right:
-        mechanics.leave_out(root)
-    spec = mechanics.to_spec(root, path)
+        if not mechanics.force:  # a viewer would show a slider for it
+            mjcf_file.remove(root, "general[@name='weight']")
+        looks.include_looks(root, looks.name(scene))
+        if mechanics.force or mechanics.unit != 1:
+            mjcf_file.remove_energies(root)
+    elif check.file_fault(folder, scene.attachment, setting.rolling) is None:
+        mjcf_file.remove_unused(root, mechanics.acting, scene.dissipates)
+    spec = mjcf_file.to_spec(root, path)
     if visuals:
-        looks.fit(spec, scene, folder)
+        looks.fit_to_scene(spec, scene, folder)
     return spec
 
 
 def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -> None:
     """Add the keyframe "start" to a specification that has nothing but a scene's joints."""
-    qpos, qvel = state.at([joint.name for joint in spec.joints], scene, phi0, phi_dot0)
+    qpos, qvel = initial_joints([joint.name for joint in spec.joints], scene, phi0, phi_dot0)
     spec.add_key(name=START, qpos=qpos, qvel=qvel)
 
 
@@ -189,43 +190,51 @@ def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
     return model
 
 
-class Stepped:
-    """A model to be stepped and its data, for one thread at a time; scenes of its kind are written into it in place."""
+class ReusableModel:
+    """A model to be stepped and its data, for one thread at a time.
 
-    def __init__(self, made: Numbers) -> None:
+    The numbers of other scenes of the same structure are written into it in place.
+    """
+
+    def __init__(self, mechanics: Mechanics) -> None:
+        structure = mechanics.structure
         with _compiling:
-            if (skeleton := _skeletons.get(made.kind)) is None:
-                if fault := edited(made.scene, made.setting):
+            if (skeleton := _skeletons.get(structure)) is None:
+                if fault := mechanics_fault(mechanics.scene, mechanics.setting):
                     raise TemplateError(fault)
-                skeleton = compile_spec(compose(made.scene, made.setting), made.setting.rolling == "equality")
-                _skeletons[made.kind] = skeleton
+                spec = rolling_spec(mechanics.scene, mechanics.setting)
+                skeleton = _skeletons[structure] = compile_spec(spec, mechanics.setting.rolling == "equality")
         self.model = copy.copy(skeleton)
         self.data = mujoco.MjData(self.model)
-        self._made: Numbers | None = None
-        self._places = mechanics.places(self.model, made.parameters)
-        self.write(made)
+        self._written: Mechanics | None = None
+        self._views = mjcf_file.compiled_views(self.model, mechanics.parameters)
+        self.write(mechanics)
 
-    def write(self, made: Numbers) -> None:
-        """Write numbers of the same kind into the model, if they are new, and reset the data: with the same errors."""
-        model, data = self.model, self.data
-        if made == self._made:
+    def write(self, mechanics: Mechanics) -> None:
+        """Write numbers of the same structure into the model, if they are new, and reset the data.
+
+        Raises:
+          UnsupportedError: if MuJoCo cannot have such a model.
+        """
+        model, data, rolling = self.model, self.data, mechanics.setting.rolling
+        if mechanics == self._written:
             mujoco.mj_resetData(model, data)
             return
-        self._made = None  # until all of it is written
-        mechanics.write_compiled(model, made.parameters, self._places)
+        self._written = None  # until all of it is written
+        mjcf_file.write_compiled(model, mechanics.parameters, self._views)
         data.warning.number[:] = 0  # of the scene before
         with quiet():
             mujoco.mj_setConst(model, data)
-        if made.setting.rolling != "reduced":
+        if rolling != "reduced":
             model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
-        if made.setting.rolling == "equality":
+        if rolling == "equality":
             _make_rigid(model)
-        if min(min(body.mass, body.inertia) for body in made.bodies.values()) < mujoco.mjMINVAL:
+        if min(min(body.mass, body.inertia) for body in mechanics.bodies.values()) < mujoco.mjMINVAL:
             raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
         if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
             raise _refused(_SINGULAR)
         mujoco.mj_resetData(model, data)
-        self._made = made
+        self._written = mechanics
 
 
 def _make_rigid(model: mujoco.MjModel) -> None:

@@ -16,14 +16,14 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import TemplateError
-from mjbeer.model import mechanics
-from mjbeer.model.engine import quiet
-from mjbeer.model.numbers import Numbers
+from mjbeer.model import mjcf_file
+from mjbeer.model.joints import START_DEPTH, joint_addresses, to_coordinates, to_states
+from mjbeer.model.mechanics import Mechanics
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import Rolling, Setting
-from mjbeer.model.state import START_DEPTH, places, read, write
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import Coordinates, accelerations, part, stiffness
+from mjbeer.theory.equations import Coordinates, accelerations, relaxation_rate, select_samples
 from mjbeer.theory.load import Load
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Attachment, Scene
@@ -41,7 +41,7 @@ the can above the origin and a board that is tilted, rounding takes up to 1e-13 
 
 
 @functools.lru_cache(maxsize=64)
-def of_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> str | None:
+def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> str | None:
     """Return what is wrong with a mechanics file, None if nothing is: as it stands, and with other numbers in it.
 
     As it stands it must be the paper's can. The other numbers are those of a scene that needs all that is in it.
@@ -50,21 +50,21 @@ def of_file(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -> s
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
     paper = Scene(metal, Load.segment(), attachment=attachment)
     for scene, given in ((_PROBES[attachment], True), (paper, False)):
-        root, values = mechanics.read(path), Numbers.of(scene, setting, visuals=True).parameters
+        root, values = mjcf_file.read(path), Mechanics.of(scene, setting, visuals=True).parameters
         if given:
-            mechanics.write(root, values, path)
+            mjcf_file.write(root, values, path)
         try:
-            model = mechanics.to_spec(root, path).compile()
+            model = mjcf_file.to_spec(root, path).compile()
         except ValueError as error:
             raise TemplateError(f"{path} is refused by MuJoCo: {'; '.join(str(error).splitlines())}") from error
-        edited = [] if given else mechanics.differences(root, values)
+        edited = [] if given else mjcf_file.differences(root, values)
         told = f"; mjbeer writes a scene's own numbers into {', '.join(edited)}" if edited else ""
-        if (fault := of_model(model, scene, setting)) or edited:
+        if (fault := model_fault(model, scene, setting)) or edited:
             return f"{path} {fault or 'has other numbers than the paper'}{told}"
     return None
 
 
-def of_model(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | None:
+def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | None:
     """Return how a model moves otherwise than its scene, None if it does not.
 
     It must have the scene's joints, no constraint but that of rolling, and theory's accelerations at a few states.
@@ -74,7 +74,7 @@ def of_model(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | Non
         joints = ("slide", "phi") if sliding else ("phi",)
     else:
         joints = ("slide", *(("lift",) if rolling == "contact" else ()), "roll", *(("swing",) if sliding else ()))
-    if (found := tuple(places(model))) != joints:
+    if (found := tuple(joint_addresses(model))) != joints:
         return f"gives the joints {', '.join(found)}, not {', '.join(joints)}"
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
@@ -82,7 +82,7 @@ def of_model(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | Non
     roll, roll_dot = (phi[::-1], phi_dot[::-1]) if sliding else (phi, phi_dot)
     rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
     lift = zeros - START_DEPTH * radius
-    states = write(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
+    states = to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
     difference, _ = residual(model, scene, states, exact_constraint=False)
     size = np.abs(accelerations(scene, phi, phi_dot, rates["u_dot"])[1]).max() + rate**2
     if not difference <= _ALLOWED * size:
@@ -99,16 +99,18 @@ def of_model(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | Non
     return None
 
 
-def lost(model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, exact_constraint: bool) -> float:
+def rounding_error(
+    model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, exact_constraint: bool
+) -> float:
     """Return the error of phi [rad], relative beyond 1 rad, that a model's residual along the way of a run implies.
 
     Like a relative error of the energy it is a relative error of the rate, and so of the path of phi. It is no more
     than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
     """
     chosen = np.linspace(0, len(way.time) - 1, min(9, len(way.time))).astype(int)  # states, evenly spread
-    difference, relative = residual(model, scene, write(model, part(way, chosen)), exact_constraint)
-    missing = min(relative * max(record.path, 1.0), difference * float(way.time[-1]) ** 2 / 2)
-    return missing / max(1.0, record.turned)
+    difference, relative = residual(model, scene, to_states(model, select_samples(way, chosen)), exact_constraint)
+    missing = min(relative * max(record.angle_covered, 1.0), difference * float(way.time[-1]) ** 2 / 2)
+    return missing / max(1.0, record.largest_turn)
 
 
 def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> tuple[float, float]:
@@ -118,11 +120,11 @@ def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_cons
     and a constraint that is not exact is replaced by that of rolling.
     """
     times, radius = np.zeros(len(states)), scene.can.radius
-    motion = read(model, scene, states, times)
+    motion = to_coordinates(model, scene, states, times)
     motion = replace(motion, u=radius * motion.roll, u_dot=radius * motion.roll_dot)
-    states = write(model, motion)
+    states = to_states(model, motion)
     slopes = np.concatenate([states[:, model.nq :], _accelerations(model, scene, states, exact_constraint)], axis=1)
-    found = read(model, scene, slopes, times).phi_dot
+    found = to_coordinates(model, scene, slopes, times).phi_dot
     _, right = accelerations(scene, motion.phi, motion.phi_dot, motion.u_dot)
     oscillator = scene.oscillator
     # A motion that hardly swings would divide rounding by nearly nothing: the least is a tenth of what gravity gives.
@@ -130,7 +132,7 @@ def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_cons
     differences = np.abs(found - right)
     if scene.dissipates:  # the rounding of a slip rate makes a torque that brings can and load together, and so is gone
         rates = np.abs(motion.phi_dot) + np.abs(motion.u_dot) / radius
-        together = stiffness(scene, motion.phi, motion.phi_dot, motion.u_dot)
+        together = relaxation_rate(scene, motion.phi, motion.phi_dot, motion.u_dot)
         differences = np.maximum(differences - 8 * np.finfo(float).eps * together * rates, 0.0)
     largest, difference = max(float(np.abs(right).max()), small), float(differences.max())
     return difference, difference / largest if largest > 0 else 0.0
@@ -142,7 +144,7 @@ def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exac
         model = copy.copy(model)
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     data, found, inertia = mujoco.MjData(model), np.empty((len(states), model.nv)), np.empty((model.nv, model.nv))
-    joints, rolling = places(model), np.zeros((2, model.nv))
+    joints, rolling = joint_addresses(model), np.zeros((2, model.nv))
     if "roll" in joints:  # the motions that roll without slipping: of the axis, and of phi alone
         rolling[0, [joints["slide"], joints["roll"]]] = scene.can.radius, 1.0
         if "swing" in joints:

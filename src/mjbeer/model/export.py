@@ -8,13 +8,20 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
-from mjbeer.model import looks, setting, state
-from mjbeer.model.build import START, add_start, compile_spec, compose, edited, refuse_held, refuse_others
-from mjbeer.model.engine import library
-from mjbeer.model.free import compose as compose_free
+from mjbeer.model import looks, setting
+from mjbeer.model.build import (
+    START,
+    add_start,
+    compile_spec,
+    mechanics_fault,
+    require_defaults,
+    require_rolling,
+    rolling_spec,
+)
+from mjbeer.model.free import standing_spec
+from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import Setting
 from mjbeer.output import files
-from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import QUANTITATIVE, Standing
 
@@ -62,12 +69,14 @@ def export(
       OutputError: if the file cannot be written.
     """
     if isinstance(scene, Standing):
-        refuse_others(rolling=rolling, phi0=phi0, phi_dot0=phi_dot0, friction=friction)
+        require_defaults(rolling=rolling, phi0=phi0, phi_dot0=phi_dot0, friction=friction)
     else:
-        refuse_held(scene, free)
+        require_rolling(scene, free)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
-        raise ParameterError(f"MJCF is written: the file's name must end in .xml, got {require.shown(target.name)}")
+        raise ParameterError(
+            f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
+        )
     made = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     if made.integrator in setting.OWN:
         raise UnsupportedError(
@@ -80,12 +89,12 @@ def export(
             "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
         )
     if isinstance(scene, Standing):
-        spec = present_standing(scene, free, made)
+        spec = standing_viewer_spec(scene, free, made)
         spec.comment = f" Written by mjbeer: {scene!r}. "
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
     else:
-        spec = present(scene, made, phi0=phi0, phi_dot0=phi_dot0)
+        spec = viewer_spec(scene, made, phi0=phi0, phi_dot0=phi_dot0)
         if portable:
             _soften(spec, scene)
         spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
@@ -98,30 +107,28 @@ def export(
     files.write(target, _portable(text, model) if portable else text)
 
 
-def present(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
+def viewer_spec(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
     """Return the specification of a scene to be shown, which starts at `phi0` [rad] with `phi_dot0` [rad/s].
 
     The errors are those of `build` with `visuals`.
     """
-    spec = compose(scene, made, visuals=True)
-    u = scene.start(phi0, phi_dot0)[0]
-    # The board is for ten seconds. Beyond 1e5 radii single precision draws a can a percent of its radius off its place.
-    way = min(farthest(scene, phi0, phi_dot0, 10.0), 1e5 * scene.can.radius)
-    looks.lengthen(spec, scene, u - way, u + way)
+    spec = rolling_spec(scene, made, visuals=True)
+    u, far = scene.start(phi0, phi_dot0)[0], 1e4 * scene.can.radius  # a can of 33 mm takes 20 s for it on 10 degrees
+    looks.lengthen_board(spec, scene, u - far, u + far)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec)
-    if fault := edited(scene, made, model):
+    if fault := mechanics_fault(scene, made, model):
         raise TemplateError(fault)
     spec.visual.global_.cameraid = model.camera(CAMERA).id
     return spec
 
 
-def present_standing(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
+def standing_viewer_spec(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
     """Return the specification of a standing can to be shown; if it is free, with its keyframes.
 
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
-    spec = compose_free(can, True, free, made.integrator, made.timestep, made.mjcf)
+    spec = standing_spec(can, made, visuals=True, free=free)
     spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
     if not free:
         return spec
@@ -135,17 +142,6 @@ def present_standing(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
         spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
     spec.add_key(name="fall", qpos=[0, 0, above, *leaning, *rest])
     return spec
-
-
-def farthest(scene: Scene, phi0: float, phi_dot0: float, duration: float) -> float:
-    """Return a distance that the axis does not exceed within a `duration` [s], from its start uphill or downhill [m].
-
-    The centre of mass is within m b/m_t of the axis, and has m_t v^2/2 <= E + m_t g s sin(alpha), where E is the
-    kinetic energy of the start and what the load gains in half a turn: s <= sqrt(2 E/m_t) t + g sin(alpha) t^2/2.
-    """
-    energy = float(kinetic_energy(scene, state.begin(scene, phi0, phi_dot0))) + 2 * scene.load.moment * scene.gravity
-    fallen = scene.gravity * abs(math.sin(scene.incline)) * duration**2 / 2
-    return math.sqrt(2 * energy / scene.mass) * duration + fallen + 2 * scene.load.moment / scene.mass
 
 
 def _text(spec: mujoco.MjSpec) -> str:
@@ -190,15 +186,15 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
         if light.get("type") == "directional":
             del light.attrib["type"]
             light.set("directional", "true")
-    _dissolve(root, model)
+    _dissolve_frames(root, model)
     ET.indent(root)
     return ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _dissolve(parent: ET.Element, model: mujoco.MjModel) -> None:
+def _dissolve_frames(parent: ET.Element, model: mujoco.MjModel) -> None:
     """Replace frames, down the tree, by what is in them, at the places in its body that the compiled model has."""
     for child in list(parent):
-        _dissolve(child, model)
+        _dissolve_frames(child, model)
         if child.tag == "frame":
             for element in child:
                 there = getattr(model, element.tag)(element.get("name"))

@@ -8,7 +8,6 @@ cylinder.
 
 import functools
 import math
-import os
 import pathlib
 import warnings
 import xml.etree.ElementTree as ET
@@ -19,12 +18,12 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
-from mjbeer.model import looks, mechanics, numbers
-from mjbeer.model.setting import INTEGRATORS, Integrator, mjcf_folder
+from mjbeer.model import looks, mechanics, mjcf_file
+from mjbeer.model.setting import INTEGRATORS, Setting, mjcf_folder
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
-from mjbeer.theory.named import sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import sliding
 from mjbeer.theory.standing import MOST_MODES, Standing, standing
 
 _BOB = 1e-3, 0.1
@@ -86,9 +85,11 @@ def attach(
     for name, value, array, count in (("pos", pos, place[0], 3), ("quat", quat, place[1], 4)):
         if len(array) != count or (name == "quat" and not array.any()):
             zero = ", not all 0" if name == "quat" else ""
-            raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.shown(value)}")
+            raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.format_value(value)}")
     if not (isinstance(prefix, str) and prefix and prefix.isprintable()):  # MuJoCo's names end at the first "\0"
-        raise ParameterError(f"prefix must be a text that can be printed and is not empty, got {require.shown(prefix)}")
+        raise ParameterError(
+            f"prefix must be a text that can be printed and is not empty, got {require.format_value(prefix)}"
+        )
     if parent.body(f"{prefix}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
@@ -96,9 +97,9 @@ def attach(
     listed = friction if several else [friction]
     coefficients = [] if friction is None else [require.non_negative("friction", each) for each in listed]
     if friction is not None and not 1 <= len(coefficients) <= 3:
-        raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.shown(friction)}")
+        raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
     lying = isinstance(can, Scene)
-    child = _lying(can) if lying else _standing(require.instance("can", can, Standing))
+    child = _lying_spec(can) if lying else _standing_spec(require.instance("can", can, Standing))
     option = parent.option
     if option.cone == _CONES.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
@@ -106,13 +107,13 @@ def attach(
         option.impratio = child.option.impratio
     if lying and option.integrator == _KINDS.mjINT_EULER:
         option.integrator = child.option.integrator
-    reasons = [*_spoilt(parent.option, can), *_bounded(parent.compiler, child)]
+    reasons = _spoiling_options(parent.option, can)
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
     if isinstance(can, Scene):
         kind = _KINDS(parent.option.integrator).name.removeprefix("mjINT_")
         integrator = next(each for each in INTEGRATORS if each.upper() == kind)
-        touching.solref = [numbers.stiffest(integrator, parent.option.timestep, contact=True), 1]
+        touching.solref = [mechanics.stiffest(integrator, parent.option.timestep, contact=True), 1]
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
     root = child.body("can")
     root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
@@ -137,11 +138,11 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     """
     require.instance("model", model, mujoco.MjModel)
     if not (isinstance(prefix, str) and prefix.isprintable()):
-        raise ParameterError(f"prefix must be a text that can be printed, got {require.shown(prefix)}")
+        raise ParameterError(f"prefix must be a text that can be printed, got {require.format_value(prefix)}")
     if isinstance(can, Scene):
-        spec, drawn = _lying(can, visuals=False), {}
+        spec, drawn = _lying_spec(can, visuals=False), {}
     else:
-        spec, drawn = _standing(require.instance("can", can, Standing), visuals=False), looks.column(can)
+        spec, drawn = _standing_spec(require.instance("can", can, Standing), visuals=False), looks.beer_column(can)
     _require_parts(model, prefix, spec, can)
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
@@ -162,7 +163,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
             geom = model.geom(f"{prefix}{name}")
             geom.pos[2], geom.size[1] = (low + high) / 2, (high - low) / 2
     mujoco.mj_setConst(model, mujoco.MjData(model))  # which it takes as its workspace
-    if reasons := _spoilt(model.opt, can):
+    if reasons := _spoiling_options(model.opt, can):
         warnings.warn(f"the model's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
 
 
@@ -175,22 +176,23 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
     size = [shell.radius, shell.length / 2]  # written to MJCF with 6 digits or more
     if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
         raise ParameterError(
-            f"the model must have a can under the prefix {require.shown(prefix)} with radius and half length {size} m "
-            f"and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, got {require.shown(can)}"
+            f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
+            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
+            f"got {require.format_value(can)}"
         )
 
 
-def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
+def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     """Return what a world's options spoil."""
     reasons, size = [], float(np.linalg.norm(option.gravity))
-    explicit, decay = option.integrator == _KINDS.mjINT_RK4, _decay(can)
+    explicit, decay = option.integrator == _KINDS.mjINT_RK4, _fastest_decay(can)
     if isinstance(can, Scene):
         if not explicit:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
     elif can.modes > 0 and (turned := option.timestep * float(can.frequencies()[-1])) > _COARSE:
         reasons.append(
             f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by "
-            f"{require.above(turned, _COARSE)} rad in it, not {_COARSE:g} or less"
+            f"{require.format_above(turned, _COARSE)} rad in it, not {_COARSE:g} or less"
         )
     if explicit and option.timestep * decay > _RK4:
         remedy = "" if isinstance(can, Scene) else ", or another integrator"
@@ -206,21 +208,7 @@ def _spoilt(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     return reasons
 
 
-def _bounded(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str]:
-    """Return what a parent's compiler does to the masses of a can."""
-    reasons, moving = [], [body for body in child.bodies if body.mass > 0]
-    if compiler.settotalmass > 0:
-        reasons.append("settotalmass scales its masses")
-    for name, least in (
-        ("boundmass", min(body.mass for body in moving)),
-        ("boundinertia", min(min(body.inertia) for body in moving)),
-    ):
-        if getattr(compiler, name) > least:
-            reasons.append(f"{name} raises what is less, from {least:.2g} on, once the world is saved and read again")
-    return reasons
-
-
-def _decay(can: Standing | Scene) -> float:
+def _fastest_decay(can: Standing | Scene) -> float:
     """Return the largest rate [1/s] at which damping slows a spin, of a bob or of a can that turns around its load.
 
     Where damping grows with the rate, it is that at the frequency of the first mode, or at sqrt(g/a): thrown at 1 m/s,
@@ -229,42 +217,35 @@ def _decay(can: Standing | Scene) -> float:
     if isinstance(can, Scene):
         if not can.damping_law:
             return 0.0
-        load, slope = can.load, can.damping_law.slope(math.sqrt(can.gravity / can.can.radius))
+        load, slope = can.load, can.damping_law.derivative(math.sqrt(can.gravity / can.can.radius))
         return float(slope * (1 / can.can.inertia + 1 / (load.inertia + load.moment * load.offset)))
     if can.modes == 0:
         return 0.0
     ratios, omega = can.damping_ratios(), can.frequencies()
-    return float(np.max(2 * (ratios * omega + _BREAKING * omega[0] ** 2 / omega) / _shares(can)))
+    return float(np.max(2 * (ratios * omega + _BREAKING * omega[0] ** 2 / omega) / _bob_shares(can)))
 
 
-def _shares(can: Standing) -> np.ndarray:
+def _bob_shares(can: Standing) -> np.ndarray:
     """Return the share of each pendulum's inertia that its bob has about itself."""
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
 
 
-def compose(
-    can: Standing,
-    visuals: bool,
-    free: bool,
-    integrator: Integrator,
-    timestep: float,
-    mjcf: str | os.PathLike[str] | None = None,
-) -> mujoco.MjSpec:
+def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
     """Return the specification of a standing can: on the floor if it is `free`, or else held by the world."""
-    spec = _standing(can, require.boolean("visuals", visuals), require.boolean("free", free), mjcf_folder(mjcf))
-    integrator = require.choice("integrator", integrator, INTEGRATORS)
+    integrator = require.choice("integrator", setting.integrator, INTEGRATORS)
+    spec = _standing_spec(can, visuals, free, setting.folder)
     spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
-    spec.option.timestep = require.within("timestep", timestep, *require.TIMESTEP, "s")
+    spec.option.timestep = setting.timestep
     return spec
 
 
-def _standing(
+def _standing_spec(
     can: Standing, visuals: bool = True, free: bool = False, folder: pathlib.Path | None = None
 ) -> mujoco.MjSpec:
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
     root, path = _read("standing", folder or mjcf_folder())
     if not free:
-        mechanics.remove(root, "freejoint", "geom[@name='surface']")
+        mjcf_file.remove(root, "freejoint", "geom[@name='surface']")
     parents = [*root.iterfind(".//body[@name='can']"), *root.iterfind("sensor")]
     first = [(parent, each) for parent in parents for each in parent if "slosh1" in each.get("name", "")]
     for mode in range(2, can.modes + 1):
@@ -273,43 +254,43 @@ def _standing(
     if can.modes == 0:
         for parent, each in first:
             parent.remove(each)
-    mechanics.write(root, standing_values(can), path)
+    mjcf_file.write(root, standing_parameters(can), path)
     if visuals:
-        looks.dress(root, "standing")
-    spec = mechanics.to_spec(root, path)
+        looks.include_looks(root, "standing")
+    spec = mjcf_file.to_spec(root, path)
     if visuals:
-        looks.fit_upright(spec, can, path.parents[1])
+        looks.fit_to_standing(spec, can, path.parents[1])
     return spec
 
 
-def _lying(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
+def _lying_spec(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a lying can, which has no free joint yet."""
-    values = lying_values(scene)
+    values = lying_parameters(scene)
     root, path = _read("lying", mjcf_folder())
-    mechanics.remove(root, "freejoint")
+    mjcf_file.remove(root, "freejoint")
     if scene.attachment == "frozen":
-        mechanics.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
+        mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
     values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
-    mechanics.write(root, values, path)
+    mjcf_file.write(root, values, path)
     if visuals:
-        looks.dress(root, looks.name(scene))
-    spec = mechanics.to_spec(root, path)
+        looks.include_looks(root, looks.name(scene))
+    spec = mjcf_file.to_spec(root, path)
     if visuals:
-        looks.fit(spec, scene, path.parents[1])
+        looks.fit_to_scene(spec, scene, path.parents[1])
     return spec
 
 
 def _read(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:
     """Return a mechanics file without keyframes, and its path; numbers that somebody has changed are an error."""
     path = folder / "mechanics" / f"{name}.xml"
-    root = mechanics.read(path)
-    if edited := mechanics.differences(root, _paper(name)):
+    root = mjcf_file.read(path)
+    if edited := mjcf_file.differences(root, _paper_parameters(name)):
         raise TemplateError(f"{path} has numbers of its own in {', '.join(edited)}, into which mjbeer writes a can's")
-    mechanics.remove(root, "keyframe")
+    mjcf_file.remove(root, "keyframe")
     return root, path
 
 
-def standing_values(can: Standing) -> mechanics.Values:
+def standing_parameters(can: Standing) -> mjcf_file.Parameters:
     """Return the parameters of a standing can, in whose file the origin is the middle of the inside of the bottom.
 
     What does not slosh is the body "liquid". Each mode is a body "slosh1", "slosh2" ... on a ball joint of its name.
@@ -317,7 +298,7 @@ def standing_values(can: Standing) -> mechanics.Values:
     """
     shell, half = can.can, can.can.length / 2
     across = transverse_inertia(shell)
-    found: mechanics.Values = {
+    found: mjcf_file.Parameters = {
         ("option", "gravity"): (0, 0, -can.gravity),
         ("geom can", "size"): (shell.radius, half),
         ("geom can", "pos"): (0, 0, half),
@@ -328,7 +309,7 @@ def standing_values(can: Standing) -> mechanics.Values:
     lengths = can.gravity / can.frequencies() ** 2
     critical = 2 * can.frequencies() * can.slosh_masses() * lengths**2
     dampers = can.damping_ratios() * critical, _BREAKING / can.frequencies() ** 2 * critical
-    parts = can.slosh_masses(), lengths, can.pivots(), *dampers, can.elevations(), _shares(can)
+    parts = can.slosh_masses(), lengths, can.pivots(), *dampers, can.elevations(), _bob_shares(can)
     for number, each in enumerate(zip(*map(np.ndarray.tolist, parts), strict=True), 1):
         mass, length, pivot, damper, cubic, rise, share = each
         name, own = f"slosh{number}", share * mass * length**2
@@ -345,14 +326,14 @@ def standing_values(can: Standing) -> mechanics.Values:
     return found | _inertial("liquid", mass, middle + first / mass, (level, level, spin))
 
 
-def lying_values(scene: Scene) -> mechanics.Values:
+def lying_parameters(scene: Scene) -> mjcf_file.Parameters:
     """Return the parameters of a lying can, in whose file the origin is on the axis."""
     shell, beer = scene.can, scene.load
     if beer.fill is None:
         raise UnsupportedError(f"a can that is free in space has beer in it, got a load without a fill: {scene!r}")
     if scene.drag > 0:
         raise UnsupportedError(f"a can that is free in space has no drag of the air, got {scene.drag!r} kg/m")
-    found: mechanics.Values = {("geom can", "size"): (shell.radius, shell.length / 2)}
+    found: mjcf_file.Parameters = {("geom can", "size"): (shell.radius, shell.length / 2)}
     if scene.attachment == "sliding":
         if shell.mass == 0 or shell.inertia == 0:
             raise UnsupportedError(
@@ -369,12 +350,12 @@ def lying_values(scene: Scene) -> mechanics.Values:
 
 
 @functools.cache
-def _paper(name: str) -> mechanics.Values:
+def _paper_parameters(name: str) -> mjcf_file.Parameters:
     """Return the parameters that a file has as it stands."""
-    return lying_values(sliding(can=Can.sheet_metal())) if name == "lying" else standing_values(standing())
+    return lying_parameters(sliding(can=Can.sheet_metal())) if name == "lying" else standing_parameters(standing())
 
 
-def _inertial(body: str, mass: float, height: float, inertia: tuple[float, ...]) -> mechanics.Values:
+def _inertial(body: str, mass: float, height: float, inertia: tuple[float, ...]) -> mjcf_file.Parameters:
     name = f"inertial {body}"
     return {(name, "mass"): (mass,), (name, "pos"): (0, 0, height), (name, "diaginertia"): inertia}
 

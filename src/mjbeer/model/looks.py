@@ -18,7 +18,7 @@ from mjbeer.theory.load import segment
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 
-PARTS = {
+INCLUDES = {
     "sliding": {"incline": ("board",), "can": ("can",), "load": ("beer",)},
     "frozen": {"incline": ("board",), "can": ("can",), "load": ("ice",)},
     "pendulum": {"incline": ("board",), "can": ("wheel", "spokes"), "load": ("bob",)},
@@ -57,7 +57,7 @@ def name(scene: Scene) -> str:
     return "hoop" if scene.load.fill is None else "frozen"
 
 
-def dress(root: ET.Element, what: str, looks: str = "looks") -> None:
+def include_looks(root: ET.Element, what: str, looks: str = "looks") -> None:
     """Include the looks of PARTS in the bodies of a mechanics file, whose own geoms are then in group 3.
 
     A geom without a name, which shows where the load is in a file without looks, goes. `looks` is the folder of their
@@ -70,7 +70,7 @@ def dress(root: ET.Element, what: str, looks: str = "looks") -> None:
     for geom in root.iter("geom"):
         geom.attrib |= {"group": "3", "class": "main"}
     root.insert(0, ET.Element("include", file=f"{looks}/world.xml"))
-    for body, files in PARTS[what].items():
+    for body, files in INCLUDES[what].items():
         parent = root.find(f".//body[@name='{body}']")
         if parent is None and body == "load":
             parent = root.find(".//body[@name='can']")
@@ -89,23 +89,23 @@ def dress(root: ET.Element, what: str, looks: str = "looks") -> None:
         floor.append(ET.Element("include", file=f"{looks}/floor.xml"))
 
 
-def fit(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
+def fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
     """Fit what is drawn to the sizes of a scene."""
     _fit_sizes(spec, scene.can, folder, (*_ROLLING, *(("mesh", "load"),) * (scene.load.fill is not None)))
     if scene.attachment == "sliding" and spec.joint("phi") is not None:  # no joint turns with the can
         for geom in filter(None, map(spec.geom, TURNING)):
             spec.delete(geom)
     if scene.load.fill is not None:
-        pour(spec, scene)
+        shape_beer(spec, scene)
     else:
-        _hang(spec, scene)
+        _place_point_load(spec, scene)
     drawn = {geom.meshname for geom in spec.geoms}
     for mesh in spec.meshes:
         if mesh.name not in drawn:
             spec.delete(mesh)
 
 
-def fit_upright(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
+def fit_to_standing(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
     """Fit what is drawn to a standing can, with the errors of `fit`.
 
     The beer is a column in the body "liquid" under a disc that tilts with the body "slosh1".
@@ -113,12 +113,12 @@ def fit_upright(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -
     top = (("geom", "beer_top"),) * (standing.modes > 0)
     _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *top))
     spec.frame("upright").pos = [0, 0, standing.can.length / 2]
-    for each, (low, high) in column(standing).items():
+    for each, (low, high) in beer_column(standing).items():
         spec.geom(each).pos = [0, 0, (low + high) / 2]
         spec.geom(each).size = [standing.can.radius, (high - low) / 2, 0]
 
 
-def column(standing: Standing) -> dict[str, tuple[float, float]]:
+def beer_column(standing: Standing) -> dict[str, tuple[float, float]]:
     """Return from where to where the geoms reach that draw the beer, along the axes of their bodies [m]."""
     height = standing.height
     if standing.modes == 0:
@@ -165,7 +165,7 @@ def _shape(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, n
     return vertices, model.mesh_face.copy(), model.mesh_texcoord.astype(float).ravel()
 
 
-def lengthen(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:
+def lengthen_board(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:
     """Make the board long enough for a motion from u = `low` to `high` [m], and for ten turns more at its ends."""
     turn = math.pi * scene.can.radius
     first = min(_HALF_TURNS[0], math.floor(low / turn) - 20)
@@ -183,7 +183,7 @@ def _reshape(element: mujoco.MjsMesh, shape: Mesh) -> None:
     element.uservert, element.userface = vertices.ravel(), faces.ravel()
 
 
-def _hang(spec: mujoco.MjSpec, scene: Scene) -> None:
+def _place_point_load(spec: mujoco.MjSpec, scene: Scene) -> None:
     """Put the bob with its arm, or the bar on the rim, where the scene has it."""
     offset, ball, arm = scene.load.offset, spec.geom("load"), spec.geom("load_arm")
     if arm is not None:
@@ -196,7 +196,7 @@ def _hang(spec: mujoco.MjSpec, scene: Scene) -> None:
         ball.fromto = [*ball.fromto[:2], -offset, *ball.fromto[3:5], -offset]
 
 
-def pour(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
+def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
     """Give the beer its fill, and put the foam on it, which gets thin or goes where there is no room or no beer."""
     radius, length, fill = scene.can.radius, scene.can.length, max(scene.load.fill or 0.0, 1e-6)  # a mesh is not flat
     thickness = min(FOAM, _FOAM_SHARE * 2 * fill, _FOAM_SHARE * 2 * (1 - fill))

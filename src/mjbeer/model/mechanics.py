@@ -1,202 +1,264 @@
-"""The mechanics: MJCF files, into which the numbers of a scene are written before MuJoCo compiles them, or after."""
+"""A scene in a setting as MuJoCo's numbers: which mechanics file a model is read from, and what is written into it.
 
-import copy
-import functools
+Models of one `structure` have the same elements and differ in numbers alone, which `Mechanics.parameters` has by
+element and attribute of MJCF, as `mjcf/README.md` lists them.
+"""
+
 import math
-import pathlib
-import xml.etree.ElementTree as ET
-from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple, TypeAlias
 
-import mujoco
-import numpy as np
+from mjbeer.exceptions import UnsupportedError
+from mjbeer.model.mjcf_file import Parameters
+from mjbeer.model.setting import DOP853, OWN, Setting
+from mjbeer.theory.scene import Scene
 
-from mjbeer.exceptions import TemplateError
+Structure: TypeAlias = tuple[Hashable, ...]
+"""What decides which elements and flags a model has."""
 
-Values: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
-"""Numbers by element and attribute, as `Numbers.parameters`."""
-_STAGES = {"spring": ("stiffness", "springdamper"), "damper": ("damping", "springdamper")}
-"""Stages of a step, and the attributes that a model needs them for."""
-_FORCELESS = {"fixed": ("name",), "spatial": ("name", "rgba"), "general": ("name", "joint", "biastype")}
-"""What a tendon or actuator may have besides numbers that are 0, if it exerts no force."""
-
-
-def read(path: pathlib.Path) -> ET.Element:
-    """Return an MJCF file as a tree of its own, with what it includes in place."""
-    root = copy.deepcopy(_parsed(path))
-    _include(root, path.parent)
-    return root
-
-
-@functools.lru_cache(maxsize=64)
-def _parsed(path: pathlib.Path) -> ET.Element:
-    try:
-        return ET.parse(path).getroot()
-    except (OSError, ET.ParseError) as error:
-        raise TemplateError(f"{path} is not readable MJCF: {error}") from error
-
-
-def _include(root: ET.Element, folder: pathlib.Path) -> None:
-    """Put what a tree includes from a folder in its place."""
-    for parent in list(root.iter()):
-        for place, child in reversed(list(enumerate(parent))):
-            if child.tag == "include":
-                parent[place : place + 1] = read(folder / child.get("file", ""))
+_SMALLEST = 1e-9
+"""Smallest mass [kg] and inertia [kg m^2] that is not scaled: MuJoCo's smallest value (mjMINVAL, 1e-15), a million
+times smaller, changes no sum noticeably."""
+_LARGEST = 1e3
+"""Largest mass [kg] that is not scaled: MuJoCo's smallest softness, 1e-15 /kg, is then 1e-12 of the inverse mass."""
+_FORCES_SEEN = 2.0**60
+"""Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
+[N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
+_TOLERANCE = 1e-14
+"""The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
+load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
+Newton's method brings all digits, and 1e-14 costs none in the four scenes; 1e-18 costs a third of the run time."""
+_LIGHTEST, _WEIGHTLESS = 1e-10, 1e-5
+"""The least share of the tolerance that a light load has, and the least gravity [m/s^2] it is reckoned with. At a
+tolerance of 0 the solver would spend all its iterations on rounding."""
+_STIFF_INTEGRATORS = ("RK4", "discrete", DOP853)
+"""The integrators that are stable with a time constant of half a timestep."""
 
 
-def find(root: ET.Element, element: str) -> ET.Element | None:
-    """Return an element by its tag and its name, as "joint slide".
+class Inertial(NamedTuple):
+    """The mass [kg] of a body, its distance below the axis [m], and its moment of inertia about itself [kg m^2]."""
 
-    "inertial can" is in the body "can", and "fixed slip/roll" is the joint "roll" of the tendon "slip".
-    """
-    tag, _, name = element.partition(" ")
-    name, _, joint = name.partition("/")
-    if tag == "inertial":
-        return root.find(f".//body[@name='{name}']/inertial")
-    return root.find(f".//{tag}" + f"[@name='{name}']" * bool(name) + f"/joint[@joint='{joint}']" * bool(joint))
+    mass: float
+    offset: float
+    inertia: float
 
 
-def write(root: ET.Element, values: Values, path: pathlib.Path, digits: int = 17) -> None:
-    """Write numbers into the tree of the file at a `path`, with up to so many `digits`."""
-    for (name, attribute), value in values.items():
-        if (element := find(root, name)) is None:
-            raise TemplateError(f"{path} has no {name!r}, into which mjbeer writes {attribute}; restore the file")
-        element.set(attribute, value if isinstance(value, str) else " ".join(f"{each:.{digits}g}" for each in value))
+@dataclass(frozen=True, kw_only=True)
+class Mechanics:
+    """The numbers of a scene in a setting; masses and forces are multiplied by `unit`."""
 
+    scene: Scene
+    setting: Setting
+    timestep: float
+    """Timestep of MuJoCo, to which constraints are fitted [s]."""
+    tilted: bool
+    """Whether gravity is tilted instead of the incline."""
+    unit: float
+    bodies: Mapping[str, Inertial]
+    """The bodies that have mass, by name."""
+    armature: float = 0.0
+    """Mass that only the joint "slide" moves [kg]."""
+    force: float = 0.0
+    """Constant force [N] or torque [N m] on the first joint, by the actuator "weight"."""
+    chord: float = 0.0
+    """Armature of the tendon "chord" [kg]."""
 
-def differences(root: ET.Element, values: Values) -> list[str]:
-    """Return the parameters that have other values, in 12 digits, in a tree; all of them must be in it."""
-    found = []
-    for (name, attribute), value in values.items():
-        element = find(root, name)
-        words = [] if element is None else element.get(attribute, "").split()
-        if isinstance(value, str):
-            same = words == [value]
+    @classmethod
+    def of(cls, scene: Scene, setting: Setting, visuals: bool = False, timestep: float | None = None) -> "Mechanics":
+        """Return the numbers of a scene in a setting; a model with visuals keeps its masses and an upright gravity.
+
+        A `timestep` [s] is instead of the setting's.
+        """
+        if setting.rolling != "reduced":
+            bodies, forces = _constrained(scene)
         else:
-            pairs = zip(words, value, strict=False)
-            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=1e-11) for w, v in pairs)
-        if not same:
-            found.append(f"{name} {attribute}")
-    return found
+            bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
+        unit = mass_unit(scene)
+        if setting.rolling == "reduced" and setting.integrator == "discrete" and scene.damping_law and not visuals:
+            unit *= _FORCES_SEEN
+        return cls(
+            scene=scene,
+            setting=setting,
+            timestep=timestep or setting.timestep,
+            tilted=not visuals,
+            unit=unit,
+            bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in bodies},
+            **{name: unit * force for name, force in forces.items()},
+        )
+
+    @property
+    def file(self) -> str:
+        """Return the name of the mechanics file, without its folder and ending."""
+        return f"{self.scene.attachment}_{self.setting.rolling}"
+
+    @property
+    def acting(self) -> tuple[str, ...]:
+        """Return the names of the tendons and the actuators that exert a force."""
+        damped = self.scene.damping_law and self.setting.rolling == "reduced"
+        acting = {"weight": self.force != 0, "chord": self.chord > 0, "damper": damped}
+        return tuple(name for name, acts in acting.items() if acts)
+
+    @cached_property
+    def structure(self) -> Structure:
+        """Return what decides which elements and flags the model has."""
+        return self.setting.folder, self.file, self.acting, self.scene.dissipates
+
+    @cached_property
+    def parameters(self) -> Parameters:
+        """Return what is written into the mechanics file, by element and attribute."""
+        scene, setting, radius = self.scene, self.setting, self.scene.can.radius
+        alpha, g, contact = scene.incline, scene.gravity, setting.rolling == "contact"
+        # With the axis at the origin, an offset far smaller than the radius keeps its digits. Only a can that is seen,
+        # or in contact, must lie on the incline.
+        height = radius if contact or not self.tilted else 0.0
+        found: Parameters = {
+            ("option", "timestep"): (self.timestep,),
+            # mjbeer's own integrators step by themselves
+            ("option", "integrator"): "RK4" if setting.integrator in OWN else setting.integrator,
+            ("option", "gravity"): (g * math.sin(alpha), 0, -g * math.cos(alpha)) if self.tilted else (0, 0, -g),
+            ("body incline", "euler"): (0, 0 if self.tilted else math.degrees(alpha), 0),
+            ("body can", "pos"): (0, 0, height),
+        }
+        for name, body in self.bodies.items():
+            found[f"inertial {name}", "mass"] = (body.mass,)
+            found[f"inertial {name}", "pos"] = 0, 0, -body.offset
+            found[f"inertial {name}", "diaginertia"] = (body.inertia,) * 3
+        if scene.attachment == "sliding":
+            found["joint slide", "damping"] = 0, self.unit * scene.drag, 0
+            damper = "fixed damper" if setting.rolling == "reduced" else "joint swing"
+            found[damper, "damping"] = tuple(self.unit * each for each in scene.damping_law.coefficients)
+        if setting.rolling == "reduced":
+            found["general weight", "biasprm"] = (self.force,)
+            if scene.attachment == "sliding":
+                found["joint slide", "armature"] = (self.armature,)
+                found["fixed damper/slide", "coef"] = (-1 / radius,)
+            else:
+                found["spatial chord", "armature"] = (self.chord,)
+                found["site chord_top", "pos"] = 0, 0, height + 1.0
+                found["fixed u/phi", "coef"] = (radius,)
+            return found
+        found["fixed slip/roll", "coef"] = (-radius,)
+        rolling = "pair rolling" if contact else "joint rolling"
+        found[rolling, "solref"] = stiffest(setting.integrator, self.timestep, contact), 1
+        if contact:
+            found[rolling, "friction"] = setting.friction, setting.friction, 0.005, 1e-4, 1e-4
+            found["geom can", "size"] = radius, scene.can.length / 2
+            # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia.
+            light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
+            share = min(1.0, max(light, _LIGHTEST))
+            found["option", "tolerance"] = (_TOLERANCE * share * max(g, _WEIGHTLESS) ** 2,)
+        else:
+            found[rolling, "polycoef"] = 0, radius, 0, 0, 0
+        return found
 
 
-def remove(root: ET.Element, *elements: str) -> None:
-    """Take elements from a tree, wherever they are, by their paths."""
-    for parent in list(root.iter()):
-        for element in elements:
-            for each in parent.findall(element):
-                parent.remove(each)
+def mass_unit(scene: Scene) -> float:
+    """Return the power of two by which all masses of a scene are multiplied: 1 unless they are tiny or huge.
+
+    Only ratios of masses enter the motion, and a power of two causes no rounding. In a scene with both tiny and huge
+    masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them.
+    """
+    can, base = scene.can, scene.oscillator.base
+    if scene.attachment == "frozen":  # one body
+        values = scene.mass, _frozen_inertia(scene), base
+    else:
+        moved = _moved_to_point(scene)
+        load = _load_with(scene, moved)
+        values = can.mass - moved, can.inertia, load.mass, load.inertia, base
+    smallest = min(value for value in values if value > 1e-30 * max(values))  # what is less adds nothing to any sum
+    up = math.ceil(math.log2(_SMALLEST / smallest))
+    down = math.floor(math.log2(_LARGEST / scene.effective_mass))
+    return 2.0 ** max(up, min(0, down))
 
 
-def leave_out(root: ET.Element) -> None:
-    """Take from a tree what only is seen or measured, and disable the stages of a step that it does not need."""
-    ET.SubElement(root, "compiler", fusestatic="true", discardvisual="true")
-    remove_energies(root)
-    remove(root, "sensor")
-    remove_idle(root)
-    flags = ET.SubElement(ET.SubElement(root, "option"), "flag", sensor="disable")
-    for stage, attributes in _STAGES.items():
-        if not any(_acts(each.get(attribute, "0")) for each in root.iter() for attribute in attributes):
-            flags.set(stage, "disable")
-    if not root.findall("actuator/*"):
-        flags.set("actuation", "disable")
+def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
+    """Return the time constant [s] of the stiffest critically damped constraint to use with an integrator.
+
+    Semi-implicit Euler, and what is like it, is stable for timesteps up to 0.83 time constants (4 - 4x - x^2 > 0 for
+    x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is stable with DOP853 too; "discrete"
+    has no limit. A `contact` opens and closes: with less than a timestep RK4 chatters.
+    """
+    if integrator not in _STIFF_INTEGRATORS:
+        return 2 * timestep
+    return timestep if contact else timestep / 2
 
 
-def remove_idle(root: ET.Element) -> None:
-    """Take tendons and actuators from a tree that exert no force, as their numbers are 0, and that measure nothing."""
-    for section in root:
-        for element in list(section) if section.tag in ("tendon", "actuator") else ():
-            others = [value for name, value in element.items() if name not in _FORCELESS.get(element.tag, ())]
-            used = root.find(f".//*[@tendon='{element.get('name')}']") is not None
-            if element.tag in _FORCELESS and not used and not any(map(_acts, others)):
-                section.remove(element)
+_Parts: TypeAlias = tuple[list[tuple[str, Inertial]], dict[str, float]]
+"""Bodies, and armature, force and chord."""
 
 
-def remove_energies(root: ET.Element) -> None:
-    """Disable energies in a tree: MuJoCo counts no constant force that stands for a weight as potential."""
-    for flag in root.iter("flag"):
-        flag.attrib.pop("energy", None)
+def _sliding(scene: Scene) -> _Parts:
+    """Put the load on a slide (u) and a hinge (phi), with the kinetic energy of eqs. (39) and (44).
+
+    The can's mass is on the same body, as a point on the axis, and its inertia I_can/a^2 is the slide's armature.
+    If it is over 10 times as heavy as its load, their common centre of mass is so near the axis that the distance would
+    be lost in the rounding of u. Then most of the can's mass becomes armature too, and a constant force its weight.
+    """
+    can = scene.can
+    moved = can.mass if can.mass <= 10 * scene.load.mass else _moved_to_point(scene)
+    left = can.mass - moved
+    armature, force = left + can.inertia / can.radius**2, left * scene.gravity * math.sin(scene.incline)
+    return [("can", _load_with(scene, moved))], {"armature": armature, "force": force}
 
 
-def _acts(text: str) -> bool:
-    """Return whether an attribute has a number that is not 0, or is no number."""
-    try:
-        return any(float(each) != 0 for each in text.split())
-    except ValueError:
-        return True
+def _frozen(scene: Scene) -> _Parts:
+    """Put can and load on one hinge, phi, whose inertia J(phi) = base + chord sin^2(phi/2) is that of rolling.
+
+    The file says how. The arms of the chord are 1 m long; any length gives the same inertia.
+    """
+    oscillator, moment = scene.oscillator, scene.load.moment
+    # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that has more than half
+    # of the inertia, a larger mass on a shorter arm that has exactly half.
+    mass, offset = scene.mass, scene.centre_of_mass
+    if mass * offset**2 > oscillator.base / 2:
+        mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
+    body = Inertial(mass, offset, oscillator.base - mass * offset**2)
+    return [("can", body)], {"force": oscillator.ramp, "chord": oscillator.chord}
 
 
-def to_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
-    """Return the specification in the tree of the file at a `path`, with looks in place of what includes them."""
-    _include(root, path.parents[1])
-    try:
-        return mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
-    except ValueError as error:
-        raise TemplateError(f"{path} is not readable MJCF: {'; '.join(str(error).splitlines())}") from error
+def _constrained(scene: Scene) -> _Parts:
+    """Return can and load as they are, which a constraint makes roll."""
+    can = scene.can
+    if scene.attachment == "frozen":
+        inertia = _frozen_inertia(scene)
+        if inertia == 0:
+            raise UnsupportedError(
+                "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
+                'use rolling="reduced", or give the can mass'
+            )
+        return [("can", Inertial(scene.mass, scene.centre_of_mass, inertia))], {}
+    for lacking, value, remedy in (
+        ("a massless can with", can.mass, "mass, as can=Can.sheet_metal() or, on the command line, --can metal"),
+        ("a can without inertia around", can.inertia, "inertia"),
+    ):
+        if value == 0:
+            raise UnsupportedError(
+                f'{lacking} a sliding load exists only in rolling="reduced": MuJoCo moves no body without mass and '
+                f"inertia; give the can {remedy}"
+            )
+    moved = _moved_to_point(scene)
+    return [("can", Inertial(can.mass - moved, 0.0, can.inertia)), ("load", _load_with(scene, moved))], {}
 
 
-# Where a compiled model has what is written into it; what is not here is the same in all models that are only stepped.
-_COMPILED: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray]]] = {
-    ("body", "pos"): lambda model, name: [model.body(name).pos],
-    ("inertial", "mass"): lambda model, name: [model.body(name).mass],
-    ("inertial", "pos"): lambda model, name: [model.body(name).ipos],
-    ("inertial", "diaginertia"): lambda model, name: [model.body(name).inertia],
-    ("joint", "armature"): lambda model, name: [model.joint(name).armature],
-    ("joint", "damping"): lambda model, name: _parts(model, "dof", int(model.joint(name).dofadr[0])),
-    ("fixed", "damping"): lambda model, name: _parts(model, "tendon", model.tendon(name).id),
-    ("fixed", "coef"): lambda model, name: [_coefficient(model, *name.split("/"))],
-    ("spatial", "armature"): lambda model, name: [model.tendon_armature[model.tendon(name).id :][:1]],
-    ("general", "biasprm"): lambda model, name: [model.actuator(name).biasprm[:1]],
-    ("joint", "polycoef"): lambda model, name: [model.equality(name).data[:5]],
-    ("joint", "solref"): lambda model, name: [model.equality(name).solref],
-    ("pair", "solref"): lambda model, name: [model.pair(name).solref],
-    ("pair", "friction"): lambda model, name: [model.pair(name).friction],
-    ("geom", "size"): lambda model, name: [model.geom(name).size[:2]],
-}
+def _moved_to_point(scene: Scene) -> float:
+    """Return the mass [kg] to move from the can to a load that is a point, as MuJoCo moves no body without inertia.
+
+    A point on the axis moves with the load exactly as with the can, and gives a point load an inertia.
+    """
+    load = scene.load
+    return min(scene.can.mass / 2, load.mass) if load.inertia < 1e-6 * load.mass * load.offset**2 else 0.0
 
 
-def _parts(model: mujoco.MjModel, kind: str, number: int) -> list[np.ndarray]:
-    """Return the places of damping in proportion to a rate, and of that with higher powers."""
-    return [getattr(model, f"{kind}_damping")[number : number + 1], getattr(model, f"{kind}_dampingpoly")[number]]
+def _load_with(scene: Scene, moved: float) -> Inertial:
+    """Return the load with the mass `moved` [kg] from the can to it, as a point on the axis."""
+    load = scene.load
+    mass = load.mass + moved
+    return Inertial(mass, load.moment / mass, load.inertia + load.moment * load.offset * moved / mass)
 
 
-def _coefficient(model: mujoco.MjModel, tendon: str, joint: str) -> np.ndarray:
-    """Return the place of a joint's coefficient in a fixed tendon."""
-    first, joint_id = int(model.tendon_adr[model.tendon(tendon).id]), model.joint(joint).id
-    place = first + list(model.wrap_objid[first:]).index(joint_id)
-    return model.wrap_prm[place : place + 1]
-
-
-def places(model: mujoco.MjModel, values: Values) -> dict[tuple[str, str], list[np.ndarray]]:
-    """Return where a compiled model has those numbers that differ from scene to scene, except options."""
-    found = {}
-    for element, attribute in values:
-        tag, _, name = element.partition(" ")
-        if place := _COMPILED.get((tag, attribute)):
-            try:
-                found[element, attribute] = place(model, name)
-            except KeyError:  # it was left out, as it is 0 in all scenes of this kind
-                continue
-    return found
-
-
-def write_compiled(model: mujoco.MjModel, values: Values, where: Mapping[tuple[str, str], list[np.ndarray]]) -> None:
-    """Write numbers into a compiled model, at its `places`."""
-    for key, value in values.items():
-        if key[0] == "option":
-            setattr(model.opt, key[1], _option(value))
-        elif key in where:
-            first, *others = where[key]
-            first[:] = value[: len(first)]
-            for each in others:
-                each[:] = value[len(first) :]
-    if ("geom can", "size") in where:  # what the compiler derives from the size
-        geom, (radius, half) = model.geom("can"), values["geom can", "size"]
-        geom.rbound = np.hypot(radius, half)
-        model.geom_aabb[geom.id] = [0, 0, 0, radius, radius, half]
-
-
-def _option(value: tuple[float, ...] | str) -> Any:
-    if isinstance(value, str):
-        return int(mujoco.mjtIntegrator.__members__[f"mjINT_{value.upper()}"])
-    return value[0] if len(value) == 1 else value
+def _frozen_inertia(scene: Scene) -> float:
+    """Return the moment of inertia of can and frozen load about their common centre of mass [kg m^2]."""
+    can, load = scene.can, scene.load
+    return load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2

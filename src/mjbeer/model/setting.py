@@ -4,7 +4,7 @@ import functools
 import math
 import os
 import pathlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
 from mjbeer import require
@@ -27,8 +27,6 @@ OWN = (DOP853, GAUSS_JACKSON)
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 
-FOLDERS = (pathlib.Path(__file__).parents[1] / "mjcf", pathlib.Path(__file__).parents[3] / "mjcf")
-"""Where the MJCF is in an installed wheel, and in a checkout."""
 VARIABLE = "MJBEER_MJCF"
 """The environment variable that names another folder."""
 
@@ -53,17 +51,19 @@ class Setting:
     """Friction coefficient of a contact."""
     mjcf: str | os.PathLike[str] | None = None
     """A folder of MJCF to be read instead of mjbeer's; None for that of the environment's MJBEER_MJCF, if any."""
+    folder: pathlib.Path = field(init=False, repr=False)
+    """The folder of MJCF that is read."""
 
     def __post_init__(self) -> None:
         require.choice("rolling", self.rolling, ROLLINGS)
         require.choice("integrator", self.integrator, (*INTEGRATORS, *OWN))
-        require.store(
+        require.set_fields(
             self,
             timestep=require.within("timestep", self.timestep, *require.TIMESTEP, "s"),
             # MuJoCo raises a smaller one to this (mjMINMU), and says nothing
             friction=require.within("friction", self.friction, 1e-5, math.inf),
             tolerance=None if self.tolerance is None else require.positive("tolerance", self.tolerance, "rad"),
-            mjcf=None if self.mjcf is None else mjcf_folder(self.mjcf),
+            folder=mjcf_folder(self.mjcf),
         )
         if self.integrator == GAUSS_JACKSON and self.rolling != "reduced":
             raise ParameterError(
@@ -97,15 +97,16 @@ def supported(scene: Scene, rolling: str) -> bool:
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
     if own is None and (own := os.environ.get(VARIABLE)) is None:
-        return _installed(FOLDERS)
+        return _installed_folder(pathlib.Path(__file__))
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
-        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.shown(own)}")
+        raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.format_value(own)}")
     return pathlib.Path(own)
 
 
-@functools.lru_cache(maxsize=4)
-def _installed(candidates: tuple[pathlib.Path, ...]) -> pathlib.Path:
-    for candidate in candidates:
-        if (candidate / "mechanics").is_dir():
-            return candidate
-    raise TemplateError(f"no MJCF: neither {candidates[0]} nor {candidates[1]} holds it; reinstall mjbeer")
+@functools.cache
+def _installed_folder(here: pathlib.Path) -> pathlib.Path:
+    """Return mjbeer's own folder: in the package, as a wheel has it, or at the top of a checkout."""
+    for folder in (here.parents[1] / "mjcf", here.parents[3] / "mjcf"):
+        if (folder / "mechanics").is_dir():
+            return folder
+    raise TemplateError(f"no MJCF in {here.parents[1]}; reinstall mjbeer")

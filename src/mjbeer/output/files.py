@@ -10,7 +10,7 @@ from mjbeer.exceptions import OutputError
 
 
 @contextmanager
-def whole(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
+def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
     """Yield a new hidden file beside `path` to write to; at the end it replaces `path`, or is deleted after an error.
 
     Enter this block before a long run, so that a path that cannot be written fails at once. If the machine stops,
@@ -71,7 +71,7 @@ def write(path: str | os.PathLike[str], text: str) -> None:
     Raises:
       OutputError: if the file cannot be written.
     """
-    with whole(path) as temporary:
+    with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 

@@ -58,8 +58,8 @@ _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
 _EDGE = 0.1
 """Distance of the title from the edge [inches]."""
-_TOLD = "told "
-"""Begins the name of a line in an SVG whose points tell something."""
+_TOOLTIPS = "tooltips "
+"""Begins the name of a line in an SVG whose points have tooltips."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -112,7 +112,7 @@ def chart(
         named = {"Title": title, "Description": subtitle} if used else dict.fromkeys(("Creator", "Format", "Type"))
         file = io.StringIO()
         figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata={"Date": None, **named})
-        svg = _lighter(file.getvalue())
+        svg = _with_tooltips(file.getvalue())
         if isinstance(path, Picture):
             path.title, path.subtitle, path.width, path.svg = title, subtitle, width, svg[svg.index("<svg") :]
         else:
@@ -137,9 +137,9 @@ def ticks(axis: Axis, values: Sequence[float]) -> None:
     axis.set_minor_formatter(NullFormatter())
 
 
-def tell(line: Line2D, texts: Sequence[str]) -> None:
+def add_tooltips(line: Line2D, texts: Sequence[str]) -> None:
     """Let each point of a line with markers tell a text of one line where a pointer rests on it, in the SVG."""
-    line.set_gid(_TOLD + "\n".join(texts))
+    line.set_gid(_TOOLTIPS + "\n".join(texts))
 
 
 def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = ()) -> None:
@@ -155,32 +155,14 @@ def _power(value: float, _: int | None) -> str:
     return "10" + str(round(math.log10(value))).translate(_RAISED)
 
 
-def _lighter(svg: str) -> str:
-    """Return an SVG without what costs room: digits below hundredths of a point, fonts and styles said again and again.
+def _with_tooltips(svg: str) -> str:
+    """Return an SVG in which each point of `add_tooltips` has its text as a title."""
 
-    Names that nothing refers to go too: on a page with several plots, all would have the same.
-    """
+    def line(found: re.Match[str]) -> str:
+        texts = found[1].split("\n")
+        points = iter(texts)
+        return re.sub(
+            "(<use [^>]*)/>", lambda use: f"{use[1]}><title>{next(points)}</title></use>", found[2], count=len(texts)
+        )
 
-    def rounded(attribute: re.Match[str]) -> str:
-        return re.sub(r"-?\d+\.\d+", lambda number: f"{float(number[0]):.2f}".rstrip("0").rstrip("."), attribute[0])
-
-    def gathered(markers: re.Match[str]) -> str:
-        return f"<g {markers[2]}>{markers[1].replace(' ' + markers[2], '')}</g>"
-
-    def telling(line: re.Match[str]) -> str:
-        texts = iter(line[1].split("\n"))
-
-        def told(point: re.Match[str]) -> str:
-            text = next(texts, "")  # what follows the line's points are those of other lines
-            return f"{point[1]}><title>{text}</title></use>" if text else point[0]
-
-        return "<g>" + re.sub("(<use [^>]*)/>", told, line[2])
-
-    used = set(re.findall(r'(?:url\(|href=")#([^)"]+)', svg))
-    svg = re.sub(r' id="([^"]*)"', lambda name: name[0] if name[1] in used or name[1].startswith(_TOLD) else "", svg)
-    svg = re.sub(r'\b(?:d|x|y)="[^"]*"', rounded, svg)
-    svg = re.sub(r'((?:\s*<use [^>]*?(style="[^"]*")/>)(?:\s*<use [^>]*?\2/>)+)', gathered, svg)
-    if fonts := re.search(r"font-family: [^;\"]*", svg):
-        svg = svg.replace(f"{fonts[0]}; ", "").replace("<svg ", f'<svg style="{fonts[0]}" ', 1)
-    svg = re.sub(rf'(?s)<g id="{_TOLD}([^"]*)">(.*?)(?=<g id="{_TOLD}|$)', telling, svg)
-    return re.sub(r"\n\s+", "\n", svg)
+    return re.sub(rf'(?s)<g id="{_TOOLTIPS}([^"]*)">(.*?)(?=<g id="{_TOOLTIPS}|$)', line, svg)

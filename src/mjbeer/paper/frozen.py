@@ -31,9 +31,9 @@ from mjbeer.paper.witness import (
 )
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen
 from mjbeer.theory.oscillator import Oscillator
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen
 
 _CREEP = 1e-3
 """A can counts as slipping if it slips by more than this in a second, in radii; one that holds slips by 1e-7."""
@@ -86,7 +86,7 @@ def long_run(form: Oscillator) -> float:
     dphi. The trapezoid rule for the mean converges geometrically, since J is smooth and periodic.
     """
     turn = 2 * np.pi * np.arange(64) / 64
-    return form.slope / float(np.mean(np.sqrt(form.inertia(turn)))) ** 2
+    return form.ramp / float(np.mean(np.sqrt(form.inertia(turn)))) ** 2
 
 
 @cache

@@ -15,8 +15,8 @@ from mjbeer.model.setting import Rolling
 from mjbeer.paper.claim import Bound, Claim, Limit, Witness
 from mjbeer.paper.witness import CONTACT, GRIP, TOP
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.named import hoop
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import hoop
 
 RATIO = 1 / 20
 """M/m of the hoop that hops."""

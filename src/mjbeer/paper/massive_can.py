@@ -10,8 +10,8 @@ from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConst
 from mjbeer.paper.sliding import kinetic_11, potential_14, potential_17
 from mjbeer.paper.witness import DRIFT, EQUALITY, EXACT, HELD, METAL, resting
 from mjbeer.theory.can import Can
-from mjbeer.theory.named import sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import sliding
 
 
 def can_39(q: Motion, k: Any, squared: Any) -> Terms:

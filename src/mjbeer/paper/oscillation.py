@@ -11,8 +11,8 @@ from mjbeer.paper import witness
 from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, Bound, Claim, Limit, Misprint, SceneConstants, Terms, Witness
 from mjbeer.paper.witness import DECADE, EXACT, REDUCED, Looping, cosines, frequency, simulate_motion, swing
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.named import sliding
 from mjbeer.theory.scene import INCLINE
+from mjbeer.theory.scenes import sliding
 
 FAST = 350.0
 """phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop."""

@@ -19,8 +19,8 @@ from mjbeer.paper.massive_can import (
 )
 from mjbeer.paper.sliding import potential_14
 from mjbeer.paper.witness import EXACT, HELD, REDUCED, SMALL, WHEEL, frequency
-from mjbeer.theory.named import pendulum
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import pendulum
 
 
 def _bob_59(q: Motion) -> Terms:

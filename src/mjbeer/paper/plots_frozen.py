@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
+from mjbeer.drawing.words import in_degrees
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import (
     COLOURS,
@@ -27,8 +28,8 @@ from mjbeer.paper.hopping import MU
 from mjbeer.paper.witness import GRIP, fall_from_top
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, hoop, in_degrees, pendulum, sliding
 from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 FRICTION = 1.0
@@ -107,7 +108,7 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     rolling = exact(contact.scene, times, math.pi)
     parts = rolling.rolls_until()
     friction, moved = panels
-    needed = np.where((rolling.forces.needed < 2.5) & (times < parts), rolling.forces.needed, np.nan)
+    needed = np.where((rolling.forces.needed_friction < 2.5) & (times < parts), rolling.forces.needed_friction, np.nan)
     friction.plot(times, needed, label="needed to roll, exact theory", color="black")
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from matplotlib.axes import Axes
 
+from mjbeer.drawing.words import in_degrees
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import COLOURS, GREY, PRINTED, REFERENCE, SIMULATED, THEORY, label, name_below, note, ticks
 from mjbeer.paper import oscillation
@@ -17,8 +18,8 @@ from mjbeer.paper.witness import loop
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, in_degrees, pendulum, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory, mean_acceleration
 
 SWING = math.radians(60)

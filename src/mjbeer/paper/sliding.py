@@ -24,8 +24,8 @@ from mjbeer.paper.witness import (
     swing,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.named import sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import sliding
 
 
 def eq_6(c: SceneConstants) -> Any:

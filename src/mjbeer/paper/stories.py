@@ -12,11 +12,12 @@ from mjbeer.drawing.film import Film, Take
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.studio import Filmed, Plotted
+from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
 from mjbeer.output.plots import chart
 from mjbeer.paper import plots_frozen, plots_sliding
 from mjbeer.paper.plots_sliding import SWING
-from mjbeer.theory.named import frozen, in_degrees, in_words, pendulum, sliding
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 
 SIZE = 960, 540, 25
 """Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""
@@ -219,7 +220,7 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     orders = films(folder) if filmed else []
     missing = opengl.missing([order.path.name for order in orders]) if orders and opengl.problem() else ""
     files.make_folder(folder)
-    with files.whole(folder / "stories.md") as summary:
+    with files.atomic_write(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
         letters = pathlib.Path(__file__).with_name("letters.svg")
         files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))

@@ -9,16 +9,16 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.model.build import build
-from mjbeer.model.numbers import mass_unit
+from mjbeer.model.joints import joint_addresses
+from mjbeer.model.mechanics import mass_unit
 from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
-from mjbeer.model.state import places
 from mjbeer.paper.claim import Bound, Motion, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, pendulum, sliding
 from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scenes import frozen, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 
@@ -82,7 +82,7 @@ def _evaluate(
         "swing": (run.phi[i] - run.roll[i], run.phi_dot[i] - run.roll_dot[i]),
         "phi": (run.phi[i], run.phi_dot[i]),
     }
-    names = places(model)
+    names = joint_addresses(model)
     for name in names:
         data.joint(name).qpos[0], data.joint(name).qvel[0] = values[name]
     mujoco.mj_forward(model, data)

@@ -12,7 +12,7 @@ from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
 FILMS: dict[str, Race | Take | Carry] = {
     "race": Race(

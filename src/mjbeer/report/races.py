@@ -7,12 +7,13 @@ from functools import cache
 import numpy as np
 
 from mjbeer.drawing.race import Runner
+from mjbeer.drawing.words import in_degrees
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import Name, liquid_in
-from mjbeer.theory.named import frozen, in_degrees, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, sliding
 
 METAL = Can.sheet_metal()
 LENGTH = 1.0  # distance from start to finish [m]

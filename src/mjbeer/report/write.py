@@ -26,7 +26,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
       RenderingError: if a film cannot be drawn for another reason.
     """
     files.make_folder(folder)
-    with files.whole(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
+    with files.atomic_write(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
         (folder / "index.html").unlink(missing_ok=True)
         path = pathlib.Path(work)
         drawn = films.orders(path, quick)

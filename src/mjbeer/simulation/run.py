@@ -12,32 +12,33 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model import check, state
-from mjbeer.model.build import Stepped
-from mjbeer.model.engine import quiet
-from mjbeer.model.numbers import Kind, Numbers
+from mjbeer.model import check
+from mjbeer.model.build import ReusableModel
+from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
+from mjbeer.model.mechanics import Mechanics, Structure
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.simulation.stepping import Recorder, Solution, Stepper
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.record import ERROR, Record, departures, doubts
+from mjbeer.theory.record import ERROR, Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, distance
 
 if TYPE_CHECKING:
     from mjbeer.integrators.dynamics import Dynamics
 
-_GREATER = (math.sqrt(5) - 1) / 2
+_GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number, so that no rate of rotation has the same phase at the ends of both parts."""
-_idle: dict[Kind, list[tuple[Stepped, "Dynamics | None"]]] = {}
+_pool: dict[Structure, list[tuple[ReusableModel, "Dynamics | None"]]] = {}
 """Models that nobody uses, at most as many of a kind as there were threads, and how mjbeer's own integrators evaluate
 them if they have."""
 _Solve = Callable[[np.ndarray, np.ndarray, float | None], Solution]
-"""`Prepared.solve`, by mjbeer's own integrators."""
+"""`Simulator.solve`, by mjbeer's own integrators."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
-_ASIDE = 4e-14
+_START_OFFSET = 4e-14
 """Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding; it shows beside
 a separatrix how much that matters. A larger one could hide an error, as it may move the motion the other way."""
 _DEPTH = 0.5
@@ -46,12 +47,12 @@ error that this depth causes. That of softness falls to 0.62 or to 0.38 of itsel
 distance is not much too small either where the two errors are of opposite sign."""
 _COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
-_TURN = 2.0
+_MAX_TURN_PER_STEP = 2.0
 """Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
 same at every step of pi, and a rotation looks even. The stages of DOP853 are at too many phases for that."""
 
 
-class Prepared:
+class Simulator:
     """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
 
     If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
@@ -67,35 +68,35 @@ class Prepared:
         scene: Scene,
         setting: Setting,
         uneven: bool = False,
-        made: Stepped | None = None,
+        made: ReusableModel | None = None,
         dynamics: "Dynamics | None" = None,
     ) -> None:
-        made, self.dynamics = made or Stepped(_numbers(scene, setting, uneven)), dynamics
+        made, self.dynamics = made or ReusableModel(_numbers(scene, setting, uneven)), dynamics
         self.scene, self.setting, self.model = scene, setting, made.model
         self._method: Stepper | _Solve
         if setting.tolerance is None and setting.integrator not in OWN:
             self.model.opt.timestep = setting.timestep
-            self._method = Stepper(self.model, (_GREATER, 1 - _GREATER) if uneven else (), made.data)
+            self._method = Stepper(self.model, (_GOLDEN_SECTION, 1 - _GOLDEN_SECTION) if uneven else (), made.data)
         else:
             from mjbeer.integrators.dynamics import Dynamics  # only here, as in `_own`
 
             self.dynamics = dynamics or Dynamics(self.model, made.data)
-            timestep = setting.timestep * (_GREATER if uneven else 1)
+            timestep = setting.timestep * (_GOLDEN_SECTION if uneven else 1)
             self._method = _own(self.model, scene, setting, timestep, self.dynamics)
 
     @classmethod
     @contextmanager
-    def borrowed(cls, scene: Scene, setting: Setting) -> Generator["Prepared"]:
+    def from_pool(cls, scene: Scene, setting: Setting) -> Generator["Simulator"]:
         """Yield a set-up for the block, after which another call may write its scene into the same model.
 
         All that was done in it before is gone: a motion has the same bits as in a new one.
         """
         numbers = _numbers(scene, setting, uneven=False)
-        idle = _idle.setdefault(numbers.kind, [])
+        idle = _pool.setdefault(numbers.structure, [])
         try:
             made, dynamics = idle.pop()  # at once, so that no two threads get it
         except IndexError:
-            made, dynamics = Stepped(numbers), None
+            made, dynamics = ReusableModel(numbers), None
         else:
             made.write(numbers)
         if dynamics is not None:
@@ -108,7 +109,7 @@ class Prepared:
 
     def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
-        return state.start(self.model, self.scene, phi0=phi0, phi_dot0=phi_dot0)
+        return initial_state(self.model, self.scene, phi0=phi0, phi_dot0=phi_dot0)
 
     def solve(self, start: np.ndarray, times: np.ndarray, friction: float | None = None) -> Solution:
         """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.
@@ -128,7 +129,7 @@ class Prepared:
 
     def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
         """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
-        return state.read(self.model, self.scene, states=states, times=times)
+        return to_coordinates(self.model, self.scene, states=states, times=times)
 
 
 def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float, dynamics: "Dynamics") -> _Solve:
@@ -137,10 +138,10 @@ def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float,
     from mjbeer.integrators.dop853 import Dop853
     from mjbeer.integrators.gauss_jackson import GaussJackson
     from mjbeer.simulation.smooth_recorder import SmoothRecorder
-    from mjbeer.simulation.tolerance import Solver, even_at_most
+    from mjbeer.simulation.tolerance import ToleranceLoop, even_at_most
 
     if (tolerance := setting.tolerance) is not None:
-        solver = Solver(model, scene, dynamics)
+        solver = ToleranceLoop(model, scene, dynamics)
         return lambda start, times, friction: solver.run(
             start, times, tolerance, math.inf if friction is None else friction
         )
@@ -158,16 +159,16 @@ def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float,
     return solve
 
 
-def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Numbers:
+def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Mechanics:
     """Return what is to be written into the model of a scene.
 
     A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
     sqrt(a/g)/2, a twelfth of the period of a pendulum of length a, which is too slow to limit the steps.
     """
-    timestep = setting.timestep * (_GREATER if uneven else 1)
+    timestep = setting.timestep * (_GOLDEN_SECTION if uneven else 1)
     if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
         timestep = float(np.sqrt(scene.can.radius / scene.gravity)) / 2
-    return Numbers.of(scene, setting, timestep=timestep)
+    return Mechanics.of(scene, setting, timestep=timestep)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -181,7 +182,7 @@ class Run(Trajectory):
     """How the can was made to roll and how it was stepped."""
     solution: Solution
     """The record of all steps and, with a tolerance, the estimated error and the integrator that was chosen."""
-    spread: Coordinates
+    checkpoints: Coordinates
     """The motion at its samples and, without a tolerance, at timesteps spread over the whole run, where the uneven run
     is compared with it."""
 
@@ -217,11 +218,11 @@ class Run(Trajectory):
         """
         friction = require.friction(friction)
         if friction == self.record.friction:
-            return self.record.fails_at
-        prepared = Prepared(self.scene, self.setting)
-        solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.spread.time, friction)
+            return self.record.rolling_ends_at
+        prepared = Simulator(self.scene, self.setting)
+        solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.checkpoints.time, friction)
         assert solution.record is not None
-        return solution.record.fails_at
+        return solution.record.rolling_ends_at
 
     @cached_property
     def error_estimate(self) -> float:
@@ -237,43 +238,43 @@ class Run(Trajectory):
         return second(self)
 
     @cached_property
-    def doubts(self) -> tuple[str, ...]:
+    def failed_checks(self) -> tuple[str, ...]:
         """Return those reasons to doubt that the equations were solved that take no second run."""
-        found = doubts(self.record, self.rolling)
-        turn = self.record.fastest * (timestep := self.timestep or 0.0)
-        if turn > _TURN and self.integrator != DOP853:
+        found = failed_checks(self.record, self.rolling)
+        turn = self.record.largest_rate * (timestep := self.timestep or 0.0)
+        if turn > _MAX_TURN_PER_STEP and self.integrator != DOP853:
             # Damping slows the load, and the slower it is, the less even it turns: down to the rate that is no trouble.
-            rate = min(abs(self.phi_dot0), _TURN / timestep) if self.scene.dissipates else self.phi_dot0
+            rate = min(abs(self.phi_dot0), _MAX_TURN_PER_STEP / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
                 found.append(
-                    f"the load turns by {require.above(turn, _TURN)} rad in a timestep (trusted up to {_TURN:g}), in "
-                    "which its weight and inertia change unseen"
+                    f"the load turns by {require.format_above(turn, _MAX_TURN_PER_STEP)} rad in a timestep (trusted up "
+                    f"to {_MAX_TURN_PER_STEP:g}), in which its weight and inertia change unseen"
                 )
         return tuple(found)
 
     @cached_property
     def rolling_warnings(self) -> tuple[str, ...]:
         """Return where the can did not, or could not, roll without slipping, one sentence for each."""
-        return tuple(departures(self.record, self.rolling, self.setting.friction))
+        return tuple(rolling_failures(self.record, self.rolling, self.setting.friction))
 
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
         if self.solution.error is None and (lost := self._second[1]) > ERROR:
             return (
-                *self.doubts,
+                *self.failed_checks,
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
                 f"by an error of {lost:.2g} rad",
             )
         if (error := self.error_estimate) <= ERROR:
-            return self.doubts
+            return self.failed_checks
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
-            off = require.above(error, ERROR)
+            off = require.format_above(error, ERROR)
             found = f"phi and u/a are off by {off} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
         else:
             found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
-        return (*self.doubts, found)
+        return (*self.failed_checks, found)
 
 
 def second(run: Run) -> tuple[float, float]:
@@ -284,13 +285,15 @@ def second(run: Run) -> tuple[float, float]:
     first run includes the effect of their softness; that of the starts includes the effect of rounding, and of the
     depth at which a can in contact starts.
     """
-    scene, setting, motion = run.scene, run.setting, run.spread
-    prepared = Prepared(scene, setting, uneven=True)
-    lost = check.lost(prepared.model, scene, motion, run.record, exact_constraint=setting.rolling != "contact")
-    aside = max(_ASIDE, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
+    scene, setting, motion = run.scene, run.setting, run.checkpoints
+    prepared = Simulator(scene, setting, uneven=True)
+    lost = check.rounding_error(
+        prepared.model, scene, motion, run.record, exact_constraint=setting.rolling != "contact"
+    )
+    aside = max(_START_OFFSET, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
     begin = prepared.start(run.phi0 + aside, run.phi_dot0)
     if setting.rolling == "contact":
-        begin[state.places(prepared.model)["lift"]] *= _DEPTH
+        begin[joint_addresses(prepared.model)["lift"]] *= _DEPTH
     try:
         states = prepared.solve(begin, motion.time).states
     except DivergenceError:
@@ -310,7 +313,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
         if len(along) > len(times):
             samples = np.searchsorted(along, times)
-    with quiet(), Prepared.borrowed(scene, setting) as prepared:
+    with quiet(), Simulator.from_pool(scene, setting) as prepared:
         solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
         motion = prepared.coordinates(solution.states, along)
     return Run(
@@ -320,5 +323,5 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         phi_dot0=phi_dot0,
         setting=setting,
         solution=solution,
-        spread=motion,
+        checkpoints=motion,
     )

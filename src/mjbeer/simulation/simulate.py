@@ -65,14 +65,14 @@ def simulate(
     require.instance("scene", scene, Scene)
     duration = require.positive("duration", duration, "s")
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    require.radians(phi0)
+    require.warn_of_degrees(phi0)
     setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction, mjcf=mjcf)
     if times is None:
         sample_times = _every_step(duration, setting.timestep)
     else:
         sample_times = _sample_times(duration, setting, require.times("times", times, increasing=True))
     run = integrate(scene, phi0=phi0, phi_dot0=phi_dot0, setting=setting, times=sample_times)
-    if found := (*run.doubts, *run.rolling_warnings):
+    if found := (*run.failed_checks, *run.rolling_warnings):
         warnings.warn("this run is not to be relied on: " + "; ".join(found), UntrustedWarning, stacklevel=2)
     for about in run.liquid_warnings:
         warnings.warn(about, LiquidWarning, stacklevel=2)
@@ -97,14 +97,14 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     timestep = setting.timestep
     if times[-1] > duration * (1 + _ON_A_STEP):
         raise ParameterError(
-            f"times must be between 0 and the duration {duration!r} s, got {require.shown(times[-1])} s"
+            f"times must be between 0 and the duration {duration!r} s, got {require.format_value(times[-1])} s"
         )
     if setting.tolerance is not None:
         return times
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
         raise ParameterError(
-            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.shown(times[-1])} s"
+            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.format_value(times[-1])} s"
         )
     if setting.integrator in OWN:
         return times
@@ -113,12 +113,12 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     if len(off):
         raise ParameterError(
             f"MuJoCo's integrators have samples at multiples of the timestep {timestep!r} s only, not at "
-            f'{require.shown(times[off[0]])} s; integrator="DOP853" has them anywhere'
+            f'{require.format_value(times[off[0]])} s; integrator="DOP853" has them anywhere'
         )
     same = np.flatnonzero(np.diff(steps) == 0)
     if len(same):
         raise ParameterError(
-            f"times must be at least a timestep of {timestep!r} s apart, got {require.shown(times[same[0]])} s and "
-            f"{require.shown(times[same[0] + 1])} s"
+            f"times must be at least a timestep of {timestep!r} s apart, got {require.format_value(times[same[0]])} s "
+            f"and {require.format_value(times[same[0] + 1])} s"
         )
     return steps * timestep

@@ -9,8 +9,9 @@ from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _NAMES = (
-    "turned", "rolled", "path", "fastest", "swing", "axis_drift", "lowest_normal", "needed", "fails_at", "_kinetic",
-    "_energy_change", "_swing_change", "_swing_drift", "_largest_swing_drift",
+    "largest_turn", "largest_distance", "angle_covered", "largest_rate", "swing_energy", "axis_drift", "lowest_normal",
+    "needed_friction", "rolling_ends_at", "_kinetic", "_energy_change", "_swing_change", "_swing_drift",
+    "_largest_swing_drift",
 )  # fmt: skip
 """The first numbers that a recorder finds, by the names of `Record`."""
 (
@@ -32,11 +33,11 @@ class SmoothRecorder:
         self._record, shape, can, load = Record(scene, friction), scene.oscillator, scene.can, scene.load
         mass, turning, sliding = scene.effective_mass, can.inertia / can.radius**2, scene.attachment == "sliding"
         numbers = (
-            *(shape.base, shape.chord, shape.swing, shape.slope),
+            *(shape.base, shape.chord, shape.coupling, shape.ramp),
             *(shape.depth * math.sin(shape.bottom), shape.depth * math.cos(shape.bottom)),
             *(can.radius, can.effective_mass, load.mass, load.offset, load.inertia),
             *(scene.gravity * math.sin(scene.incline), scene.gravity * math.cos(scene.incline)),
-            *(scene.mass, mass, scene.drive, friction),
+            *(scene.mass, mass, scene.downhill_weight, friction),
             # Friction over drive, over the force of the swinging load, and over phi_ddot.
             *((turning / mass, turning / mass, 0.0) if sliding else (1.0, 1.0, -scene.mass * can.radius)),
         )

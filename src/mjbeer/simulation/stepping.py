@@ -10,8 +10,8 @@ from mujoco.rollout import rollout
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Observer
-from mjbeer.model.engine import LARGEST, quiet, untimed
-from mjbeer.model.state import read
+from mjbeer.model.joints import to_coordinates
+from mjbeer.model.mujoco_library import LARGEST, quiet, untimed
 from mjbeer.theory.equations import accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
@@ -126,7 +126,7 @@ class Recorder:
 
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps."""
-        motion = read(self._model, self._scene, states, times)
+        motion = to_coordinates(self._model, self._scene, states, times)
         if not self._within:
             self.record.add(motion)
             return

@@ -12,12 +12,12 @@ from mjbeer.integrators.dynamics import Dynamics, compiled
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.integrators.uneven_time import OwnTime, own_time
 from mjbeer.model import check
-from mjbeer.model.engine import LARGEST
+from mjbeer.model.joints import joint_addresses, to_coordinates
+from mjbeer.model.mujoco_library import LARGEST
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
-from mjbeer.model.state import places, read
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.simulation.stepping import Recorder, Solution
-from mjbeer.theory.equations import stiffness
+from mjbeer.theory.equations import relaxation_rate
 from mjbeer.theory.scene import Scene
 
 _LEAST_TOLERANCE = 1e-15
@@ -113,16 +113,16 @@ _TRIES = 3
 """Largest number of finer runs of Gauss-Jackson."""
 
 
-class Solver:
+class ToleranceLoop:
     """A model of a scene, set up to be integrated to global tolerances."""
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics) -> None:
         self._model, self._scene, self._dynamics = model, scene, dynamics
-        self._scale, joints, radius = scales(model, scene), places(model), scene.can.radius
+        self._scale, joints, radius = scales(model, scene), joint_addresses(model), scene.can.radius
         parts = {"slide": (0.0, 1 / radius), "lift": (0.0, 0.0)}  # phi and u/a are sums of components of the state
         angle = 1.0, 0.0 if "slide" in joints else 1.0
         self._angles = np.array([parts.get(name, angle) for name in joints] + [(0.0, 0.0)] * model.nv)
-        rounding = max(1.0, _CANCELLED * scene.oscillator.swing / scene.oscillator.base)
+        rounding = max(1.0, _CANCELLED * scene.oscillator.coupling / scene.oscillator.base)
         self._rounded = rounding > 1
         self._nudge, self._smallest = _NUDGE * rounding * self._scale, _SMALLEST * max(1.0, rounding / _RATIO**2)
         try:
@@ -252,9 +252,9 @@ class Solver:
         """Return the error [rad] that a joint equality makes whose sums lose what moves the load, in all runs alike."""
         if not self._model.neq:
             return 0.0
-        motion = read(self._model, self._scene, found.states, times)
+        motion = to_coordinates(self._model, self._scene, found.states, times)
         assert found.record is not None
-        lost = check.lost(self._model, self._scene, motion, found.record, exact_constraint=True)
+        lost = check.rounding_error(self._model, self._scene, motion, found.record, exact_constraint=True)
         if lost > tolerance:
             raise _not_reached(
                 tolerance,
@@ -280,9 +280,9 @@ def _stiffest(scene: Scene) -> float:
     """
     if not scene.damping_law:
         return 0.0
-    slip = min(scene.damping_law.rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
+    slip = min(scene.damping_law.slip_rate(scene.mass * scene.gravity * scene.can.radius), LARGEST)
     angles = np.linspace(0, math.pi, 91)
-    return float(stiffness(scene, angles, np.full_like(angles, slip), np.zeros_like(angles)).max())
+    return float(relaxation_rate(scene, angles, np.full_like(angles, slip), np.zeros_like(angles)).max())
 
 
 def pendulum_time(scene: Scene, phi0: float, precision: float) -> OwnTime:
@@ -293,13 +293,13 @@ def pendulum_time(scene: Scene, phi0: float, precision: float) -> OwnTime:
 def even_at_most(scene: Scene) -> OwnTime:
     """Return the same time in a unit in which no step is longer than a timestep."""
     shape = scene.oscillator
-    return _in_units_of(scene, shape.base + shape.chord + shape.swing, _EXACTLY)
+    return _in_units_of(scene, shape.base + shape.chord + shape.coupling, _EXACTLY)
 
 
 def _in_units_of(scene: Scene, inertia: float, precision: float) -> OwnTime:
     """Return the time whose pace is sqrt(J / `inertia`)."""
     shape = scene.oscillator
-    uneven, turns = (shape.swing, 1.0) if shape.swing > 0 else (shape.chord, 0.5)
+    uneven, turns = (shape.coupling, 1.0) if shape.coupling > 0 else (shape.chord, 0.5)
     return own_time(shape.base / inertia, uneven / inertia, turns, precision)
 
 
@@ -311,9 +311,9 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
     swings, where k^2 is the largest kinetic energy over that which turns the load over.
     """
     shape = scene.oscillator
-    slope, depth, bottom = shape.slope, shape.depth, shape.bottom
-    inertia = shape.base + shape.chord * math.sin(phi0 / 2) ** 2 + shape.swing * math.sin(phi0) ** 2
-    mean = math.sqrt(shape.base + (shape.chord + shape.swing) / 2)
+    slope, depth, bottom = shape.ramp, shape.depth, shape.bottom
+    inertia = shape.base + shape.chord * math.sin(phi0 / 2) ** 2 + shape.coupling * math.sin(phi0) ** 2
+    mean = math.sqrt(shape.base + (shape.chord + shape.coupling) / 2)
     # Rest and crests are where V' = -slope + depth sin(phi - bottom) vanishes: the well around the start.
     lean = math.asin(max(-1.0, min(1.0, slope / depth))) if depth > 0 else 0.0
     well = bottom - lean + 2 * math.pi * round((phi0 - bottom + lean) / (2 * math.pi))
@@ -363,6 +363,6 @@ def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
     It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
     """
     radius = scene.can.radius
-    positions = [radius if name in ("slide", "lift") else 1.0 for name in places(model)]
+    positions = [radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)]
     rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
     return np.array([*positions, *(rate * each for each in positions)])

@@ -5,8 +5,8 @@ import math
 import mujoco
 import numpy as np
 
-from mjbeer.model.engine import quiet
 from mjbeer.model.free import attach
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.theory.scene import Scene
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from mjbeer import require
-from mjbeer.exceptions import LiquidWarning, ParameterError, liquid_notes
+from mjbeer.exceptions import LiquidWarning, ParameterError, collect_liquid_warnings
 from mjbeer.model.setting import FRICTION, OWN, Integrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.output.terminal import STDERR, progress_bar
@@ -92,20 +92,20 @@ def sweep(
     for name, value in (("overwrite", overwrite), ("progress", progress)):
         require.boolean(name, value)
     if executor is not None and not isinstance(executor, Executor):
-        raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.shown(executor)}")
+        raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.format_value(executor)}")
     path = None if output is None else require.path(output)
     if path is not None and path.suffix != ".nc":
-        raise ParameterError(f"the file's name must end in .nc, got {require.shown(str(path))}")
+        raise ParameterError(f"the file's name must end in .nc, got {require.format_value(str(path))}")
     if not callable(make):
-        raise ParameterError(f"make must be a function that returns a scene, got {require.shown(make)}")
+        raise ParameterError(f"make must be a function that returns a scene, got {require.format_value(make)}")
     try:
         inspect.signature(make).bind(**parameters)
     except TypeError as error:
-        raise ParameterError(f"make is {require.shown(make)}: {error}") from error
+        raise ParameterError(f"make is {require.format_value(make)}: {error}") from error
     except ValueError:  # a function in C without a signature
         pass
     axes, fixed = _arranged({**parameters, "phi0": phi0, "phi_dot0": phi_dot0})
-    require.radians(float(np.abs(axes.get("phi0", fixed.get("phi0"))).max()))
+    require.warn_of_degrees(float(np.abs(axes.get("phi0", fixed.get("phi0"))).max()))
     setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
     measures = _asked(quantity, axes)
     times = _times(require.positive("duration", duration, "s"), setting, bool(measures))
@@ -162,7 +162,9 @@ def _asked(quantity: Asked | Sequence[Asked], axes: Axes) -> dict[str, Callable[
         elif callable(each):
             found.append((getattr(each, "__name__", type(each).__name__), each))
         else:
-            raise ParameterError(f"quantity must be a name or a function of a trajectory, got {require.shown(each)}")
+            raise ParameterError(
+                f"quantity must be a name or a function of a trajectory, got {require.format_value(each)}"
+            )
     names = [*there, *axes, *(name for name, measure in found if measure is not PERIOD.of)]
     if clash := [name for name in names if names.count(name) > 1]:
         raise ParameterError(f"there are two quantities or parameters of the name {clash[0]!r}: give one another name")
@@ -197,7 +199,7 @@ def _checked(work: Work, axes: Axes) -> list[str]:
     notes: dict[str, str] = {}
 
     def problem(scene: int) -> ParameterError | None:
-        with liquid_notes() as told:
+        with collect_liquid_warnings() as told:
             try:
                 work.scene(_varied(axes, scene))
             except ParameterError as error:
@@ -237,7 +239,8 @@ def _empty(work: Work, axes: Axes) -> "xarray.Dataset":
         name: (name, values, {"units": _UNITS[name]} if name in _UNITS else {}) for name, values in axes.items()
     }
     given = {"make": _label(work.make), "duration": float(work.times[-1])}
-    given |= {name: "none" if value is None else value for name, value in vars(work.setting).items()}
+    setting = {name: value for name, value in vars(work.setting).items() if name != "folder"}
+    given |= {name: "none" if value is None else value for name, value in setting.items()}
     if work.setting.tolerance is not None:
         del given["integrator"]
     given |= {name: value if isinstance(value, float) else _shown(value) for name, value in work.fixed.items()}
@@ -263,7 +266,7 @@ def _label(function: Any) -> str:
 
 def _save(found: "xarray.Dataset", path: pathlib.Path) -> None:
     """Write a sweep as NetCDF, whole or not at all."""
-    with files.whole(path) as temporary:
+    with files.atomic_write(path) as temporary:
         found.to_netcdf(temporary, engine="scipy")
 
 

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, ToleranceError, liquid_notes
+from mjbeer.exceptions import DivergenceError, MjbeerError, ParameterError, ToleranceError, collect_liquid_warnings
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import Scene
@@ -37,8 +37,8 @@ ALWAYS = {
     "u_dot": Quantity(lambda run: run.u_dot[-1], "m/s", "velocity at the end"),
     "error": Quantity(lambda run: run.error_estimate, "rad", "estimated error of φ and u/a"),
     "lowest_normal": Quantity(lambda run: run.record.lowest_normal, "N", "lowest normal force"),
-    "friction_needed": Quantity(lambda run: run.record.needed, "", "friction coefficient that rolling needs"),
-    "parting_time": Quantity(lambda run: run.record.fails_at, "s", "time from which N < 0"),
+    "friction_needed": Quantity(lambda run: run.record.needed_friction, "", "friction coefficient that rolling needs"),
+    "parting_time": Quantity(lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
     "energy_drift": Quantity(lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
 }
 """The quantities that every sweep has, besides whether a run is trusted and its status."""
@@ -77,8 +77,8 @@ class Work:
         values = {**self.fixed, **varied}
         start = require.start(values.pop("phi0"), values.pop("phi_dot0"))
         if not isinstance(made := self.make(**values), Scene):
-            called = require.shown(self.make)
-            raise ParameterError(f"make must return a scene, got {called}, which returns {require.shown(made)}")
+            called = require.format_value(self.make)
+            raise ParameterError(f"make must return a scene, got {called}, which returns {require.format_value(made)}")
         return made, *start
 
 
@@ -86,7 +86,7 @@ def measure(work: Work, scenes: list[dict[str, float]]) -> tuple[np.ndarray, lis
     """Return the quantities of scenes, a row each: NaN where there is none, then whether it is trusted and its status;
     why the status is not 0; and the time that all took [s]."""
     began = time.perf_counter()
-    with liquid_notes():  # the sweep has said them
+    with collect_liquid_warnings():  # the sweep has said them
         found, reasons = zip(*(_outcome(work, scene) for scene in scenes), strict=True)
     return np.array(found), list(reasons), time.perf_counter() - began
 

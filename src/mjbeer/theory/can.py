@@ -34,7 +34,7 @@ class Can:
     """Moment of inertia I_can about the axis [kg m^2], eq. (31)."""
 
     def __post_init__(self) -> None:
-        require.store(
+        require.set_fields(
             self,
             radius=require.within("can radius", self.radius, *require.SIZE, "m"),
             length=require.within("can length", self.length, *require.SIZE, "m"),
@@ -74,7 +74,7 @@ class Can:
         density = require.positive("sheet density", density, "kg/m^3")
         sheet = math.pi * radius * thickness * density
         mass, inertia = 2 * sheet * (length + radius), sheet * radius**2 * (2 * length + radius)
-        with require.from_given(radius=radius, length=length, thickness=thickness, density=density):
+        with require.naming_given(radius=radius, length=length, thickness=thickness, density=density):
             return cls(radius, length, mass, inertia)
 
     @classmethod

@@ -1,4 +1,4 @@
-"""The torque between can and load, which turn at different rates, and the roots of small motions that it damps."""
+"""The torque between can and load, which turn at different rates."""
 
 import math
 from dataclasses import dataclass, field
@@ -31,7 +31,7 @@ class Damping:
     """Slip rate [rad/s] from which a film all round the wall can hold a third of that liquid."""
 
     def __post_init__(self) -> None:
-        require.store(
+        require.set_fields(
             self,
             linear=require.non_negative("damping", self.linear, "N m s"),
             quadratic=require.non_negative("quadratic damping", self.quadratic, "N m s^2"),
@@ -51,12 +51,12 @@ class Damping:
         size = np.abs(rate)
         return rate * (self.linear + size * (self.quadratic + size * self.cubic))
 
-    def slope(self, rate: np.ndarray | float) -> np.ndarray | float:
+    def derivative(self, rate: np.ndarray | float) -> np.ndarray | float:
         """Return the derivative of the torque by the slip rate [N m s] at a slip rate [rad/s]."""
         size = np.abs(rate)
         return self.linear + size * (2 * self.quadratic + size * 3 * self.cubic)
 
-    def rate(self, torque: float) -> float:
+    def slip_rate(self, torque: float) -> float:
         """Return the slip rate [rad/s] at which the torque is `torque` [N m]; it is infinite if there is no damping."""
         if torque == 0:
             return 0.0
@@ -64,32 +64,8 @@ class Damping:
         terms = enumerate(self.coefficients, start=1)
         rate = min(((abs(torque) / c) ** (1 / power) for power, c in terms if c > 0), default=math.inf)
         while rate < math.inf:
-            lower = rate - float((self.torque(rate) - abs(torque)) / self.slope(rate))
+            lower = rate - float((self.torque(rate) - abs(torque)) / self.derivative(rate))
             if not lower < rate:
                 break
             rate = lower
         return math.copysign(rate, torque)
-
-
-def roots(square: float, linear: float, constant: float, excess: float) -> np.ndarray:
-    """Return the roots of s^3 + A s^2 + B s + C with none negative, sorted by their real and then imaginary parts.
-
-    A B - C = `excess` is given to all digits. The sum of the two slow roots, -pair, obeys
-    pair^3 - 2 A pair^2 + (A^2 + B) pair = A B - C: so a decay has its digits where it is 1e-10 of the frequency.
-    """
-    rough = np.roots([1.0, square, linear, constant])
-    single = float(rough.real[rough.imag == 0].min())
-    pair = -(float(rough.real.sum()) - single)
-    for _ in range(4):  # Newton's method, from the many or few digits that an eigenvalue has
-        rest = ((single + square) * single + linear) * single + constant
-        gap = ((pair - 2 * square) * pair + square**2 + linear) * pair - excess
-        steep = (3 * single + 2 * square) * single + linear, (3 * pair - 4 * square) * pair + square**2 + linear
-        single -= rest / steep[0] if steep[0] else 0.0
-        pair -= gap / steep[1] if steep[1] else 0.0
-    product = -constant / single if single else linear
-    half, spread = pair / 2, pair**2 / 4 - product
-    if spread < 0:
-        swing = complex(-half, math.sqrt(-spread))
-        return np.sort_complex([single, swing, swing.conjugate()])
-    fast = -(half + math.sqrt(spread))
-    return np.sort_complex(np.array([single, fast, product / fast if fast else 0.0], complex))

@@ -39,7 +39,7 @@ class Coordinates:
     """Velocity of the can away from the incline [m/s]."""
 
 
-def part(motion: Coordinates, samples: np.ndarray | list[int] | slice) -> Coordinates:
+def select_samples(motion: Coordinates, samples: np.ndarray | list[int] | slice) -> Coordinates:
     """Return some of the samples of a motion."""
     return Coordinates(**{name: getattr(motion, name)[samples] for name in Coordinates.__dataclass_fields__})
 
@@ -54,7 +54,7 @@ class Forces:
     """F [N], positive up the incline."""
 
     @property
-    def needed(self) -> np.ndarray:
+    def needed_friction(self) -> np.ndarray:
         """Return the friction coefficient |F|/N that rolling needs; infinite where the incline would have to pull."""
         ratio = np.full_like(self.normal, np.inf)
         return np.divide(np.abs(self.friction), self.normal, out=ratio, where=self.normal > 0)
@@ -74,13 +74,13 @@ def accelerations(
     if scene.dissipates:
         # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
         # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
-        torque, along = dissipation(scene, phi_dot, u_dot)
+        torque, along = dissipative_forces(scene, phi_dot, u_dot)
         phi_ddot = phi_ddot + (torque + moment * cos / scene.effective_mass * along) / scene.oscillator.inertia(phi)
     swung = moment * (cos * phi_ddot - np.sin(phi) * phi_dot**2)
-    return (scene.drive + swung + along) / scene.effective_mass, phi_ddot  # eq. (46)
+    return (scene.downhill_weight + swung + along) / scene.effective_mass, phi_ddot  # eq. (46)
 
 
-def axis(
+def axis_motion(
     scene: Scene, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, start: tuple[float, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return u [m] and u_dot [m/s] of rolling without damping and drag, from phi at times [s] since the `start`.
@@ -91,13 +91,13 @@ def axis(
     if scene.attachment == "frozen":
         return scene.can.radius * phi, scene.can.radius * phi_dot
     phi0, phi_dot0, u0, u_dot0 = start
-    arm, pull = scene.load.moment / scene.effective_mass, scene.drive / scene.effective_mass
+    arm, pull = scene.load.moment / scene.effective_mass, scene.downhill_weight / scene.effective_mass
     place, speed = u0 - arm * math.sin(phi0), u_dot0 - arm * math.cos(phi0) * phi_dot0
     u = arm * np.sin(phi) + (place + speed * time + pull * time**2 / 2)
     return u, arm * np.cos(phi) * phi_dot + (speed + pull * time)
 
 
-def dissipation(
+def dissipative_forces(
     scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
     """Return the torque on the load [N m], and the force down the incline on the axis [N], of damping and drag."""
@@ -110,12 +110,12 @@ def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | flo
     return u_dot / scene.can.radius - phi_dot
 
 
-def stiffness(
+def relaxation_rate(
     scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
 ) -> np.ndarray:
     """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J)."""
     radius, mass = scene.can.radius, scene.effective_mass
-    slope = scene.damping_law.slope(slip_rate(scene, phi_dot, u_dot))
+    slope = scene.damping_law.derivative(slip_rate(scene, phi_dot, u_dot))
     resists = scene.frozen.inertia(phi) / (radius**2 * mass * scene.oscillator.inertia(phi))
     return slope * resists + 2 * scene.drag * np.abs(u_dot) / mass
 
@@ -128,7 +128,7 @@ def rolling_forces(
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
     normal = scene.mass * scene.gravity * math.cos(scene.incline) + moment * (sin * phi_ddot + cos * square)
     if scene.attachment == "frozen":
-        return Forces(normal, scene.drive - (scene.mass * u_ddot - moment * (cos * phi_ddot - sin * square)))
+        return Forces(normal, scene.downhill_weight - (scene.mass * u_ddot - moment * (cos * phi_ddot - sin * square)))
     friction = scene.can.inertia / scene.can.radius**2 * u_ddot  # it and the damping turn the can
     if scene.damping_law:
         friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius

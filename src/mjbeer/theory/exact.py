@@ -5,8 +5,8 @@ from numpy.typing import ArrayLike
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory import damped, motion
-from mjbeer.theory.equations import axis
+from mjbeer.theory import damped_motion, motion
+from mjbeer.theory.equations import axis_motion
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, angle_distance
 
@@ -26,7 +26,7 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    require.radians(phi0)
+    require.warn_of_degrees(phi0)
     return solution(scene, require.times("time", time), phi0, phi_dot0)
 
 
@@ -36,10 +36,10 @@ def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Tr
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
             if scene.dissipates:
-                phi, phi_dot, u, u_dot = damped.solve(scene, time, phi0, phi_dot0)
+                phi, phi_dot, u, u_dot = damped_motion.solve(scene, time, phi0, phi_dot0)
             else:
                 phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
-                u, u_dot = axis(scene, time, phi, phi_dot, (phi0, phi_dot0, *scene.start(phi0, phi_dot0)))
+                u, u_dot = axis_motion(scene, time, phi, phi_dot, (phi0, phi_dot0, *scene.start(phi0, phi_dot0)))
             roll, roll_dot = u / radius, u_dot / radius
     except ParameterError:
         raise

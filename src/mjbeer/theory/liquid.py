@@ -31,8 +31,8 @@ from mjbeer.exceptions import NoEquilibriumError, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import segment
-from mjbeer.theory.named import named, sliding
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
+from mjbeer.theory.scenes import named, sliding
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
 NAMES: tuple[Name, ...] = get_args(Name)
@@ -141,7 +141,7 @@ def liquid(
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
-    with require.from_given(viscosity=used.viscosity):
+    with require.naming_given(viscosity=used.viscosity):
         scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
     try:
         speed = scene.terminal_speed()
@@ -153,7 +153,7 @@ def liquid(
             f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold "
             f"{_share(used.carried)} of the liquid"
         )
-    if (ratio := float(centrifugal(scene, speed))) > 1:
+    if (ratio := float(centrifugal_ratio(scene, speed))) > 1:
         reasons.append(
             f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times "
             "g cos(alpha), which spreads it round the can"
@@ -191,7 +191,7 @@ def liquid_in(
     omega = math.sqrt(load.moment * free.gravity / free.oscillator.base)
     swing = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
 
-    torque = min(abs(free.drive) * a, load.moment * free.gravity)  # the latter is all that the load can hold
+    torque = min(abs(free.downhill_weight) * a, load.moment * free.gravity)  # the latter is all that the load can hold
     steady = min((torque / layers) ** (2 / 3), torque / creep)
     wide = (swing / layers) ** 2 if swing > creep else 0.0
     slip = max(steady, wide)
@@ -211,7 +211,7 @@ def liquid_in(
     return Liquid(name, density, nu, law, steady, film, FILM_LOAD * film / (shape.area * a), damping)
 
 
-def about_run(scene: Scene, fastest: float, spread_at: float, turns: float) -> str | None:
+def run_warning(scene: Scene, fastest: float, spread_at: float, turns: float) -> str | None:
     """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
 
     `fastest` is the largest slip rate of the run [rad/s], from `spread_at` [s] on `centrifugal` was more than 1, and
@@ -233,7 +233,7 @@ def about_run(scene: Scene, fastest: float, spread_at: float, turns: float) -> s
     return _no_lump("the liquid", scene, fastest, reasons, "the run")
 
 
-def centrifugal(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
+def centrifugal_ratio(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
 

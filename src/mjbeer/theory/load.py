@@ -36,7 +36,7 @@ class Load:
     only how the load is drawn: without it the load is a ball at its centre of mass."""
 
     def __post_init__(self) -> None:
-        require.store(
+        require.set_fields(
             self,
             mass=require.within("load mass", self.mass, *require.MASS, "kg"),
             offset=require.within("load offset", self.offset, 0, require.SIZE[1], "m"),
@@ -71,7 +71,7 @@ class Load:
         fill = _checked_fill(fill)
         shape = segment(fill)
         mass = density * length * radius**2 * shape.area
-        with require.from_given(radius=radius, length=length, fill=fill, density=density):
+        with require.naming_given(radius=radius, length=length, fill=fill, density=density):
             return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
 
     @classmethod
@@ -122,6 +122,6 @@ def _checked_fill(fill: float) -> float:
     share = require.number("fill", fill)
     if not 0 < share <= 1:
         raise ParameterError(
-            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {require.shown(fill)}"
+            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {require.format_value(fill)}"
         )
     return share

@@ -3,15 +3,15 @@
 With the rolling constraint and the conserved momentum eliminated, each scene obeys
 
     1/2 J(phi) phi_dot^2 + V(phi) = E,
-    J = base + chord sin^2(phi/2) + swing sin^2(phi),
-    V = -slope phi - depth cos(phi - bottom).
+    J = base + chord sin^2(phi/2) + coupling sin^2(phi),
+    V = -ramp phi - depth cos(phi - bottom).
 
-V is a cosine on a ramp: `slope` is the steepness of the ramp, a torque, `depth` the amplitude of the cosine, and
-`bottom` the angle of its minimum. If |slope| < depth, V has in every turn a minimum (the equilibrium, or rest) and a
-maximum (the barrier). A frozen load gives `chord` and `slope` (eqs. 51 and 52), a sliding load `swing` and no slope
-(eq. 16, and eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
+V is a cosine on a ramp: `ramp` is its steepness, a torque, `depth` the amplitude of the cosine, and `bottom` the angle
+of its minimum. If |ramp| < depth, V has in every turn a minimum (the equilibrium, or rest) and a maximum (the barrier).
+A frozen load gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and eqs. 46 and
+47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
 
-V is needed only as differences, from where nothing cancels: see `Crest`.
+V is needed only as differences, from where nothing cancels: see `Potential`.
 """
 
 import math
@@ -25,78 +25,74 @@ from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
 
-TURN = 2 * math.pi
-_SHALLOW = 0.5
-"""Width of a well [rad] below which a turn is reckoned from the steepest place of V, and not from the equilibrium."""
-_GAP = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
-"""Coefficients of (1 - sin(x)/x) / x^2 in -x^2, to rounding up to 1."""
+_SINC_SERIES = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
 
 
-class Crest:
-    """The shape of V = -slope phi - depth cos(phi - bottom) about its crest, for slope >= 0.
+class Potential:
+    """The shape of V = -ramp phi - depth cos(phi - bottom) about its crest, for ramp >= 0.
 
-    V falls with growing phi. If slope < depth, its crest is the barrier, with the equilibrium at a distance `well`
+    V falls with growing phi. If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well`
     before it. On a steeper incline V only falls, and its crest is where it falls least; there the well has no width. In
-    both cases the torque downhill at a distance x past the crest is
+    both cases the torque downhill at an angle x past the crest is
 
-        -V'(crest + x) = excess + 2 ramp sin^2(x/2) + curvature sin(x).
+        -V'(crest + x) = excess + 2 balanced sin^2(x/2) + curvature sin(x).
 
-    Every turn is the same, but lower by `step`. V looks the same upside down: the torque at a distance y past the
-    equilibrium is that at -y past the crest.
+    Every turn is the same, but lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past
+    the equilibrium is that at -y past the crest.
     """
 
-    def __init__(self, slope: float, depth: float, bottom: float) -> None:
-        self.slope, self.depth, self.bottom = slope, depth, bottom
-        self.ramp = min(slope, depth)
-        self.excess = slope - self.ramp  # torque at the crest, 0 if there is a barrier
-        self.curvature = math.sqrt(depth - self.ramp) * math.sqrt(depth + self.ramp)  # V'' at rest, -V'' at the crest
+    def __init__(self, ramp: float, depth: float, bottom: float) -> None:
+        self.ramp, self.depth, self.bottom = ramp, depth, bottom
+        self.balanced = min(ramp, depth)
+        self.excess = ramp - self.balanced  # torque at the crest, 0 if there is a barrier
+        # V'' at rest, and -V'' at the crest:
+        self.curvature = math.sqrt(depth - self.balanced) * math.sqrt(depth + self.balanced)
         # The equilibrium is past the minimum of the cosine by so much, and the crest, less pi, before it.
-        self.lean = math.atan2(slope, self.curvature) if self.curvature > 0 else math.pi / 2
-        self.offset, self.rest = bottom - self.lean, bottom + self.lean
-        self.step = TURN * slope
-        self.well = 2 * math.atan2(self.curvature, self.ramp) if self.curvature > 0 else 0.0
-        # A turn begins where no load is slow; to come from there takes `rise` more than to be at the crest [J].
-        self.begins = -math.pi if self.well < _SHALLOW else -self.well
-        self.rise = max(0.0, -float(self.below(self.begins)))
+        self.lean = math.atan2(ramp, self.curvature) if self.curvature > 0 else math.pi / 2
+        self.crest_past_pi, self.rest = bottom - self.lean, bottom + self.lean
+        self.drop_per_turn = math.tau * ramp
+        self.well = 2 * math.atan2(self.curvature, self.balanced) if self.curvature > 0 else 0.0
+        # A turn begins where no load is slow: at the equilibrium, or in a narrow well where V is steepest. From there
+        # it may be uphill to the crest, by `highest` [J].
+        self.turn_begins = -math.pi if self.well < 0.5 else -self.well
+        self.highest = max(0.0, -float(self.below(self.turn_begins)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
         """Return V(crest) - V(crest + x) [J] for `x` [rad] of either sign; at x = -y it is V(rest + y) - V(rest)."""
-        return self.excess * x + self.ramp * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
+        return self.excess * x + self.balanced * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
 
     def torque(self, x: np.ndarray | float) -> np.ndarray:
-        """Return -V' [N m] at a distance `x` [rad] past the crest."""
-        return self.excess + 2 * self.ramp * np.sin(x / 2) ** 2 + self.curvature * np.sin(x)
+        """Return -V' [N m] at an angle `x` [rad] past the crest."""
+        return self.excess + 2 * self.balanced * np.sin(x / 2) ** 2 + self.curvature * np.sin(x)
 
     def mean_torque(self, x: float, length: np.ndarray | float) -> np.ndarray:
         """Return (V(crest + x) - V(crest + x + length)) / length [N m], which is smooth through length 0."""
         middle, half = x + length / 2, length / 2
         flattened = 2 * np.sin(middle / 2) ** 2 + np.cos(middle) * sinc_gap(half)
-        return self.excess + self.ramp * flattened + self.curvature * np.sin(middle) * sinc(half)
+        return self.excess + self.balanced * flattened + self.curvature * np.sin(middle) * (1 - sinc_gap(half))
 
-    def place(self, phi: float) -> tuple[float, float]:
+    def distances(self, phi: float) -> tuple[float, float]:
         """Return how far `phi` [rad], of any size, is past the crest of its turn and past the rest of its well [rad].
 
         The second is counted from the well between that crest and the next one if phi is past the crest.
         """
-        past = math.remainder(_past_pi(phi) - self.offset, TURN)
-        from_rest = math.remainder(reduced(phi) - self.rest, TURN)
-        by_rest = self.well > 0 and abs(from_rest) < abs(past)
-        return self.place_by_rest(from_rest) if by_rest else self.place_by_crest(past)
+        past_crest = math.remainder(_past_pi(phi) - self.crest_past_pi, math.tau)
+        past_rest = math.remainder(reduced(phi) - self.rest, math.tau)
+        if self.well > 0 and abs(past_rest) < abs(past_crest):
+            return self.distances_by_rest(past_rest)
+        past_crest += 0.0 if past_crest >= self.turn_begins else math.tau
+        return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
 
-    def place_by_crest(self, past: float) -> tuple[float, float]:
-        """Return a place by its distance [rad] past a crest, up to a turn beside its own."""
-        past += 0.0 if past >= self.begins else TURN
-        return past, past + self.well if past < 0 else past + (self.well - TURN)
+    def distances_by_rest(self, past_rest: float) -> tuple[float, float]:
+        """Return what `distances` does, by the angle [rad] past the equilibrium of a well."""
+        past_crest = _past_pi(past_rest) + 2 * self.lean
+        return past_crest - (math.tau if past_crest >= self.turn_begins + math.tau else 0.0), past_rest
 
-    def place_by_rest(self, from_rest: float) -> tuple[float, float]:
-        """Return a place by its distance [rad] past the equilibrium of its well."""
-        past = _past_pi(from_rest) + 2 * self.lean
-        return past - (TURN if past >= self.begins + TURN else 0.0), from_rest
-
-    def below_ahead(self, past: float, from_rest: float) -> float:
-        """Return by how much V at a place is below the next crest downhill [J]."""
-        ahead = past if past < 0 else from_rest - self.well
-        return float(self.below(ahead)) if abs(ahead) <= abs(past) else float(self.below(past)) - self.step
+    def below_next_crest(self, past_crest: float, past_rest: float) -> float:
+        """Return by how much V at these `distances` is below the next crest downhill [J]."""
+        ahead = past_crest if past_crest < 0 else past_rest - self.well
+        by_next = abs(ahead) <= abs(past_crest)
+        return float(self.below(ahead)) if by_next else float(self.below(past_crest)) - self.drop_per_turn
 
 
 @dataclass(frozen=True)
@@ -105,8 +101,8 @@ class Oscillator:
 
     base: float  # constant part of J [kg m^2]
     chord: float  # coefficient of sin^2(phi/2) in J [kg m^2]
-    swing: float  # coefficient of sin^2(phi) in J [kg m^2]
-    slope: float  # mean torque downhill [N m]
+    coupling: float  # coefficient of sin^2(phi) in J [kg m^2]
+    ramp: float  # mean torque downhill [N m]
     depth: float  # amplitude of the cosine in V [J]
     bottom: float  # angle at which the cosine in V has its minimum [rad]
 
@@ -120,8 +116,8 @@ class Oscillator:
         return cls(
             base=load.inertia + load.moment * load.offset * can.effective_mass / total,
             chord=0.0,
-            swing=load.moment * load.offset * load.mass / total,
-            slope=0.0,
+            coupling=load.moment * load.offset * load.mass / total,
+            ramp=0.0,
             depth=load.moment * math.hypot(normal, lag),
             bottom=math.atan2(-lag, normal),
         )
@@ -134,8 +130,8 @@ class Oscillator:
         return cls(
             base=inertia + can.inertia + can.mass * radius**2,
             chord=4 * load.mass * radius * offset,
-            swing=0.0,
-            slope=(load.mass + can.mass) * gravity * radius * math.sin(incline),
+            coupling=0.0,
+            ramp=(load.mass + can.mass) * gravity * radius * math.sin(incline),
             depth=load.moment * gravity,
             bottom=-incline,
         )
@@ -143,26 +139,22 @@ class Oscillator:
     @property
     def sign(self) -> int:
         """Return -1 if the ramp falls with -phi, so that the motion is watched in a mirror, else 1."""
-        return -1 if self.slope < 0 else 1
+        return -1 if self.ramp < 0 else 1
 
     @cached_property
-    def crest(self) -> Crest:
+    def potential(self) -> Potential:
         """Return the shape of V about its crest, in the mirror if `sign` is -1."""
-        return Crest(abs(self.slope), self.depth, self.sign * self.bottom)
+        return Potential(abs(self.ramp), self.depth, self.sign * self.bottom)
 
     def inertia(self, phi: np.ndarray | float) -> np.ndarray:
         """Return J [kg m^2] at `phi` [rad]."""
-        return self.base + self.chord * np.sin(phi / 2) ** 2 + self.swing * np.sin(phi) ** 2
-
-    def inertia_past_pi(self, x: np.ndarray | float) -> np.ndarray:
-        """Return J [kg m^2] at pi + `x` [rad], where pi need not be added."""
-        return self.base + self.chord * np.cos(x / 2) ** 2 + self.swing * np.sin(x) ** 2
+        return self.base + self.chord * np.sin(phi / 2) ** 2 + self.coupling * np.sin(phi) ** 2
 
     def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
-        turned = phi - start
+        delta_phi = phi - start
         middle = (phi + start) / 2 - self.bottom
-        return self.slope * turned - 2 * self.depth * np.sin(middle) * np.sin(turned / 2)
+        return self.ramp * delta_phi - 2 * self.depth * np.sin(middle) * np.sin(delta_phi / 2)
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
         """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
@@ -170,18 +162,18 @@ class Oscillator:
         It is large where neither the energy of the start nor that which a turn downhill adds is much more than the
         depth of the well.
         """
-        drive = float(self.inertia(phi0)) * phi_dot0**2 / 2 + abs(self.slope)
+        drive = float(self.inertia(phi0)) * phi_dot0**2 / 2 + abs(self.ramp)
         by_weight = self.depth / drive if drive > 0 else (math.inf if self.depth > 0 else 0.0)
-        return (self.chord + self.swing) / (2 * self.base) + by_weight
+        return (self.chord + self.coupling) / (2 * self.base) + by_weight
 
     def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
         """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""
-        inertia_slope = self.chord * np.sin(phi) / 2 + self.swing * np.sin(2 * phi)
-        torque = self.slope - self.depth * np.sin(phi - self.bottom)
+        inertia_slope = self.chord * np.sin(phi) / 2 + self.coupling * np.sin(2 * phi)
+        torque = self.ramp - self.depth * np.sin(phi - self.bottom)
         return (torque - inertia_slope * phi_dot**2 / 2) / self.inertia(phi)
 
     def equilibrium(self) -> float:
-        """Return the angle of stable equilibrium [rad], where |slope| <= depth: eq. (53) for a frozen load.
+        """Return the angle of stable equilibrium [rad], where |ramp| <= depth: eq. (53) for a frozen load.
 
         Raises:
           NoEquilibriumError: if the load is balanced about the axis, or there is no gravity.
@@ -191,18 +183,18 @@ class Oscillator:
                 "nothing restores the load: it is balanced about the axis (offset 0 m) or gravity is 0 m/s^2, "
                 "so no angle is a stable equilibrium"
             )
-        return self.sign * self.crest.rest
+        return self.sign * self.potential.rest
 
     def frequency(self) -> float:
         """Return the angular frequency of small oscillations [rad/s], sqrt(V''/J) at equilibrium: eqs. (10), (55)."""
-        return math.sqrt(self.crest.curvature / float(self.inertia(self.equilibrium())))
+        return math.sqrt(self.potential.curvature / float(self.inertia(self.equilibrium())))
 
     def separatrix(self) -> tuple[float, float]:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
-        crest = self.crest
-        barrier = float(crest.below(-crest.well))  # above the equilibrium; `root` finds where V is as high behind it
-        behind = root(lambda distance: float(crest.below(distance)) - barrier, 0, TURN - crest.well)
-        low, high = crest.rest - behind, math.pi + crest.offset
+        potential = self.potential
+        barrier = float(potential.below(-potential.well))  # above the equilibrium, as V is at an angle behind it
+        behind = root(lambda angle: float(potential.below(angle)) - barrier, 0, math.tau - potential.well)
+        low, high = potential.rest - behind, math.pi + potential.crest_past_pi
         return (low, high) if self.sign > 0 else (-high, -low)
 
 
@@ -219,16 +211,11 @@ def reduced(angle: float) -> float:
     return angle if abs(angle) <= math.pi else math.atan2(math.sin(angle), math.cos(angle))
 
 
-def sinc(x: np.ndarray | float) -> np.ndarray:
-    """Return sin(x)/x to full relative precision, at its zeros too, unlike np.sinc."""
-    x = np.where(x == 0, 1e-300, x)
-    return np.sin(x) / x
-
-
 def sinc_gap(x: np.ndarray | float) -> np.ndarray:
-    """Return 1 - sin(x)/x, by its series where the difference would cancel."""
+    """Return 1 - sin(x)/x, up to 1 by its series, as the difference would cancel."""
     square = np.square(np.minimum(np.abs(x), 1))
-    return np.where(np.abs(x) < 1, square * np.polyval(_GAP, -square), 1 - sinc(x))
+    series = square * np.polyval(_SINC_SERIES, -square)
+    return np.where(np.abs(x) < 1, series, 1 - np.sinc(np.divide(x, math.pi)))
 
 
 def root(function: Callable[[float], float], lower: float, upper: float) -> float:

@@ -40,7 +40,7 @@ _QUADRATIC = 1e-10
 """A step of Newton's method this small, in half-widths of a panel, leaves an error of its square, below rounding."""
 
 
-class Clock:
+class TravelTime:
     """The time t(psi) along a path from its beginning, and its inverse psi(t)."""
 
     def __init__(self, rate: Callable[[np.ndarray], np.ndarray], *edges: float) -> None:

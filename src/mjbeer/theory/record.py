@@ -6,8 +6,8 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.theory import equations
-from mjbeer.theory.equations import Coordinates, accelerations, part, slip_rate
-from mjbeer.theory.liquid import centrifugal
+from mjbeer.theory.equations import Coordinates, accelerations, select_samples, slip_rate
+from mjbeer.theory.liquid import centrifugal_ratio
 from mjbeer.theory.scene import Scene
 
 ERROR = 1e-2
@@ -35,17 +35,19 @@ class Record:
         self.scene, self.friction = scene, friction
         self.slip = 0.0  # largest distance that the can has slid instead of rolled [m]
         self.lift = 0.0  # largest distance between can and incline, or depth of the can in it [m]
-        self.turned = 0.0  # largest angle by which the load has turned from its start [rad]
-        self.rolled = 0.0  # largest distance of the axis from its start [m]
-        self.path = 0.0  # angle that the load has covered, forth and back [rad]
-        self.fastest = 0.0  # largest rate of the load, |phi_dot| [rad/s]
-        self.swing = 0.0  # largest kinetic energy of the swing, J phi_dot^2 / 2 [J]
+        self.largest_turn = 0.0  # largest angle by which the load has turned from its start [rad]
+        self.largest_distance = 0.0  # largest distance of the axis from its start [m]
+        self.angle_covered = 0.0  # angle that the load has covered, forth and back [rad]
+        self.largest_rate = 0.0  # largest rate of the load, |phi_dot| [rad/s]
+        self.swing_energy = 0.0  # largest kinetic energy of the swing, J phi_dot^2 / 2 [J]
         self.axis_drift = 0.0  # largest distance of the axis from where its momentum has it [m]; 0 with damping or drag
-        self.fastest_slip = 0.0  # largest rate between can and load with damping or drag, |u_dot/a - phi_dot| [rad/s]
+        self.largest_slip_rate = (
+            0.0  # largest rate between can and load with damping or drag, |u_dot/a - phi_dot| [rad/s]
+        )
         self.no_lump_at = math.inf  # when the wall of a can with a liquid is first too fast for a lump [s]
         self.lowest_normal = math.inf  # smallest N that rolling needed [N]; below 0 the incline would have to pull
-        self.needed = 0.0  # largest friction coefficient that rolling needed; infinite where N < 0
-        self.fails_at = math.inf  # when N < 0 or |F| > friction N for the first time, interpolated [s]
+        self.needed_friction = 0.0  # largest friction coefficient that rolling needed; infinite where N < 0
+        self.rolling_ends_at = math.inf  # when N < 0 or |F| > friction N for the first time, interpolated [s]
         self._kinetic = self._energy = self._energy_change = self._work = 0.0
         self._swing_drift = self._largest_swing_drift = self._swing_change = 0.0
         self._first: Coordinates | None = None
@@ -61,7 +63,7 @@ class Record:
         """
         record = cls(scene, friction)
         record._all_steps = False
-        record.add(part(motion, np.argsort(motion.time)))
+        record.add(select_samples(motion, np.argsort(motion.time)))
         return record
 
     def add(self, motion: Coordinates) -> None:
@@ -71,24 +73,31 @@ class Record:
 
     def add_conserved(self, motion: Coordinates) -> None:
         """Add the next piece of the motion to everything but what rests on forces."""
-        scene, form = self.scene, self.scene.oscillator
+        scene, oscillator = self.scene, self.scene.oscillator
         kinetic = equations.kinetic_energy(scene, motion)
         energy = kinetic + equations.potential_energy(scene, motion)
         if self._first is None or self._last is None:
-            self._first, self._last, self._energy = part(motion, [0]), part(motion, [0]), float(energy[0])
-        first, last, self._last = self._first, self._last, part(motion, [-1])
+            self._first, self._last, self._energy = (
+                select_samples(motion, [0]),
+                select_samples(motion, [0]),
+                float(energy[0]),
+            )
+        first, last, self._last = self._first, self._last, select_samples(motion, [-1])
         self.slip = _largest(self.slip, motion.u - first.u - scene.can.radius * (motion.roll - first.roll))
         self.lift = _largest(self.lift, motion.lift)
-        self.turned = _largest(self.turned, motion.phi - first.phi)
-        self.rolled = _largest(self.rolled, motion.u - first.u)
-        self.fastest = _largest(self.fastest, motion.phi_dot)
-        covered, swing = np.abs(np.diff(motion.phi, prepend=last.phi)), form.inertia(motion.phi) * motion.phi_dot**2 / 2
-        self.path += float(covered.sum())
-        self._kinetic, self.swing = _largest(self._kinetic, kinetic), _largest(self.swing, swing)
+        self.largest_turn = _largest(self.largest_turn, motion.phi - first.phi)
+        self.largest_distance = _largest(self.largest_distance, motion.u - first.u)
+        self.largest_rate = _largest(self.largest_rate, motion.phi_dot)
+        covered, swing = (
+            np.abs(np.diff(motion.phi, prepend=last.phi)),
+            oscillator.inertia(motion.phi) * motion.phi_dot**2 / 2,
+        )
+        self.angle_covered += float(covered.sum())
+        self._kinetic, self.swing_energy = _largest(self._kinetic, kinetic), _largest(self.swing_energy, swing)
         if scene.dissipates:
-            self.fastest_slip = _largest(self.fastest_slip, slip_rate(scene, motion.phi_dot, motion.u_dot))
+            self.largest_slip_rate = _largest(self.largest_slip_rate, slip_rate(scene, motion.phi_dot, motion.u_dot))
             if scene.damping_law.holds is not None:
-                fast = np.flatnonzero(centrifugal(scene, motion.u_dot) > 1)
+                fast = np.flatnonzero(centrifugal_ratio(scene, motion.u_dot) > 1)
                 self.no_lump_at = min(self.no_lump_at, *motion.time[fast[:1]].tolist(), math.inf)
             if self._all_steps:
                 work = self._work + np.cumsum(_work(scene, motion, last))
@@ -96,7 +105,7 @@ class Record:
                 self._energy_change = _largest(self._energy_change, energy - self._energy + work)
             return
         self._energy_change = _largest(self._energy_change, energy - self._energy)
-        swing -= form.inertia(first.phi) * first.phi_dot**2 / 2 + form.drop(motion.phi, first.phi)
+        swing -= oscillator.inertia(first.phi) * first.phi_dot**2 / 2 + oscillator.drop(motion.phi, first.phi)
         self._swing_change = _largest(self._swing_change, swing)
         drift = self._swing_drift + np.cumsum(swing * covered)
         self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
@@ -109,8 +118,8 @@ class Record:
         """
         forces = equations.rolling_forces(self.scene, phi, phi_dot, u_dot)
         self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
-        self.needed = _largest(self.needed, forces.needed)
-        if math.isfinite(self.fails_at):
+        self.needed_friction = _largest(self.needed_friction, forces.needed_friction)
+        if math.isfinite(self.rolling_ends_at):
             return
         margin = forces.normal
         if math.isfinite(self.friction):
@@ -120,7 +129,7 @@ class Record:
             later, below = float(time[after]), float(margin[after])
             before = (float(time[after - 1]), float(margin[after - 1])) if after else self._before
             earlier, above = before or (later, 0.0)
-            self.fails_at = earlier + above / (above - below) * (later - earlier)
+            self.rolling_ends_at = earlier + above / (above - below) * (later - earlier)
         self._before = float(time[-1]), float(margin[-1])
 
     @property
@@ -149,7 +158,7 @@ class Record:
 
         A relative error of the energy is about that of the speed or the period, and so of the path of phi meanwhile.
         """
-        return _ratio(self._largest_swing_drift, self._least_swing) / max(1.0, self.turned)
+        return _ratio(self._largest_swing_drift, self._least_swing) / max(1.0, self.largest_turn)
 
     @property
     def swing_error_at_most(self) -> float:
@@ -157,23 +166,23 @@ class Record:
 
         A step that misses a brief event may bring a drift that the next one takes away, and leave the phase wrong.
         """
-        return _ratio(self._swing_change, self._least_swing) * self.path / max(1.0, self.turned)
+        return _ratio(self._swing_change, self._least_swing) * self.angle_covered / max(1.0, self.largest_turn)
 
     @property
     def _least_swing(self) -> float:
-        return max(self.swing, _SMALL_SWING * self.scene.oscillator.depth)
+        return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth)
 
     @property
     def axis_error(self) -> float:
         """Return the error of u/a [rad], relative beyond 1 rad, that the drift of the momentum implies."""
-        return self.axis_drift / max(self.scene.can.radius, self.rolled)
+        return self.axis_drift / max(self.scene.can.radius, self.largest_distance)
 
 
-def doubts(record: Record, rolling: str) -> list[str]:
+def failed_checks(record: Record, rolling: str) -> list[str]:
     """Return the reasons in its record to doubt that the equations of a motion were solved, one sentence for each.
 
-    `rolling` says how the can was made to roll. Only in "contact" may it slip and part, as `departures` says, and then
-    friction and impacts take energy.
+    `rolling` says how the can was made to roll. Only in "contact" may it slip and part, as `rolling_failures` says, and
+    then friction and impacts take energy.
     """
     slipped = _slipped(record)
     if rolling == "contact" and slipped:
@@ -181,13 +190,13 @@ def doubts(record: Record, rolling: str) -> list[str]:
     reasons = slipped
     if not record.implied_error <= ERROR:
         reasons.append(
-            f"energy or momentum drift like an error of {require.above(record.implied_error, ERROR)} rad of phi or u/a "
-            f"(trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
+            f"energy or momentum drift like an error of {require.format_above(record.implied_error, ERROR)} rad of phi "
+            f"or u/a (trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
         )
     return reasons
 
 
-def departures(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
+def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
     """Return where a can did not, or could not, roll as the model of rolling without slipping does.
 
     In "contact" it slips at its coefficient of `friction`, and leaves the incline. Where it could not, a normal force
@@ -195,13 +204,13 @@ def departures(record: Record, rolling: str, friction: float = math.inf) -> list
     """
     if rolling != "contact":
         pulls = (
-            f"from t = {record.fails_at:.6g} s the incline would have to pull at the can (N < 0): a real one leaves it "
-            "there"
+            f"from t = {record.rolling_ends_at:.6g} s the incline would have to pull at the can (N < 0): a real one "
+            "leaves it there"
         )
-        return [pulls] if math.isfinite(record.fails_at) else []
+        return [pulls] if math.isfinite(record.rolling_ends_at) else []
     reasons = _slipped(record)
-    if not record.needed <= friction:
-        needed = require.above(record.needed, friction, digits=3)
+    if not record.needed_friction <= friction:
+        needed = require.format_above(record.needed_friction, friction, digits=3)
         reasons.append(f"rolling needs a friction coefficient of {needed}, and the contact has {friction:g}: it slides")
     return reasons
 
@@ -209,9 +218,9 @@ def departures(record: Record, rolling: str, friction: float = math.inf) -> list
 def _slipped(record: Record) -> list[str]:
     reasons, slip, lift = [], record.slip / record.scene.can.radius, record.lift / record.scene.can.radius
     if not slip <= SLIP:
-        reasons.append(f"the can slips by {require.above(slip, SLIP)} radii (trusted up to {SLIP:g})")
+        reasons.append(f"the can slips by {require.format_above(slip, SLIP)} radii (trusted up to {SLIP:g})")
     if not lift <= LIFT:
-        by = require.above(lift, LIFT)
+        by = require.format_above(lift, LIFT)
         reasons.append(f"the can parts from the incline, or sinks in, by {by} radii (trusted up to {LIFT:g})")
     return reasons
 
@@ -224,7 +233,7 @@ def axis_drift(scene: Scene, motion: Coordinates, start: Coordinates) -> np.ndar
     if scene.attachment == "frozen":
         return np.zeros_like(motion.time)
     begin = tuple(float(each[0]) for each in (start.phi, start.phi_dot, start.u, start.u_dot))
-    return motion.u - equations.axis(scene, motion.time - start.time, motion.phi, motion.phi_dot, begin)[0]
+    return motion.u - equations.axis_motion(scene, motion.time - start.time, motion.phi, motion.phi_dot, begin)[0]
 
 
 def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
@@ -235,10 +244,10 @@ def _work(scene: Scene, motion: Coordinates, last: Coordinates) -> np.ndarray:
     time, phi, phi_dot, u_dot = (
         np.append(getattr(last, name), getattr(motion, name)) for name in ("time", "phi", "phi_dot", "u_dot")
     )
-    (torque, along), slip = equations.dissipation(scene, phi_dot, u_dot), slip_rate(scene, phi_dot, u_dot)
+    (torque, along), slip = equations.dissipative_forces(scene, phi_dot, u_dot), slip_rate(scene, phi_dot, u_dot)
     u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, u_dot)
     power = -along * u_dot - torque * phi_dot
-    change = (torque + slip * scene.damping_law.slope(slip)) * slip_rate(scene, phi_ddot, u_ddot)
+    change = (torque + slip * scene.damping_law.derivative(slip)) * slip_rate(scene, phi_ddot, u_ddot)
     change = change + 3 * scene.drag * np.abs(u_dot) * u_dot * u_ddot
     step = np.diff(time)
     return step * (power[:-1] + power[1:]) / 2 - step**2 * np.diff(change) / 12

@@ -14,7 +14,7 @@ from mjbeer import require
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory import motion
 from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping, roots
+from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import Load
 from mjbeer.theory.oscillator import Oscillator
 
@@ -28,10 +28,10 @@ GRAVITY = 9.81  # [m/s^2]; the paper's footnote 8 has 9.8
 _LEAST_OFFSET = 1e-14
 """Smallest offset of a load that is not balanced, over the radius: less than with a billionth of the height empty."""
 _LEAST_RATE = 1e-12
-"""Smallest rate of damping that is not 0 [1/s]: nobody lives to see it brake."""
+"""Smallest rate of damping that is not 0 [1/s]: a slower decay cannot be observed."""
 
-pictures: list[Callable[[], Any]] = []
-"""What loads the module that draws scenes and trajectories: `mjbeer` says it, as theory knows no pictures."""
+load_drawing: list[Callable[[], Any]] = []
+"""Returns the module that draws scenes and motions. Set by `mjbeer/__init__`; avoids importing drawing here."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -68,11 +68,11 @@ class Scene:
         can, load = require.instance("can", self.can, Can), require.instance("load", self.load, Load)
         if not abs(incline := require.number("incline", self.incline, "rad")) < math.pi / 2:
             raise ParameterError(
-                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.shown(self.incline)}"
+                f"incline must be between -pi/2 and pi/2 [rad] (90 degrees), got {require.format_value(self.incline)}"
             )
         require.choice("attachment", self.attachment, ATTACHMENTS)
         damped = isinstance(self.damping, Damping)
-        require.store(
+        require.set_fields(
             self,
             incline=incline,
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2", zero=True),
@@ -82,7 +82,7 @@ class Scene:
         if self.dissipates and self.attachment == "frozen":
             raise ParameterError(
                 f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
-                f"got damping={require.shown(self.damping)} and drag={require.shown(self.drag)}"
+                f"got damping={require.format_value(self.damping)} and drag={require.format_value(self.drag)}"
             )
         a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e6 may round up
         require.within("load offset", load.offset, _LEAST_OFFSET * a, a, "m", zero=True)
@@ -98,8 +98,8 @@ class Scene:
         if self.dissipates:  # how fast damping and drag brake where the load resists least, phi = pi, at 1 rad/s
             mass, limits = self.effective_mass, (_LEAST_RATE, require.DAMPING_RATE)
             resists = float(self.frozen.inertia(math.pi)) / (a**2 * mass * self.oscillator.base)
-            with require.from_given(damping=self.damping, drag=self.drag):
-                rate = float(self.damping_law.slope(1.0)) * resists
+            with require.naming_given(damping=self.damping, drag=self.drag):
+                rate = float(self.damping_law.derivative(1.0)) * resists
                 require.within("rate of damping", rate, *limits, "1/s", zero=True)
                 require.within("rate of drag", 2 * self.drag * a / mass, *limits, "1/s", zero=True)
 
@@ -122,7 +122,7 @@ class Scene:
 
     def _repr_html_(self) -> str:
         """Return a table for a notebook."""
-        return pictures[0]().scene_html(self)
+        return load_drawing[0]().scene_html(self)
 
     def replace(self, **changes: Any) -> "Scene":
         """Return the scene with some of its fields changed, or of the arguments of the function that made it.
@@ -171,7 +171,7 @@ class Scene:
         return self.load.mass + self.can.effective_mass
 
     @property
-    def drive(self) -> float:
+    def downhill_weight(self) -> float:
         """Return the weight along the incline, m_t g sin(alpha) [N]."""
         return self.mass * self.gravity * math.sin(self.incline)
 
@@ -198,7 +198,7 @@ class Scene:
         """
         if self.dissipates:
             return self.terminal_tilt()
-        if abs(self.oscillator.slope) > self.oscillator.depth > 0:
+        if abs(self.oscillator.ramp) > self.oscillator.depth > 0:
             raise NoEquilibriumError(
                 f"no equilibrium at an incline of {math.degrees(self.incline):.4g} degrees: a frozen load holds the "
                 f"can only up to {math.degrees(self.largest_incline()):.1f} degrees, where sin(alpha) = m b / "
@@ -215,7 +215,7 @@ class Scene:
             return math.pi / 2
         sine = self.load.moment / (self.mass * self.can.radius)  # in this order no more than 1
         if self.drag > 0 and self.gravity > 0:
-            speed = self.can.radius * self.damping_law.rate(self.load.moment * self.gravity)
+            speed = self.can.radius * self.damping_law.slip_rate(self.load.moment * self.gravity)
             sine += self.drag * speed**2 / (self.mass * self.gravity)
         return math.asin(min(sine, 1.0))
 
@@ -267,8 +267,8 @@ class Scene:
             )
         self.oscillator.equilibrium()  # whether anything restores the load
         radius, weight = self.can.radius, self.load.moment * self.gravity
-        torque, (linear, quadratic, cubic) = self.drive * radius, self.damping_law.coefficients
-        slip = Damping(linear, quadratic + self.drag * radius**3, cubic).rate(torque)
+        torque, (linear, quadratic, cubic) = self.downhill_weight * radius, self.damping_law.coefficients
+        slip = Damping(linear, quadratic + self.drag * radius**3, cubic).slip_rate(torque)
         if self.drag > 0:
             torque = float(self.damping_law.torque(slip))
         if abs(torque) > weight:
@@ -308,13 +308,15 @@ class Scene:
           DissipationError, NoEquilibriumError: as `terminal_speed`.
         """
         (slip, _, k), tilt, a, mass = self._steady_rolling(), self.terminal_tilt(), self.can.radius, self.effective_mass
-        moment, drag = self.load.moment * math.cos(tilt), 2 * self.drag * a * abs(slip)
-        rub, swinging = float(self.damping_law.slope(slip)), mass * float(self.oscillator.inertia(tilt))
-        square = (float(self.frozen.inertia(tilt)) * rub / a**2 + self.load.axis_inertia * drag) / swinging
-        linear, constant = (mass * k + rub * drag) / swinging, k * (rub / a**2 + drag) / swinging
-        # By M J_f - N = (M a - P)^2 and M I - N = P^2 this is a sum in which nothing cancels.
-        excess = k * (rub * (mass - moment / a) ** 2 + drag * moment**2) / swinging**2 + rub * drag / swinging * square
-        return roots(square, linear, constant, excess)
+        damping, drag = float(self.damping_law.derivative(slip)) / a**2, 2 * self.drag * a * abs(slip)
+        cubic = mass * float(self.oscillator.inertia(tilt))
+        square = damping * float(self.frozen.inertia(tilt)) + drag * self.load.axis_inertia
+        polynomial = np.array([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)])
+        roots = np.roots(polynomial).astype(complex)
+        for _ in range(2):  # Newton's method, as an eigenvalue is rounded by the largest one
+            steep = np.polyval(np.polyder(polynomial), roots)
+            roots -= np.divide(np.polyval(polynomial, roots), steep, out=np.zeros_like(roots), where=steep != 0)
+        return np.sort_complex(roots)
 
     def slip_rate(self) -> float:
         """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
@@ -328,7 +330,7 @@ class Scene:
                 "no mean slip rate follows from the scene alone: it does from linear damping without drag, got "
                 f"damping={self.damping!r} and drag={self.drag!r}"
             )
-        return self.drive * self.can.radius / linear
+        return self.downhill_weight * self.can.radius / linear
 
     def acceleration(self) -> float:
         """Return the acceleration of the axis down the incline [m/s^2] when it is steady: footnote 4, or eq. (1).
@@ -340,8 +342,8 @@ class Scene:
         if self.dissipates and (self.load.offset > 0 or self.drag > 0):
             return 0.0
         if self.attachment == "sliding" and not self.dissipates:
-            return self.drive / self.effective_mass
-        return self.drive / (self.effective_mass + self.load.axis_inertia / self.can.radius**2)
+            return self.downhill_weight / self.effective_mass
+        return self.downhill_weight / (self.effective_mass + self.load.axis_inertia / self.can.radius**2)
 
 
 def require_no_dissipation(scene: Scene, what: str) -> None:

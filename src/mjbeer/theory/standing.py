@@ -86,13 +86,13 @@ class Standing:
         if not 0 < fill < 1:
             raise ParameterError(
                 "fill (height of the liquid over the can's length) must be between 0 and 1: a full can has no free "
-                f"surface, got {require.shown(self.fill)}"
+                f"surface, got {require.format_value(self.fill)}"
             )
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, *DEPTHS)
         if not _is_count(self.modes) or not 0 <= self.modes <= MOST_MODES:
-            raise ParameterError(f"modes must be one of 0, 1, ... {MOST_MODES}, got {require.shown(self.modes)}")
+            raise ParameterError(f"modes must be one of 0, 1, ... {MOST_MODES}, got {require.format_value(self.modes)}")
         ratio = self.damping_ratio
-        require.store(
+        require.set_fields(
             self,
             fill=fill,
             density=require.positive("density", self.density, "kg/m^3"),
@@ -199,7 +199,7 @@ class Standing:
         if count is None:
             return self.modes
         if not _is_count(count) or not 0 <= count <= SERIES:
-            raise ParameterError(f"count must be a number of modes up to {SERIES}, got {require.shown(count)}")
+            raise ParameterError(f"count must be a number of modes up to {SERIES}, got {require.format_value(count)}")
         return int(count)
 
     def _modes(self, count: int | None) -> Mode:
@@ -242,7 +242,7 @@ def standing(
         if layer > _THIN:
             warn_of_liquid(
                 f"{name} is too thick for the damping of thin layers: that on the wall has "
-                f"{require.above(layer, _THIN)} radii, not {_THIN:g} or less; give a damping_ratio",
+                f"{require.format_above(layer, _THIN)} radii, not {_THIN:g} or less; give a damping_ratio",
                 stacklevel=2,
             )
     return made

@@ -12,10 +12,10 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import equations
-from mjbeer.theory.equations import Coordinates, Forces, accelerations, part, rolling_forces
-from mjbeer.theory.liquid import about_run
-from mjbeer.theory.record import Record, departures, doubts
-from mjbeer.theory.scene import Scene, pictures
+from mjbeer.theory.equations import Coordinates, Forces, accelerations, rolling_forces, select_samples
+from mjbeer.theory.liquid import run_warning
+from mjbeer.theory.record import Record, failed_checks, rolling_failures
+from mjbeer.theory.scene import Scene, load_drawing
 
 _LEAST_SWING = 1e-10
 """Smallest swing whose frequency is measured [rad], relative beyond 1 rad: a million times the rounding of phi."""
@@ -45,9 +45,9 @@ class Trajectory(Coordinates):
     def __post_init__(self) -> None:
         require.instance("scene", self.scene, Scene)
         phi0, phi_dot0 = require.start(self.phi0, self.phi_dot0)
-        require.store(self, phi0=phi0, phi_dot0=phi_dot0)
+        require.set_fields(self, phi0=phi0, phi_dot0=phi_dot0)
         for name in Coordinates.__dataclass_fields__:
-            require.store(self, **{name: require.samples(name, getattr(self, name))})
+            require.set_fields(self, **{name: require.samples(name, getattr(self, name))})
             if (count := len(getattr(self, name))) != len(self.time):
                 raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
 
@@ -109,7 +109,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if `friction` is negative or no number.
         """
-        return Record.of(self, self.scene, require.friction(friction)).fails_at
+        return Record.of(self, self.scene, require.friction(friction)).rolling_ends_at
 
     def takeoff(self) -> float | None:
         """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
@@ -122,18 +122,18 @@ class Trajectory(Coordinates):
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
-        return tuple(doubts(self.record, self.rolling))
+        return tuple(failed_checks(self.record, self.rolling))
 
     @cached_property
     def rolling_warnings(self) -> tuple[str, ...]:
         """Return where a can did not, or could not, roll without slipping as the model does, one sentence for each."""
-        return tuple(departures(self.record, self.rolling))
+        return tuple(rolling_failures(self.record, self.rolling))
 
     @cached_property
     def liquid_warnings(self) -> tuple[str, ...]:
         """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
         record, turn = self.record, 2 * math.pi * self.scene.can.radius
-        about = about_run(self.scene, record.fastest_slip, record.no_lump_at, record.rolled / turn)
+        about = run_warning(self.scene, record.largest_slip_rate, record.no_lump_at, record.largest_distance / turn)
         return (about,) if about else ()
 
     @property
@@ -160,10 +160,10 @@ class Trajectory(Coordinates):
           MjbeerError: if the motion hardly swings, if its samples are further apart than about a third of a period, or
             if there are fewer than three turning points among them, which bound a whole period.
         """
-        scene, form = self.scene, self.scene.oscillator
+        scene, oscillator = self.scene, self.scene.oscillator
         # After the last sample that swings phi_dot is rounding, whose changes of sign are no turning points.
         least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
-        swing = part(self, slice(int(np.max(np.flatnonzero(np.abs(self.phi_dot) > least), initial=-1)) + 1))
+        swing = select_samples(self, slice(int(np.max(np.flatnonzero(np.abs(self.phi_dot) > least), initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
         change = accelerations(scene, phi, rate, swing.u_dot)[1]
         turns = _zeros(time, rate, change)
@@ -174,8 +174,10 @@ class Trajectory(Coordinates):
         if not scene.dissipates:
             rest = scene.equilibrium()
             rest += 2 * math.pi * round((self.phi0 - rest) / (2 * math.pi))
-            energy = float(form.inertia(self.phi0)) * self.phi_dot0**2 / 2 + float(form.drop(rest, self.phi0))
-            kinetic = float((form.inertia(phi) * rate**2).max()) / 2
+            energy = float(oscillator.inertia(self.phi0)) * self.phi_dot0**2 / 2 + float(
+                oscillator.drop(rest, self.phi0)
+            )
+            kinetic = float((oscillator.inertia(phi) * rate**2).max()) / 2
             if kinetic > 2 * energy:
                 raise MjbeerError(
                     f"no frequency: the load starts with {energy:.2g} J above its equilibrium, a swing that is hidden "
@@ -199,7 +201,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        return pictures[0]().plot(self, *names, theory=theory)
+        return load_drawing[0]().plot(self, *names, theory=theory)
 
     def video(
         self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
@@ -208,7 +210,7 @@ class Trajectory(Coordinates):
 
         `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        pictures[0]().video(self, path, width, height, **others)
+        load_drawing[0]().video(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
@@ -243,7 +245,7 @@ class Trajectory(Coordinates):
 
     def _repr_html_(self) -> str:
         """Return key figures for a notebook."""
-        return pictures[0]().trajectory_html(self)
+        return load_drawing[0]().trajectory_html(self)
 
 
 def csv(motion: Trajectory) -> str:

@@ -50,8 +50,8 @@ def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math
     require_no_dissipation(scene, "no equations written by hand")
     form, mass = scene.oscillator, scene.effective_mass
     p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
-    slope, half, quarter, middle = form.slope, form.chord / 2, form.chord / 4, form.base + form.chord / 2
-    steady, share = scene.drive / mass, scene.load.moment / mass
+    slope, half, quarter, middle = form.ramp, form.chord / 2, form.chord / 4, form.base + form.chord / 2
+    steady, share = scene.downhill_weight / mass, scene.load.moment / mass
 
     def frozen(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         phi, phi_dot = state
@@ -61,7 +61,7 @@ def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math
     def sliding(_: float, state: Sequence[Any]) -> tuple[Any, ...]:
         _u, phi, u_dot, phi_dot = state
         s, c, square = sin(phi), cos(phi), phi_dot * phi_dot
-        phi_ddot = (p * c - (q + form.swing * square * c) * s) / (form.base + form.swing * (s * s))
+        phi_ddot = (p * c - (q + form.coupling * square * c) * s) / (form.base + form.coupling * (s * s))
         return u_dot, phi_dot, steady + share * (c * phi_ddot - s * square), phi_ddot
 
     return frozen if scene.attachment == "frozen" else sliding

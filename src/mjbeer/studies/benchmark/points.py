@@ -14,8 +14,8 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Rolling, Setting
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 COMMAND = "mjbeer benchmark"

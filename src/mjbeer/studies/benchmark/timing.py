@@ -16,10 +16,10 @@ from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
+from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
-from mjbeer.model.state import read, start
 from mjbeer.output.terminal import progress_bar
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
@@ -142,10 +142,10 @@ def _set_up(case: Case, point: Point) -> Rung:
     own: Dop853 | GaussJackson | None = None
     if point.model in USUAL:
         model = usual_model(point.model, scene)
-        begin = start(model, scene, case.phi0, 0.0)
+        begin = initial_state(model, scene, case.phi0, 0.0)
         solve = partial(Stepper(model).run, begin, np.rint(times / value).astype(np.int64))
     else:
-        prepared = Prepared(scene, point.curve.setting(value))
+        prepared = Simulator(scene, point.curve.setting(value))
         model, begin = prepared.model, prepared.start(case.phi0, 0.0)
         if point.method == DOP853:
             own = Dop853(model)
@@ -157,7 +157,7 @@ def _set_up(case: Case, point: Point) -> Rung:
             solve = lambda: prepared.solve(begin, times).states  # noqa: E731
 
     def motion(states: np.ndarray) -> Motion:
-        found, count = read(model, scene, states, times), own.evaluations if own else None
+        found, count = to_coordinates(model, scene, states, times), own.evaluations if own else None
         if point.method in INTEGRATORS:
             count = round(float(times[-1]) / value) * (4 if point.method == "RK4" else 1)
         return found.phi, found.u, count

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
-from mjbeer.output.plots import COLOURS, chart, name_below, tell
+from mjbeer.output.plots import COLOURS, add_tooltips, chart, name_below
 from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
 
 _DARK, _SCIPY, _HEYOKA = "#333333", COLOURS[4], COLOURS[3]
@@ -66,7 +66,7 @@ def _draw(axes: Axes, found: Sequence[Point]) -> None:
             times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
             size = 9 if curve.model in USUAL else 5
             (drawn,) = axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)
-            tell(drawn, [_tooltip(point, name) for point in shown])
+            add_tooltips(drawn, [_tooltip(point, name) for point in shown])
 
 
 def _tooltip(point: Point, name: str) -> str:

@@ -9,9 +9,9 @@ from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
 TOLERANCE = 1e-9
 """Tolerance of the runs that are made to a tolerance [rad]."""

@@ -12,15 +12,15 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import NoEquilibriumError, ParameterError, liquid_notes
+from mjbeer.exceptions import NoEquilibriumError, ParameterError, collect_liquid_warnings
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.liquid import NAMES, liquid
 from mjbeer.theory.load import Load
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
 T = TypeVar("T")
 _SWINGS, _TURNED = 400.0, 3e3
@@ -148,7 +148,7 @@ def _gravity(pick: Pick) -> Scene:
 def _liquid(pick: Pick) -> Scene:
     """Return a can with a real liquid in it."""
     can = pick.one(Can.massless, Can.sheet_metal)(pick([0.033, (0.02, 0.1)]))
-    with liquid_notes():
+    with collect_liquid_warnings():
         return liquid(pick.one(*NAMES), math.radians(pick(Even(-15, 15))), pick(Even(0.05, 0.95)), can)
 
 
@@ -229,7 +229,7 @@ def _pace(pick: Pick, scene: Scene, start: tuple[float, float], name: str) -> tu
     units["swing"] = 2 * math.pi / max(frequency, spin, 1e-3 / clock)
     step = units[unit] * pick(timestep) * (pick(_NEARLY) if name == "resonant" else 1.0)
     share = _DAMPED if scene.dissipates else 1.0
-    push = max(abs(form.slope) / (form.base + (form.chord + form.swing) / 2), 1e-300)
+    push = max(abs(form.ramp) / (form.base + (form.chord + form.coupling) / 2), 1e-300)
     if scene.dissipates:  # the load may turn with the can
         push = max(push, scene.gravity * abs(math.sin(scene.incline)) / scene.can.radius)
     longest = min(share * _TURNED / max(spin, 1e-300), math.sqrt(2 * share * _TURNED / push))
@@ -251,7 +251,7 @@ def _frequency(scene: Scene, start: tuple[float, float]) -> float:
     kinetic = float(form.inertia(start[0])) * start[1] ** 2 / 2
     height = 2 * form.depth * math.sin((start[0] - form.bottom) / 2) ** 2
     square = min(1.0, 2 * (kinetic + height) / form.depth)  # of the swing's amplitude
-    return math.sqrt(form.depth / (form.base + (form.chord / 4 + form.swing) * square / 2))
+    return math.sqrt(form.depth / (form.base + (form.chord / 4 + form.coupling) * square / 2))
 
 
 def _setting(pick: Pick, scene: Scene, kind: str) -> dict[str, Any]:

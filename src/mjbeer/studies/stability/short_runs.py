@@ -13,13 +13,13 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.model.build import build, specify
+from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import DOP853, Integrator
-from mjbeer.model.state import places
 from mjbeer.simulation.stepping import Stepper
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
 from mjbeer.theory.can import Can
-from mjbeer.theory.named import frozen, sliding
+from mjbeer.theory.scenes import frozen, sliding
 
 EXPLODED, INACCURATE, ACCURATE = range(3)
 """Outcomes of a run, as numbers for the cells of a map."""
@@ -75,7 +75,7 @@ class Swings:
         self._frequency, self._right = scene.frequency(), predictions.small_motion(scene)
         self._theory = predictions.small_motion(scene, constrained=self._row is not None)
         self._start = np.zeros(self._model.nq + self._model.nv)
-        for name, at in places(self._model).items():
+        for name, at in joint_addresses(self._model).items():
             self._start[at] = _SWING * (scene.can.radius * (1 + _SEED) if name == "slide" else 1.0)
 
     def measure(self, timestep: float) -> int:

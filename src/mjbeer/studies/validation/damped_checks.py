@@ -14,8 +14,8 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.liquid import liquid_in
-from mjbeer.theory.named import frozen, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, sliding
 
 CANS = {"massless can": Can(), "metal can": Can.sheet_metal()}
 """The cans of the paper's sections 2 and 3."""

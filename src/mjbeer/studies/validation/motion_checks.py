@@ -12,12 +12,12 @@ from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, Setti
 from mjbeer.paper.frozen import equilibrium_53, frequency_55
 from mjbeer.paper.sliding import frequency_10
 from mjbeer.paper.witness import TOP, fall_from_top
-from mjbeer.simulation.run import Prepared
+from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact, phi_error
-from mjbeer.theory.named import frozen, hoop, pendulum, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 from mjbeer.theory.trajectory import mean_acceleration
 
 _FRICTION = 10.0
@@ -204,7 +204,7 @@ def fall_slope(scene: Scene) -> float:
     frozen load on an incline.
     """
     form = scene.oscillator
-    return -math.sqrt(float(form.inertia(scene.separatrix()[1])) / form.crest.curvature)
+    return -math.sqrt(float(form.inertia(scene.separatrix()[1])) / form.potential.curvature)
 
 
 def _fold_exponent() -> float:
@@ -250,7 +250,7 @@ def _drift(scene: Scene, integrator: Integrator, steps: int, swings: int = 1000)
     period, window = scene.period(1.0), np.arange(steps)
     counts = np.unique(np.rint(np.geomspace(1, swings, 1 + round(8 * math.log10(swings)))).astype(int))
     samples = np.unique(np.concatenate([window, *(steps * count + window for count in counts)]))
-    prepared = Prepared(scene, Setting(integrator=integrator, timestep=period / steps))
+    prepared = Simulator(scene, Setting(integrator=integrator, timestep=period / steps))
     times = period / steps * samples
     start = prepared.start(scene.equilibrium() + 1.0, 0.0)
     motion, form = prepared.coordinates(prepared.solve(start, times).states, times), scene.oscillator
@@ -277,10 +277,10 @@ def energy_per_swing(scene: Scene, amplitude: float, timestep: float, integrator
     x = np.pi / 2 * node
     phi, stretch = rest + amplitude * np.sin(x), amplitude * np.cos(x) * np.pi / 2 * weight
     inertia = oscillator.inertia(phi)
-    inertia_slope = oscillator.chord * np.sin(phi) / 2 + oscillator.swing * np.sin(2 * phi)
+    inertia_slope = oscillator.chord * np.sin(phi) / 2 + oscillator.coupling * np.sin(2 * phi)
     w = 2 * oscillator.drop(phi, rest + amplitude) / inertia
     torque = -oscillator.depth * np.sin(phi - oscillator.bottom)
-    w_slope = (2 * torque + 2 * oscillator.slope - inertia_slope * w) / inertia
+    w_slope = (2 * torque + 2 * oscillator.ramp - inertia_slope * w) / inertia
     gain = timestep / 2 * np.sum(inertia_slope * np.sqrt(np.maximum(w, 0)) * w_slope * stretch)
     return float((-1 if integrator == "implicit" else 1) * gain / oscillator.drop(rest, rest + amplitude))
 

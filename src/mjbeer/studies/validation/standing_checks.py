@@ -10,14 +10,14 @@ from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.checks import Check
 from mjbeer.model.build import build
-from mjbeer.model.engine import quiet
 from mjbeer.model.free import attach, transverse_inertia
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import MujocoIntegrator
 from mjbeer.studies import attached_can
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
-from mjbeer.theory.named import frozen, sliding
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
 
 _METAL = Can.sheet_metal()

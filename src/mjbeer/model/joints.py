@@ -28,10 +28,10 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
     """
     for name, given, kind in (("model", model, mujoco.MjModel), ("data", data, mujoco.MjData), ("scene", scene, Scene)):
         require.instance(name, given, kind)
-    values = _values(begin(scene, *require.start(phi0, phi_dot0)))
+    values = _values(initial_coordinates(scene, *require.start(phi0, phi_dot0)))
     joints = {model.joint(joint).name for joint in range(model.njnt)}
     if not joints & {"phi", "roll"}:
-        raise ParameterError(f"the model must have the joints of a scene, got {require.shown(sorted(joints))}")
+        raise ParameterError(f"the model must have the joints of a scene, got {require.format_value(sorted(joints))}")
     mujoco.mj_resetData(model, data)
     for name in joints & values.keys():
         data.joint(name).qpos[:], data.joint(name).qvel[:] = values[name]
@@ -39,31 +39,31 @@ def reset(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, phi0: float,
 
 
 @functools.lru_cache(maxsize=32)
-def places(model: mujoco.MjModel) -> dict[str, int]:
+def joint_addresses(model: mujoco.MjModel) -> dict[str, int]:
     """Return the index of each joint's coordinate in qpos, which is that of its rate in qvel too."""
     return {model.joint(joint).name: int(model.joint(joint).qposadr[0]) for joint in range(model.njnt)}
 
 
-def at(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+def initial_joints(joints: Iterable[str], scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return the positions and the rates of joints at a start, shape (2, joints); one that is not a scene's is at 0."""
-    values = _values(begin(scene, phi0, phi_dot0))
+    values = _values(initial_coordinates(scene, phi0, phi_dot0))
     return np.array([values.get(name, (0.0, 0.0)) for name in joints]).T
 
 
-def start(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+def initial_state(model: mujoco.MjModel, scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
     """Return qpos and qvel of a start at `phi0` [rad] with `phi_dot0` [rad/s], as one array of shape (nq + nv,)."""
-    return at(places(model), scene, phi0, phi_dot0).ravel()
+    return initial_joints(joint_addresses(model), scene, phi0, phi_dot0).ravel()
 
 
-def write(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
-    """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion: the inverse of `read`."""
+def to_states(model: mujoco.MjModel, motion: Coordinates) -> np.ndarray:
+    """Return the states of shape (samples, nq + nv) whose coordinates are those of a motion."""
     values, states = _values(motion), np.zeros((len(motion.time), model.nq + model.nv))
-    for name, place in places(model).items():
+    for name, place in joint_addresses(model).items():
         states[:, place], states[:, model.nq + place] = values[name]
     return states
 
 
-def begin(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
+def initial_coordinates(scene: Scene, phi0: float, phi_dot0: float) -> Coordinates:
     """Return a start, a motion whose coordinates are numbers and no arrays."""
     (u, u_dot), radius = scene.start(phi0, phi_dot0), scene.can.radius
     values: tuple[Any, ...] = 0.0, u, phi0, u_dot, phi_dot0, u / radius, u_dot / radius, -START_DEPTH * radius, 0.0
@@ -82,9 +82,9 @@ def _values(motion: Coordinates) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     }
 
 
-def read(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
+def to_coordinates(model: mujoco.MjModel, scene: Scene, states: np.ndarray, times: np.ndarray) -> Coordinates:
     """Return the coordinates for states of shape (samples, nq + nv) at `times` [s], shape (samples,)."""
-    joints, radius = places(model), scene.can.radius
+    joints, radius = joint_addresses(model), scene.can.radius
 
     def both(name: str) -> np.ndarray:
         """Return a joint's positions and rates, shape (2, samples); zeros if there is none."""

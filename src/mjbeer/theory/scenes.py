@@ -1,8 +1,7 @@
-"""The scenes that have a name, as functions that make them; and what a scene is in words."""
+"""The scenes of the paper, as functions that make them."""
 
 import functools
-import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from typing import ParamSpec
 
 from mjbeer import require
@@ -20,7 +19,7 @@ def named(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
     @functools.wraps(make)
     def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.store(scene, made_by=(made, arguments, others))
+        require.set_fields(scene, made_by=(made, arguments, others))
         return scene
 
     return made
@@ -105,42 +104,3 @@ def hoop(
       ParameterError: as `Scene`.
     """
     return Scene(Can.hoop(radius, length, hoop_mass), Load.point(load_mass, radius), incline, "frozen", gravity)
-
-
-_FILLS = {0.25: "quarter-full", 0.5: "half-full", 0.75: "three-quarters-full", 1.0: "full"}
-
-
-def in_words(scene: Scene, varied: Collection[str] = ()) -> str:
-    """Return what a scene is, as "half-full massless can, beer frozen, incline 10°".
-
-    `varied` names what differs between the scenes of a plot and is therefore left out: "fill", "can" (its mass),
-    "load" (how it is attached, or the masses of a hoop or a pendulum), "incline", "damping" (and the drag).
-    """
-    can, load = scene.can, scene.load
-    if load.inertia > 0:
-        full = "" if load.fill is None or "fill" in varied else _FILLS.get(load.fill, f"{100 * load.fill:.3g} % full")
-        kind = "can" if "can" in varied else "massless can" if can.mass == 0 else f"can of {1e3 * can.mass:.3g} g"
-        parts = [f"{full} {kind}".strip()]
-        parts.append("" if "load" in varied else f"{'load' if load.fill is None else 'beer'} {scene.attachment}")
-        parts.append(f"its centre of mass {1e3 * load.offset:.3g} mm from the axis" if load.fill is None else "")
-    else:  # a load without size: a pendulum's bob or a weight on a hoop
-        body = "wheel with a pendulum" if scene.attachment == "sliding" else "hoop with a weight on its rim"
-        parts = [body, "" if "load" in varied else f"M = {1e3 * can.mass:.3g} g, m = {1e3 * load.mass:.3g} g"]
-    if "damping" not in varied:
-        law = scene.damping_law
-        parts.append("" if not law else f"damping {law.linear:.3g} N m s" if law == Damping(law.linear) else "damped")
-        parts.append(f"drag {scene.drag:.3g} kg/m" if scene.drag else "")
-    if "incline" not in varied:
-        parts.append(f"incline {in_degrees(scene.incline)}" if scene.incline else "level ground")
-    return ", ".join(part for part in parts if part)
-
-
-def in_degrees(angle: float) -> str:
-    """Return an angle [rad] in degrees with their sign, to a tenth of a degree."""
-    return f"{round(math.degrees(angle), 1):g}°".replace("-", "\N{MINUS SIGN}")
-
-
-def damping_in_words(scene: Scene) -> str:
-    """Return the torque between can and load over their slip rate w, as "0.001 N m s"; "0" if there is none."""
-    shares = zip(scene.damping_law.coefficients, ("N m s", "N m s^2 |w|", "N m s^3 w^2"), strict=True)
-    return " + ".join(f"{share:.4g} {unit}" for share, unit in shares if share) or "0"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, sliding
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory import damped
+from mjbeer.theory import damped_motion
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import slip_rate
 from tests.support import processes, taylor
@@ -164,8 +164,8 @@ def test_unstable_balance() -> None:
 def test_a_corner_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four of them in each period on the level, of |w| and |roll_dot|, which the swing passes until it dies away."""
     scene = sliding(0.0, can=METAL, damping=Damping(0, 1e-6, 0), drag=1e-3)
-    steps, newton = [], damped._newton
-    monkeypatch.setattr(damped, "_newton", lambda *step: steps.append(step) or newton(*step))
+    steps, newton = [], damped_motion._newton
+    monkeypatch.setattr(damped_motion, "_newton", lambda *step: steps.append(step) or newton(*step))
     assert np.isfinite(exact(scene, 2.0, 1.0).phi).all()
     assert len(steps) < STEPS_A_PERIOD * 2 * scene.frequency() / (2 * math.pi)
 
@@ -205,17 +205,17 @@ def test_what_takes_too_long_is_refused_soon_and_until_when_it_can_be_followed(
 ) -> None:
     """Half of the work shows it, and the motion can then be followed until the time that was named."""
     scene, latest, phi0, phi_dot0 = FAST[name]
-    work, newton = [0], damped._newton
+    work, newton = [0], damped_motion._newton
 
     def counted(*step: object) -> tuple:
         found = newton(*step)
         work[0] += found[0]
         return found
 
-    monkeypatch.setattr(damped, "_newton", counted)
+    monkeypatch.setattr(damped_motion, "_newton", counted)
     with pytest.raises(ToleranceError, match=r"too many steps: .* followed until \S* s; it can be followed") as refused:
         exact(scene, latest, phi0, phi_dot0)
-    assert work[0] < damped._WORK / 2 + damped._ITERATIONS
+    assert work[0] < damped_motion._WORK / 2 + damped_motion._ITERATIONS
     until = float(str(refused.value).split()[-2])
     assert 0 < until < latest
     assert np.isfinite(exact(scene, until, phi0, phi_dot0).phi).all()
@@ -253,7 +253,7 @@ def balanced() -> list[list[float]]:
 @pytest.mark.slow
 def test_nearly_balanced_loads_are_followed_alike_on_other_processors() -> None:
     """BLAS sums as on this processor, and in another process as on any of x86; another BLAS sums in one order."""
-    code = "import json; from tests.theory.test_damped import balanced; print(json.dumps(balanced()))"
+    code = "import json; from tests.theory.test_damped_motion import balanced; print(json.dumps(balanced()))"
     with processes.start([], code, os.environ | {"OPENBLAS_CORETYPE": "Prescott"}) as process:
         here, there = balanced(), json.loads(process.communicate(timeout=processes.PATIENCE)[0])
     assert np.abs(np.array(here) - there).max() < 1e-10

@@ -75,12 +75,12 @@ def _equations(scene: Scene) -> Rates:
     """
     radius, oscillator, mass = scene.can.radius, scene.oscillator, scene.effective_mass
     unit = mass * radius**2
-    push, beta = scene.drive / mass / radius, scene.load.moment / mass / radius
+    push, beta = scene.downhill_weight / mass / radius, scene.load.moment / mass / radius
     base, depth, bottom = oscillator.base / unit, oscillator.depth / unit, oscillator.bottom
     law, air = Damping(*(each / unit for each in scene.damping_law.coefficients)), scene.drag * radius / mass
 
     def rates(phi: np.ndarray, phi_dot: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        torque, steep, roll_dot = law.torque(slip), law.slope(slip), phi_dot + slip
+        torque, steep, roll_dot = law.torque(slip), law.derivative(slip), phi_dot + slip
         drag, steep_drag = air * roll_dot * np.abs(roll_dot), 2 * air * np.abs(roll_dot)
         arm, lean, square, turned = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot, phi - bottom
         inertia, open_arm = base + lean * lean, 1 - arm
@@ -125,7 +125,7 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
     done = int(np.searchsorted(time, 0.0, "right"))
     samples = np.repeat(np.array([[0.0, 0.0, *state[1:]]]).T, len(time), axis=1)
     # What rounding of start and scene does to phi, phi_dot, w and roll: an angle of 0 stands for that of the incline.
-    spread = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
+    sensitivity = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
     values, slopes = rates(*state)
     fastest = abs(slopes[1, 2]) + abs(slopes[0, 1]) + abs(state[1]) + pace + math.sqrt(np.abs(values).sum())
     length = 1 / fastest if fastest > 0 else latest  # short beside every time that the motion has
@@ -140,7 +140,7 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
                 f"the motion cannot be followed later than {now:.6g} s of {latest:.6g} s: there it changes within the "
                 "rounding of the time"
             )
-        used, solved = _newton(rates, state, length, scale, spread)
+        used, solved = _newton(rates, state, length, scale, sensitivity)
         work += used
         if solved is None:
             length /= 4
@@ -162,13 +162,13 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
             x = 2 * (time[done:until] - now) / length - 1
             samples[:, done:until] = (legendre.legvander(x, _STAGES) @ np.hstack([angles, series])).T
             samples[:2, done:until] += turned[:, np.newaxis]
-        spread[[0, 3]] += length * _MATRIX[-1] @ np.array([changes[0], changes.sum(axis=0)]).T
+        sensitivity[[0, 3]] += length * _MATRIX[-1] @ np.array([changes[0], changes.sum(axis=0)]).T
         ends = angles.sum(axis=0)
         turned, state = turned + ends, np.array([reduced(state[0] + ends[0]), *stages[:, -1]])
-        spread[1:3] = changes[:, -1]
-        spread[:3] += np.copysign(ROUNDINGS * np.abs(state), spread[:3])
+        sensitivity[1:3] = changes[:, -1]
+        sensitivity[:3] += np.copysign(ROUNDINGS * np.abs(state), sensitivity[:3])
         farthest = np.maximum(farthest, np.abs(turned))
-        effect = float((np.abs(spread[[0, 3]]) / farthest).max())
+        effect = float((np.abs(sensitivity[[0, 3]]) / farthest).max())
         if not effect <= UNCERTAIN:
             raise ToleranceError(
                 f"phi is not known later than at {then:.6g} s: rounding of start and scene changes it by {effect:.2g} "
@@ -225,9 +225,9 @@ def _value(series: list[float], sign: float, x: float) -> float:
 
 
 def _newton(
-    rates: Rates, state: np.ndarray, length: float, scale: float, spread: np.ndarray
+    rates: Rates, state: np.ndarray, length: float, scale: float, sensitivity: np.ndarray
 ) -> tuple[int, tuple[np.ndarray, np.ndarray] | None]:
-    """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `spread`.
+    """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `sensitivity`.
 
     Newton's method solves for all stages at once, (2, stages), from values that stay as they begin, and may fail:
     None. Corrections are small beside the largest phi_dot or w, or `scale` [rad/s].
@@ -242,7 +242,7 @@ def _newton(
         matrix[s:, :s] = reach * slopes[1, 1] + through_phi[1]
         matrix[s:, s:] = reach * slopes[1, 2]
         sides[..., 0] = begin + values @ reach.T - stages
-        sides[..., 1] = spread[0] * slopes[:, 0] @ reach.T + spread[1:3, np.newaxis]
+        sides[..., 1] = sensitivity[0] * slopes[:, 0] @ reach.T + sensitivity[1:3, np.newaxis]
         try:
             solved = np.linalg.solve(_EYE - matrix, sides.reshape(2 * s, 2)).reshape(2, s, 2)
         except np.linalg.LinAlgError:

@@ -1,0 +1,183 @@
+"""The mechanics: MJCF files, into which the numbers of a scene are written before MuJoCo compiles them, or after."""
+
+import copy
+import functools
+import math
+import pathlib
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Collection, Mapping
+from typing import Any, TypeAlias
+
+import mujoco
+import numpy as np
+
+from mjbeer.exceptions import TemplateError
+
+Parameters: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
+"""Numbers by element and attribute, as `Mechanics.parameters`."""
+
+
+def read(path: pathlib.Path) -> ET.Element:
+    """Return an MJCF file as a tree of its own, with what it includes in place."""
+    root = copy.deepcopy(_parsed(path))
+    _include(root, path.parent)
+    return root
+
+
+@functools.lru_cache(maxsize=64)
+def _parsed(path: pathlib.Path) -> ET.Element:
+    try:
+        return ET.parse(path).getroot()
+    except (OSError, ET.ParseError) as error:
+        raise TemplateError(f"{path} is not readable MJCF: {error}") from error
+
+
+def _include(root: ET.Element, folder: pathlib.Path) -> None:
+    """Put what a tree includes from a folder in its place."""
+    for parent in list(root.iter()):
+        for place, child in reversed(list(enumerate(parent))):
+            if child.tag == "include":
+                parent[place : place + 1] = read(folder / child.get("file", ""))
+
+
+def find(root: ET.Element, element: str) -> ET.Element | None:
+    """Return an element by its tag and its name, as "joint slide".
+
+    "inertial can" is in the body "can", and "fixed slip/roll" is the joint "roll" of the tendon "slip".
+    """
+    tag, _, name = element.partition(" ")
+    name, _, joint = name.partition("/")
+    if tag == "inertial":
+        return root.find(f".//body[@name='{name}']/inertial")
+    return root.find(f".//{tag}" + f"[@name='{name}']" * bool(name) + f"/joint[@joint='{joint}']" * bool(joint))
+
+
+def write(root: ET.Element, values: Parameters, path: pathlib.Path, digits: int = 17) -> None:
+    """Write numbers into the tree of the file at a `path`, with up to so many `digits`."""
+    for (name, attribute), value in values.items():
+        if (element := find(root, name)) is None:
+            raise TemplateError(f"{path} has no {name!r}, into which mjbeer writes {attribute}; restore the file")
+        element.set(attribute, value if isinstance(value, str) else " ".join(f"{each:.{digits}g}" for each in value))
+
+
+def differences(root: ET.Element, values: Parameters) -> list[str]:
+    """Return the parameters that have other values, in 12 digits, in a tree; all of them must be in it."""
+    found = []
+    for (name, attribute), value in values.items():
+        element = find(root, name)
+        words = [] if element is None else element.get(attribute, "").split()
+        if isinstance(value, str):
+            same = words == [value]
+        else:
+            pairs = zip(words, value, strict=False)
+            same = len(words) == len(value) and all(math.isclose(float(w), v, rel_tol=1e-11) for w, v in pairs)
+        if not same:
+            found.append(f"{name} {attribute}")
+    return found
+
+
+def remove(root: ET.Element, *elements: str) -> None:
+    """Take elements from a tree, wherever they are, by their paths."""
+    for parent in list(root.iter()):
+        for element in elements:
+            for each in parent.findall(element):
+                parent.remove(each)
+
+
+def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> None:
+    """Take from a tree what only is seen or measured, and disable the stages of a step that it does not need.
+
+    Of tendons and actuators those stay that are `acting`, by their names.
+    """
+    ET.SubElement(root, "compiler", fusestatic="true", discardvisual="true")
+    remove_energies(root)
+    remove(root, "sensor")
+    for section in (*root.iterfind("tendon"), *root.iterfind("actuator")):
+        section[:] = [each for each in section if each.get("name") in acting]
+    stages = {"sensor": False, "spring": False, "damper": damped, "actuation": bool(root.findall("actuator/*"))}
+    idle = {stage: "disable" for stage, needed in stages.items() if not needed}
+    ET.SubElement(ET.SubElement(root, "option"), "flag", idle)
+
+
+def remove_energies(root: ET.Element) -> None:
+    """Disable energies in a tree: MuJoCo counts no constant force that stands for a weight as potential."""
+    for flag in root.iter("flag"):
+        flag.attrib.pop("energy", None)
+
+
+def to_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
+    """Return the specification in the tree of the file at a `path`, with looks in place of what includes them."""
+    _include(root, path.parents[1])
+    try:
+        return mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
+    except ValueError as error:
+        raise TemplateError(f"{path} is not readable MJCF: {'; '.join(str(error).splitlines())}") from error
+
+
+# Where a compiled model has what is written into it; what is not here is the same in all models that are only stepped.
+_COMPILED: dict[tuple[str, str], Callable[[mujoco.MjModel, str], list[np.ndarray]]] = {
+    ("body", "pos"): lambda model, name: [model.body(name).pos],
+    ("inertial", "mass"): lambda model, name: [model.body(name).mass],
+    ("inertial", "pos"): lambda model, name: [model.body(name).ipos],
+    ("inertial", "diaginertia"): lambda model, name: [model.body(name).inertia],
+    ("joint", "armature"): lambda model, name: [model.joint(name).armature],
+    ("joint", "damping"): lambda model, name: _parts(model, "dof", int(model.joint(name).dofadr[0])),
+    ("fixed", "damping"): lambda model, name: _parts(model, "tendon", model.tendon(name).id),
+    ("fixed", "coef"): lambda model, name: [_coefficient(model, *name.split("/"))],
+    ("spatial", "armature"): lambda model, name: [model.tendon_armature[model.tendon(name).id :][:1]],
+    ("general", "biasprm"): lambda model, name: [model.actuator(name).biasprm[:1]],
+    ("joint", "polycoef"): lambda model, name: [model.equality(name).data[:5]],
+    ("joint", "solref"): lambda model, name: [model.equality(name).solref],
+    ("pair", "solref"): lambda model, name: [model.pair(name).solref],
+    ("pair", "friction"): lambda model, name: [model.pair(name).friction],
+    ("geom", "size"): lambda model, name: [model.geom(name).size[:2]],
+}
+
+
+def _parts(model: mujoco.MjModel, kind: str, number: int) -> list[np.ndarray]:
+    """Return the places of damping in proportion to a rate, and of that with higher powers."""
+    return [getattr(model, f"{kind}_damping")[number : number + 1], getattr(model, f"{kind}_dampingpoly")[number]]
+
+
+def _coefficient(model: mujoco.MjModel, tendon: str, joint: str) -> np.ndarray:
+    """Return the place of a joint's coefficient in a fixed tendon."""
+    first, joint_id = int(model.tendon_adr[model.tendon(tendon).id]), model.joint(joint).id
+    place = first + list(model.wrap_objid[first:]).index(joint_id)
+    return model.wrap_prm[place : place + 1]
+
+
+def compiled_views(model: mujoco.MjModel, values: Parameters) -> dict[tuple[str, str], list[np.ndarray]]:
+    """Return where a compiled model has those numbers that differ from scene to scene, except options."""
+    found = {}
+    for element, attribute in values:
+        tag, _, name = element.partition(" ")
+        if place := _COMPILED.get((tag, attribute)):
+            try:
+                found[element, attribute] = place(model, name)
+            except KeyError:  # it was left out, as it is 0 in all scenes of this kind
+                continue
+    return found
+
+
+def write_compiled(
+    model: mujoco.MjModel, values: Parameters, where: Mapping[tuple[str, str], list[np.ndarray]]
+) -> None:
+    """Write numbers into a compiled model, at its `compiled_views`."""
+    for key, value in values.items():
+        if key[0] == "option":
+            setattr(model.opt, key[1], _option(value))
+        elif key in where:
+            first, *others = where[key]
+            first[:] = value[: len(first)]
+            for each in others:
+                each[:] = value[len(first) :]
+    if ("geom can", "size") in where:  # what the compiler derives from the size
+        geom, (radius, half) = model.geom("can"), values["geom can", "size"]
+        geom.rbound = np.hypot(radius, half)
+        model.geom_aabb[geom.id] = [0, 0, 0, radius, radius, half]
+
+
+def _option(value: tuple[float, ...] | str) -> Any:
+    if isinstance(value, str):
+        return int(mujoco.mjtIntegrator.__members__[f"mjINT_{value.upper()}"])
+    return value[0] if len(value) == 1 else value
