@@ -21,7 +21,6 @@ from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.standing import SERIES, Reaction, Standing, standing
 
 _METAL = Can.sheet_metal()
-_FILLS = (0.1, 0.3, 0.5, 0.7, 0.9)
 SHARES = (0.2, 0.4, 0.6, 0.8, 1.2, 1.4, 2.0, 4.0)
 """Frequencies of shaking, over that of the first mode; the next ones have 1.7, 2.2, 2.5 and 2.9."""
 _ANGLE = 1e-3
@@ -36,12 +35,6 @@ _GAIN = 0.1
 def checks() -> Iterator[Check]:
     """Yield the checks of standing and of lying cans."""
     check = partial(Check, "standing")
-    for fill in _FILLS:
-        name, measure = (
-            "frequencies of 3 modes, by the eigenvalues of M and K",
-            partial(_eigenvalues, water(3, fill, 0.0)),
-        )
-        yield check(name, measure, f"{fill:.0%} full, held", 1e-9, "relative", "rounding")
     name, by = (
         f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
         "half full, held, RK4, 1 ms",
@@ -77,21 +70,6 @@ def checks() -> Iterator[Check]:
 def water(modes: int = 1, fill: float = 0.5, damping_ratio: float | None = None) -> Standing:
     """Return a can of water."""
     return standing("water", fill, modes=modes, damping_ratio=damping_ratio)
-
-
-def _eigenvalues(can: Standing) -> float:
-    """Return the largest relative error of omega^2 = K/M; K is the torque of weight at an angle over its sine."""
-    model = build(can, free=False)
-    data, inertia, angle, errors = mujoco.MjData(model), np.zeros((model.nv, model.nv)), 0.5, []
-    for mode, omega in enumerate(can.frequencies(), 1):
-        data.qpos[:] = model.qpos0
-        data.joint(f"slosh{mode}").qpos = [math.cos(angle / 2), 0, math.sin(angle / 2), 0]
-        mujoco.mj_forward(model, data)
-        mujoco.mj_fullM(model, data, inertia)
-        place = model.joint(f"slosh{mode}").dofadr[0] + 1
-        stiffness = data.qfrc_bias[place] / math.sin(angle)
-        errors.append(math.sqrt(stiffness / inertia[place, place]) / omega - 1)
-    return max(errors, key=abs)
 
 
 @cache
