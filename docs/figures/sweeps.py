@@ -83,14 +83,15 @@ def draw_periods() -> None:
     scenes = [frozen(float(incline)) for incline in inclines]
     largest = np.array([scene.separatrix()[1] - scene.equilibrium() for scene in scenes])
     swings = amplitudes < largest[:, np.newaxis]
-    row, column = np.nonzero(swings)
-    starts = np.array([scene.equilibrium() for scene in scenes])[row] + amplitudes[column]
-    swept = mjbeer.sweep(
-        frozen, 4.0, starts, paired=True, tolerance=1e-6, quantity="period", incline=inclines[row]
-    )  # beside the separatrix a swing takes twice as long as small ones
     measured, theory = np.full((2, *swings.shape), np.nan)
-    measured[swings] = swept["period"]
-    theory[swings] = [scenes[each].period(amplitude) for each, amplitude in zip(row, amplitudes[column], strict=True)]
+    for row, scene in enumerate(scenes):
+        of_scene = amplitudes[swings[row]]
+        # Over 4 s, as beside the separatrix a swing takes twice as long as small ones.
+        swept = mjbeer.sweep(
+            frozen, 4.0, scene.equilibrium() + of_scene, tolerance=1e-6, quantity="period", incline=scene.incline
+        )
+        measured[row, swings[row]] = swept["period"]
+        theory[row, swings[row]] = [scene.period(amplitude) for amplitude in of_scene]
     subtitle = "half-full massless can, beer frozen, released at rest below its equilibrium"
     with chart(HERE / "sweep-periods", 1, 1, 8, 5.5, "The period of a frozen can", subtitle) as (axes,):
         tilts, swing = np.degrees(inclines), np.degrees(amplitudes)
@@ -117,9 +118,8 @@ def draw_damping(duration: float = 4.0) -> None:
         motion = exact(can(incline, damping), np.linspace(0, duration, 401), -incline)
         return float(np.abs(motion.phi).max() > math.pi) - 0.5
 
-    damping, incline = (grid.ravel() for grid in np.meshgrid(dampings, inclines, indexing="ij"))
-    swept = mjbeer.sweep(can, duration, -incline, paired=True, tolerance=1e-6, damping=damping, incline=incline)
-    found = (np.abs(swept["phi"].values) > math.pi).reshape(len(dampings), len(inclines))  # once over the top, for good
+    swept = [mjbeer.sweep(can, duration, -tilt, tolerance=1e-6, damping=dampings, incline=tilt) for tilt in inclines]
+    found = np.array([np.abs(each["phi"].values) > math.pi for each in swept]).T  # once over the top, for good
     shown = dampings[::2]  # exact motions of a stiff can take a second
     borders = [bisect(beyond, inclines[0], inclines[-1], (each,), xtol=math.radians(0.025)) for each in shown]
     subtitle = f"half-full can of sheet metal, let go with its surface level, {duration:g} s"

@@ -1,6 +1,5 @@
 """What is measured, against what, with which bound, and why: of models, of the paper, and of how runs end."""
 
-import json
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
@@ -63,11 +62,6 @@ def finite(content: Any) -> Any:
     if isinstance(content, (list, tuple)):
         return [finite(value) for value in content]
     return None if isinstance(content, float) and not math.isfinite(content) else content
-
-
-def line(content: Any) -> str:
-    """Return content as a line of JSON."""
-    return json.dumps(finite(content), allow_nan=False) + "\n"
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import DOP853
 
-from mjbeer.studies.predictions import linear_stability, soft_constraint
-from mjbeer.studies.predictions.linear_stability import RUNGE_KUTTA, amplification, error, polynomial, spectral_radius
+from mjbeer.studies import predictions
+from mjbeer.studies.predictions import RUNGE_KUTTA, amplification, error, polynomial, spectral_radius
 from tests.support import soft_rows as rows
 
 EPS = np.finfo(float).eps
@@ -72,14 +72,14 @@ def test_limits_on_the_imaginary_axis() -> None:
     for integrator, limit in (("Euler", 2.0), ("discrete", 2.0), ("RK4", 2 * math.sqrt(2))):
         assert spectral_radius(amplification(integrator, (limit * (1 - 1e-6)) ** 2)) <= 1 + 4 * EPS
         assert spectral_radius(amplification(integrator, (limit * (1 + 1e-6)) ** 2)) > 1 + 1e-6
-        assert linear_stability.stable_limit(integrator) == pytest.approx(limit, rel=2e-3)
-    assert linear_stability.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
+        assert predictions.stable_limit(integrator) == pytest.approx(limit, rel=2e-3)
+    assert predictions.stable_limit("DOP853") == pytest.approx(limit_by_stages("DOP853", 1j, 5.9, 6.0), rel=3e-3)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "DOP853"])
 def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str) -> None:
-    hard, soft = (soft_constraint.spring(1e-3, 1.0, each) for each in (0.9999, 0.5))
+    hard, soft = (predictions.spring(1e-3, 1.0, each) for each in (0.9999, 0.5))
     limit = rows.stable_timestep(integrator, hard)
     assert rows.stable_timestep(integrator, soft) == pytest.approx(limit, rel=1e-7)
     assert rows.stable_timestep(integrator, soft, excess=10.0) > 2 * limit
@@ -88,9 +88,9 @@ def test_the_impedance_drops_out_unless_the_diagonal_is_mistaken(integrator: str
 @pytest.mark.parametrize("timestep", [1e-4, 1.0])
 def test_discrete_bears_every_row(timestep: float) -> None:
     for row in (
-        soft_constraint.spring(1e-5, 1.0, 0.9),
-        soft_constraint.spring(1e-5, 0.1, 0.9999),
-        soft_constraint.direct(1e10, 0, 0.9),
+        predictions.spring(1e-5, 1.0, 0.9),
+        predictions.spring(1e-5, 0.1, 0.9999),
+        predictions.direct(1e10, 0, 0.9),
     ):
         assert rows.radius("discrete", row, timestep) <= 1 + 1e-12
     assert rows.stable_ratio("discrete") == math.inf
@@ -98,8 +98,8 @@ def test_discrete_bears_every_row(timestep: float) -> None:
 
 def test_a_row_at_the_end_of_the_step_is_the_implicit_equation() -> None:
     """With all of its force it is backward Euler."""
-    row, h = soft_constraint.spring(3e-3, 0.6, 1.0), 1e-2
-    implicit = soft_constraint.SoftRow(row.stiffness, row.damping, 1.0).at_end_of_step(h)
+    row, h = predictions.spring(3e-3, 0.6, 1.0), 1e-2
+    implicit = predictions.SoftRow(row.stiffness, row.damping, 1.0).at_end_of_step(h)
     r, v = 0.3, -2.0
     matrix = np.array([[1.0, -h], [h * row.stiffness, 1 + h * row.damping]])
     new = np.linalg.solve(matrix, [r, v])

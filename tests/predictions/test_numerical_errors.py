@@ -9,9 +9,8 @@ from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies.benchmark.timing import usual_model
-from mjbeer.studies.predictions import soft_constraint
-from tests.support import soft_rows
-from tests.support.constraints import applied_share
+from mjbeer.studies.predictions import reached_share
+from tests.support.constraints import applied_share, diagonal_excess
 
 pytestmark = pytest.mark.slow
 
@@ -61,5 +60,5 @@ def test_a_can_that_sinks_in_slips(written: str) -> None:
 def test_a_usual_joint_equality_has_a_share_of_its_force(scene: Scene) -> None:
     model = usual_model("equality, slide first", scene)
     share = applied_share(model, np.zeros(model.nq + model.nv))
-    predicted = soft_constraint.reached_share(0.9, soft_rows.diagonal_excess(scene))
+    predicted = reached_share(0.9, diagonal_excess(model, scene.can.radius))
     assert share == pytest.approx(predicted, rel=ROUNDING)

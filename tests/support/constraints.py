@@ -1,9 +1,8 @@
-"""What MuJoCo's solver lets through of a constraint's force, and the depth at which a contact carries a can."""
+"""What MuJoCo's solver lets through of a constraint's force, and by how much it mistakes an equality's diagonal."""
 
 import mujoco
 import numpy as np
 
-from mjbeer.model.joints import joint_addresses
 from mjbeer.model.mujoco_library import quiet
 
 
@@ -25,24 +24,14 @@ def applied_share(model: mujoco.MjModel, state: np.ndarray) -> float | None:
     return diagonal / (diagonal + float(data.efc_R[0]))
 
 
-def settle(model: mujoco.MjModel, at: np.ndarray) -> np.ndarray:
-    """Return a state, shape (nq + nv,), with the lift at which the can has no acceleration away from the incline.
+def diagonal_excess(model: mujoco.MjModel, radius: float) -> float:
+    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
 
-    A model without a lift gets its state back. The contact force is linear in the depth, so that two trials give the
-    wanted depth.
+    It adds the inverse inertias of the two joints, the diagonal of M^-1, without regard to metres and radians. The true
+    diagonal is J M^-1 J^T with J = (1, -a).
     """
-    if "lift" not in (joints := joint_addresses(model)):
-        return at
-    index = joints["lift"]
-    data, balanced = mujoco.MjData(model), at.copy()
-
-    def acceleration(lift: float) -> float:
-        data.qpos[:], data.qvel[:] = at[: model.nq], at[model.nq :]
-        data.qpos[index], data.qacc_warmstart[:] = lift, 0.0
-        mujoco.mj_forward(model, data)
-        return float(data.qacc[index])
-
-    trials = -1e-7, -2e-7
-    first, second = (acceleration(lift) for lift in trials)
-    balanced[index] = trials[0] - first * (trials[1] - trials[0]) / (second - first)
-    return balanced
+    data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
+    mujoco.mj_forward(model, data)
+    mujoco.mj_fullM(model, data, mass)
+    inverse, row = np.linalg.inv(mass)[:2, :2], np.array([1.0, -radius])
+    return float(np.trace(inverse) / (row @ inverse @ row))

@@ -4,10 +4,16 @@ import math
 
 import numpy as np
 
-from mjbeer.studies.predictions import soft_rolling
-from mjbeer.studies.predictions.linear_stability import RUNGE_KUTTA, amplification, first, polynomial, spectral_radius
-from mjbeer.studies.predictions.soft_constraint import SoftRow, reached_share, spring
-from mjbeer.theory.scene import Scene
+from mjbeer.studies.predictions import (
+    RUNGE_KUTTA,
+    SoftRow,
+    amplification,
+    first,
+    polynomial,
+    reached_share,
+    spectral_radius,
+    spring,
+)
 
 BOUNDED = 1 + 1e-9
 """Largest spectral radius that counts as bounded."""
@@ -41,15 +47,3 @@ def stable_slip(integrator: str) -> float:
         return math.inf if integrator == "discrete" else 1.0
     coefficients = polynomial(integrator)[::-1]
     return first(lambda rate: abs(float(np.polyval(coefficients, -rate))) - 1, 0.1, 50.0) / 2
-
-
-def diagonal_excess(scene: Scene) -> float:
-    """Return the factor by which MuJoCo overestimates the diagonal of the equality u = a roll, at phi = 0.
-
-    MuJoCo adds the inverse inertias 1/m_u and 1/I of the two joints, which are the diagonal of M^-1, without regard to
-    metres and radians. If the joints are not coupled, the factor is (1/m_u + 1/I)/(1/m_u + a^2/I). A frozen load
-    couples them by -m b; the true diagonal is J M^-1 J^T with J = (1, -a).
-    """
-    _, mass, _, _ = soft_rolling._matrices(scene, 0.0)
-    inverse, row = np.linalg.inv(mass)[:2, :2], np.array([1.0, -scene.can.radius])
-    return float(np.trace(inverse) / (row @ inverse @ row))

@@ -52,7 +52,7 @@ def stability(monkeypatch: pytest.MonkeyPatch) -> None:
     first: dict[str, Check] = {}
     for check in stability_study.plan("quick"):
         first.setdefault(check.group, check)
-    small = {"maps": partial(stability_maps.measure, stability_maps.PLANS[0], (4, 4))}
+    small = {"maps": partial(stability_maps.measure, stability_maps.PLANS[0], 4)}
     small["search"] = partial(search.batch, 0, 4)
     first |= {group: replace(first[group], measure=measure) for group, measure in small.items()}
     monkeypatch.setattr(stability_study, "plan", lambda extent: list(first.values()))
@@ -95,7 +95,7 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[studio.Film
 
     def few(folder: pathlib.Path) -> list[studio.Plotted]:
         names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-        names += [f"stability-{name}" for name in stability_maps.FIGURES]
+        names += [f"stability-{name}" for name in stability_maps.FAMILIES]
         return [studio.Plotted(plot, folder / name, in_memory=True) for name in names]
 
     film = Take(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)

@@ -22,11 +22,10 @@ if TYPE_CHECKING:
     from mjbeer.studies.validation.validate import Validation
 
 _FAILED = 1
-_KEPT = "folder to write to; an interrupted study in it is continued"
 
 
-def _folder(name: str, told: str = "folder to write to") -> Option:
-    return Option("output", told, pathlib.Path(name), pathlib.Path)
+def _folder(name: str) -> Option:
+    return Option("output", "folder to write to", pathlib.Path(name), pathlib.Path)
 
 
 _flag = functools.partial(Option, kind=bool)
@@ -57,7 +56,8 @@ def sweep(given: Namespace) -> int:
     NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
     1e-6 rad.
     """
-    from mjbeer.studies.sweep import STATUSES, WELL, sweep
+    from mjbeer.studies.sweep import sweep
+    from mjbeer.studies.sweep_runs import STATUSES, WELL
 
     if given.output.suffix not in ENDINGS:
         raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")
@@ -144,7 +144,7 @@ def benchmark(given: Namespace) -> int:
 
 
 @command(
-    _folder("stability", _KEPT),
+    _folder("stability"),
     _flag("long", "run the whole study: all integrators, finer maps, 20000 random runs; takes forty minutes"),
     _flag("quick", "make 250 random runs instead of 3000; takes two minutes"),
     _flag("maps", "make only the maps of timestep and stiffness or damping, but all 34, and fine; takes three minutes"),
@@ -159,7 +159,7 @@ def stability(given: Namespace) -> int:
         raise ParameterError(f"{' and '.join(asked)} exclude each other: take one of them, or neither")
     extent = asked[0].strip("-") if asked else "usual"
     with files.locked(given.output):
-        study = stability.conduct(given.output, extent, STDERR)
+        study = stability.conduct(extent, STDERR)
         stability.write(study, given.output)
     if given.json:
         terminal.write(stability.to_json(study))

@@ -100,7 +100,7 @@ def html(
         maps=maps,
         figures=[
             Shown(f"stability-{name}", figure.title, figure.caption, maps["command"], plots[f"stability-{name}"])
-            for name, figure in stability_maps.FIGURES.items()
+            for name, figure in stability_maps.FAMILIES.items()
         ],
         runs=round(sum(of["runs"] for of in summary)),
         same=sum(of["as predicted"] for of in summary) / sum(of["runs"] for of in summary),

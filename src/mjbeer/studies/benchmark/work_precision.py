@@ -9,8 +9,8 @@ from mjbeer.model.setting import DOP853, GAUSS_JACKSON
 from mjbeer.output.plots import COLOURS, add_tooltips, chart, name_below
 from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
 
-_DARK, _GREY, _PALE = "#333333", "#777777", "#A0A0A0"
-_LINES: dict[Curve | None, tuple[str, str, str]] = {
+_DARK, _SCIPY, _HEYOKA = "#333333", COLOURS[4], COLOURS[3]
+_LINES: dict[Curve, tuple[str, str, str]] = {
     Curve("reduced", DOP853): ("mjbeer's DOP853", COLOURS[0], "-o"),
     Curve("reduced", GAUSS_JACKSON): ("mjbeer's Gauss-Jackson (multistep)", COLOURS[1], "-s"),
     Curve("reduced", CHOSEN, TOLERANCE): ("mjbeer to a tolerance", COLOURS[2], "-D"),
@@ -18,14 +18,16 @@ _LINES: dict[Curve | None, tuple[str, str, str]] = {
     Curve("reduced", "RK4"): ("MuJoCo's RK4", _DARK, "-^"),
     Curve("contact", "RK4"): ("MuJoCo's RK4, in contact", _DARK, ":^"),
     Curve("reduced", "Euler"): ("MuJoCo's Euler", _DARK, "-x"),
-    None: ("MuJoCo as usually written, 2 ms", "black", "*"),
-    Curve("SciPy DOP853", "", TOLERANCE): ("SciPy's DOP853, interpreted", _GREY, "--v"),
-    Curve("SciPy odeint", "", TOLERANCE): ("SciPy's odeint, interpreted", _PALE, "--<"),
-    Curve("heyoka", "", TOLERANCE): ("heyoka", _GREY, "-P"),
+    Curve("equality, slide first", "Euler"): ("equality as usually written", "black", "*"),
+    Curve("equality, hinge first", "Euler"): ("the same, hinge first", "black", "p"),
+    Curve("contact, defaults", "Euler"): ("contact as usually written", "black", "X"),
+    Curve("SciPy DOP853", "", TOLERANCE): ("SciPy's DOP853, interpreted", _SCIPY, "--v"),
+    Curve("SciPy odeint", "", TOLERANCE): ("SciPy's odeint (LSODA), interpreted", _SCIPY, "--<"),
+    Curve("heyoka", "", TOLERANCE): ("heyoka", _HEYOKA, "-P"),
 }
-"""The curves that are drawn, each with its name, its colour, and its line and marker: of 27, those that somebody would
-choose, and as None the models that people usually write. SciPy calls interpreted Python, drawn with dashes; all other
-curves are of compiled code. The tables have what the others cost."""
+"""The curves that are drawn, each with its name, its colour, and its line and marker: those that somebody would choose,
+and single points of models as people usually write them, at 2 ms. SciPy calls interpreted Python, drawn with dashes;
+all other curves are of compiled code. The tables have what the others cost."""
 _FLOOR, _CEILING = 1e-15, 10.0
 """Smaller errors [rad] are drawn at the floor, since a logarithmic axis has no zero; larger ones are no motion."""
 
@@ -33,7 +35,7 @@ _FLOOR, _CEILING = 1e-15, 10.0
 def draw(study: Benchmark, path: pathlib.Path) -> None:
     """Draw the scenes of a study, each in a panel, and write them to `path` with .svg appended.
 
-    In the SVG a point tells its setting, its error and its run time.
+    In the SVG a point has its setting, its error and its run time as a tooltip.
 
     Raises:
       OutputError: if a file cannot be written.
@@ -58,22 +60,16 @@ def draw(study: Benchmark, path: pathlib.Path) -> None:
 
 
 def _draw(axes: Axes, found: Sequence[Point]) -> None:
-    """Draw the curves of a scene that have points, and let each point tell what it is."""
+    """Draw the curves of a scene that have points, and give each point a tooltip."""
     for curve, (name, colour, line) in _LINES.items():
-        of_it = [each for each in found if (each.curve == curve if curve else each.model in USUAL)]
-        if shown := [point for point in of_it if point.error < _CEILING]:
+        if shown := [point for point in found if point.curve == curve and point.error < _CEILING]:
             times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
-            size = 5 if curve else 10
+            size = 9 if curve.model in USUAL else 5
             (drawn,) = axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)
-            add_tooltips(drawn, [_told(point, name) for point in shown])
+            add_tooltips(drawn, [_tooltip(point, name) for point in shown])
 
 
-def _told(point: Point, name: str) -> str:
+def _tooltip(point: Point, name: str) -> str:
     """Return what a point is: its curve, timestep or tolerance, error and run time."""
-    if point.model in USUAL:
-        setting = point.model
-    else:
-        setting = (
-            f"tolerance {point.value:g}" if point.parameter == TOLERANCE else f"timestep {milliseconds(point.value)}"
-        )
-    return f"{name}, {setting}: error {point.error:.1e} rad, run time {milliseconds(point.time)}"
+    value = f"{point.value:g}" if point.parameter == TOLERANCE else milliseconds(point.value)
+    return f"{name}, {point.parameter} {value}: error {point.error:.1e} rad, run time {milliseconds(point.time)}"

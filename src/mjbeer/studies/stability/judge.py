@@ -156,7 +156,7 @@ def _judge_attached(trial: Trial) -> Outcome:
     scene, duration = trial.scene, trial.timestep * trial.steps
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
-        times, phi, _ = attached_can.roll(scene, trial.phi0, duration, trial.timestep)
+        times, phi = attached_can.roll(scene, trial.phi0, duration, trial.timestep)
     motion = exact(scene, times, trial.phi0)
     rolls = times <= motion.rolls_until(trial.friction)
     error = float(np.abs(phi - motion.phi)[rolls].max(initial=0.0) / max(1.0, np.abs(motion.phi - trial.phi0).max()))

@@ -17,31 +17,20 @@ from matplotlib.patches import Patch
 
 from mjbeer.checks import Check, Result
 from mjbeer.exceptions import ParameterError
-from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, Integrator
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
-from mjbeer.studies.stability.short_runs import BOUNDED, EXPLODED, Plan
+from mjbeer.studies.stability.short_runs import EXPLODED, Plan, Swings
 from mjbeer.studies.study import PASSED, Study
 
 MAPS = "maps"
 """The group of the study that the maps are in."""
 SHIPPED = pathlib.Path(__file__).with_name("maps.json")
 """The maps that come with mjbeer; `mjbeer stability --maps` wrote them."""
-CELLS, QUICK_CELLS = {"damping": (13, 16)}, {"damping": (4, 6)}
-"""Number of timesteps and of dampings in a map; the second are those of a sample. Other families have 20 and 20, or 8
-and 8."""
-AXES = {
-    "solref": ((1e-4, 1.0), (1e-4, 1e-1), "time constant of solref [s]"),
-    "direct": ((1e-5, 1.0), (1e2, 1e10), "stiffness K of solref [1/s²]"),
-    "gravity": ((1e-3, 10.0), (1e-3, 1e3), "gravity [m/s²]"),
-    "damping": ((2.5e-4, 1.6e-2), (1e-4, 1e1), "damping [N m s]"),
-}
-"""The timesteps [s] of a map by family, its values, and what these are; dampings of real liquids are below 0.02."""
-_AGREEMENT, _OF_DAMPED, _IN_CONTACT = 0.05, 0.04, 0.12
-"""Largest relative difference at which a measured border agrees with the predicted one. The largest of the damped maps
-is 0.033: theory takes the load's angle as constant in parts of a run, in which the fast rate changes by some per cent.
-In contact, where DOP853's stages overshoot, the damped can slips and parts from the ground, which linear theory does
-not know: runs explode up to a tenth earlier, in their first step."""
+CELLS, FEW_CELLS = 20, 8
+"""Number of timesteps and of values in a map, and in one of a sample."""
+_AGREEMENT = 0.05
+"""Largest relative difference at which a measured border agrees with the predicted one."""
 _RESOLUTION = 1.01
 """Bisection ends when the two timesteps that enclose a border have this ratio."""
 _ALL: tuple[Integrator, ...] = (*INTEGRATORS, DOP853)
@@ -49,12 +38,12 @@ PLANS = (
     *(Plan("solref", name) for name in _ALL),
     *(Plan("direct", name) for name in ("Euler", "implicitfast", "discrete", "RK4")),
     *(Plan("gravity", name) for name in _ALL),
-    *(Plan("damping", name, rolling) for rolling in ROLLINGS for name in _ALL),
+    *(Plan("damping", name) for name in _ALL),
 )
 """All maps."""
 _SAMPLE = (
-    "solref, Euler; solref, RK4; solref, discrete; direct, Euler; gravity, Euler; gravity, RK4; "
-    "damping, reduced, Euler; damping, reduced, RK4; damping, contact, RK4"
+    *("solref, Euler", "solref, RK4", "solref, discrete", "direct, Euler", "gravity, Euler", "gravity, RK4"),
+    *("damping, Euler", "damping, RK4"),
 )
 """Names of the maps that are made, and coarsely, unless all are asked for."""
 SHADES = {"exploded": "#E8A27C", "stable, inaccurate": "#BFDFF2", "stable and accurate": COLOURS[0]}
@@ -65,75 +54,85 @@ _MEASURED: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 3
 _MEASURED |= {"markerfacecolor": "white", "markeredgewidth": 0.7}
 
 
-class Figure(NamedTuple):
-    """A figure that shows several maps side by side; its files have its name without an ending."""
+class Family(NamedTuple):
+    """Maps that one figure shows side by side."""
 
-    columns: int
+    timesteps: tuple[float, float]
+    """The least and the largest timestep [s]."""
+    values: tuple[float, float]
+    label: str
+    """What the values are, with their unit."""
     title: str
     caption: str
 
 
-FIGURES = {
-    "solref": Figure(
-        3,
+FAMILIES = {
+    "solref": Family(
+        (1e-4, 1.0),
+        (1e-4, 1e-1),
+        "time constant of solref [s]",
         "How stiff may a constraint be? Theory draws the line where MuJoCo's runs explode",
         "A joint equality with refsafe off: timestep against the time constant of solref.",
     ),
-    "direct": Figure(
-        4,
-        "A constraint with a direct (negative) solref, which refsafe does not touch",
-        "Timestep against stiffness K of solref = (−K, −2√K).",
+    "direct": Family(
+        (1e-5, 1.0),
+        (1e2, 1e10),
+        "stiffness K of solref [1/s²]",
+        "A constraint with a direct (negative) solref",
+        "Timestep against K of solref = (−K, −2√K), which refsafe does not touch.",
     ),
-    "gravity": Figure(
-        3,
+    "gravity": Family(
+        (1e-3, 10.0),
+        (1e-3, 1e3),
+        "gravity [m/s²]",
         "A can that swings in ever stronger gravity, which no integrator takes implicitly",
         "No constraint: timestep against gravity.",
     ),
-    "damping": Figure(
-        6,
+    "damping": Family(
+        (2.5e-4, 1.6e-2),
+        (1e-4, 1e1),
+        "damping [N m s]",
         "Damping between can and load: which timestep explodes, and which is accurate",
-        "Half a can of beer, of sheet metal, let go at 1 rad; real liquids have a damping of at most 0.02 N m s.",
+        "No constraint: timestep against damping, for half a metal can of beer. Real liquids have at most 0.02 N m s.",
     ),
 }
-"""The figure of each family."""
 
 
 def checks(sample: bool = False) -> list[Check]:
     """Return a check a map; a `sample` has fewer and coarser ones."""
-    made, reason = [], "bisection to 1 %, and an instability has to grow before it is seen"
-    for plan in PLANS:
-        cells = (QUICK_CELLS if sample else CELLS).get(plan.family, (8, 8) if sample else (20, 20))
-        damped = _IN_CONTACT if plan.rolling == "contact" else _OF_DAMPED
-        bound = damped if plan.family == "damping" else _AGREEMENT
-        made.append(Check(MAPS, plan.name, partial(measure, plan, cells), "", bound, "relative", reason))
-    return [each for each in made if not sample or each.name in _SAMPLE.split("; ")]
+    cells, reason = FEW_CELLS if sample else CELLS, "bisection to 1 %, and an instability has to grow before it is seen"
+    return [
+        Check(MAPS, plan.name, partial(measure, plan, cells), "", _AGREEMENT, "relative", reason)
+        for plan in PLANS
+        if not sample or plan.name in _SAMPLE
+    ]
 
 
-def measure(plan: Plan, cells: tuple[int, int]) -> dict[str, Any]:
-    """Return how runs end at so many timesteps and values, and the border from which on they explode.
+def measure(plan: Plan, cells: int) -> dict[str, Any]:
+    """Return how runs end at so many timesteps and as many values, and the border from which on they explode.
 
     "measured" has a string for each value and a digit for each timestep, the outcome; "same" is the share of cells
     whose outcome is the predicted one. "boundaries" has for each value the timestep [s] from which on runs explode,
     measured and predicted, or None where none does; "error" is the largest relative difference of the two.
     """
-    spans = zip(AXES[plan.family][:2], cells, strict=True)
-    timesteps, values = (np.geomspace(*span, count).tolist() for span, count in spans)
-    measured, boundaries, same, worst = [], [], [], 0.0
+    timesteps, values = (np.geomspace(*span, cells).tolist() for span in FAMILIES[plan.family][:2])
+    measured, boundaries, same = [], [], []
     for value in values:
-        runs = plan.runs(value, timesteps)
+        runs = Swings(plan, value)
         ended, expected = ([judge(timestep) for timestep in timesteps] for judge in (runs.measure, runs.predict))
         measured.append("".join(map(str, ended)))
-        # Where theory only says that a run does not explode, any other outcome is as predicted.
-        same += [
-            (each == wanted) if wanted != BOUNDED else each != EXPLODED
-            for each, wanted in zip(ended, expected, strict=True)
-        ]
-        edges = _border(runs.measure, timesteps, ended), _border(runs.predict, timesteps, expected)
-        boundaries.append(edges)
-        worst = max(worst, difference(*edges))
-    about = {"family": plan.family, "integrator": plan.integrator, "rolling": plan.rolling}
-    found = {"same": float(np.mean(same)), "timesteps": timesteps, "values": values, "measured": measured}
-    return about | found | {"boundaries": boundaries, "error": worst}
+        same.append(np.equal(ended, expected))
+        boundaries.append((_border(runs.measure, timesteps, ended), _border(runs.predict, timesteps, expected)))
+    return {
+        "family": plan.family,
+        "integrator": plan.integrator,
+        "same": float(np.mean(same)),
+        "timesteps": timesteps,
+        "values": values,
+        "measured": measured,
+        "boundaries": boundaries,
+        "error": max(difference(*borders) for borders in boundaries),
+    }
 
 
 def _border(outcome: Callable[[float], int], timesteps: list[float], outcomes: list[int]) -> float | None:
@@ -193,14 +192,13 @@ def load(path: pathlib.Path = SHIPPED) -> dict[str, Any]:
 
 
 def summary(document: dict[str, Any]) -> dict[str, dict[str, float]]:
-    """Return for each family the number of maps and runs, the share of cells as predicted, and the worst border.
+    """Return for each family the number of maps and runs, the number of runs as predicted, and the worst border.
 
-    The runs of the damped cans are told by their way of rolling. These are the numbers that page and documents show.
+    These are the numbers that page and documents show.
     """
     found: dict[str, dict[str, float]] = {}
     for of in document[MAPS]:
-        name = of["family"] if of["family"] != "damping" else f"damping, {of['rolling']}"
-        counts = found.setdefault(name, {"maps": 0, "runs": 0, "as predicted": 0.0, "worst": 0.0})
+        counts = found.setdefault(of["family"], {"maps": 0, "runs": 0, "as predicted": 0.0, "worst": 0.0})
         cells = len("".join(of["measured"]))
         counts["maps"] += 1
         counts["runs"] += cells
@@ -211,18 +209,17 @@ def summary(document: dict[str, Any]) -> dict[str, dict[str, float]]:
 
 def figures(document: dict[str, Any]) -> dict[str, Callable[[pathlib.Path], None]]:
     """Return what draws each figure of the maps in a document to a path, with .svg appended, by the figure's name."""
-    maps = {family: [of for of in document[MAPS] if of["family"] == family] for family in FIGURES}
-    return {f"stability-{name}": partial(draw, figure=FIGURES[name], maps=of) for name, of in maps.items() if of}
+    maps = {family: [of for of in document[MAPS] if of["family"] == family] for family in FAMILIES}
+    return {f"stability-{name}": partial(draw, maps=of) for name, of in maps.items() if of}
 
 
-def draw(path: pathlib.Path, figure: Figure, maps: Sequence[dict[str, Any]]) -> None:
+def draw(path: pathlib.Path, maps: Sequence[dict[str, Any]]) -> None:
     """Write maps of one family side by side, to `path` with .svg appended."""
-    family = maps[0]["family"]
-    columns = min(figure.columns, len(maps))
+    name = maps[0]["family"]
+    family, columns = FAMILIES[name], 3 if len(maps) > 4 else min(2, len(maps))
     rows = math.ceil(len(maps) / columns)
-    wide = 2.3 if columns > 4 else 3.5
-    size, height = max(wide * columns + 0.5, 9.5), 0.9 * wide * rows + 1.7
-    with chart(path, rows, columns, size, height, figure.title, figure.caption) as panels:
+    size = 3.2 * columns + 0.4, 2.9 * rows + 1.7
+    with chart(path, rows, columns, *size, family.title, family.caption) as panels:
         for axes in panels[len(maps) :]:
             axes.set_visible(False)
         for place, (axes, of) in enumerate(zip(panels, maps, strict=False)):
@@ -231,13 +228,13 @@ def draw(path: pathlib.Path, figure: Figure, maps: Sequence[dict[str, Any]]) -> 
                 edges = [(edges[border], value) for value, edges in zip(of["values"], of["boundaries"], strict=True)]
                 inside = [edge for edge in edges if edge[0] and of["timesteps"][0] < edge[0] < of["timesteps"][-1]]
                 axes.plot(*zip(*inside, strict=True) if inside else ([], []), **style)
-            axes.set_title(of["name"].removeprefix(f"{family}, "), fontsize=10)
+            axes.set_title(of["integrator"])
             axes.set_xlabel("timestep h [s]" if place + columns >= len(maps) else "")
-            axes.set_ylabel(AXES[family][2] if place % columns == 0 else "")
+            axes.set_ylabel(family.label if place % columns == 0 else "")
         handles: list[Artist] = [Patch(facecolor=shade, label=name) for name, shade in SHADES.items()]
         handles += [Line2D([], [], label="limit of stability, theory", **_THEORY)]
         handles += [Line2D([], [], label="the same, measured", **_MEASURED)]
-        name_below(panels, 5 if columns > 2 else 3, handles)
+        name_below(panels, 3, handles)
 
 
 def _colour(axes: Axes, of: dict[str, Any], shades: Sequence[str]) -> None:

@@ -10,7 +10,7 @@ from mjbeer.checks import Check, Result, finite
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.claim import CONFIRMED, CORRECTED, LIMIT
 from mjbeer.studies.study import FAILED, PASSED, machine, table
-from mjbeer.studies.validation import damped_checks, motion_checks, standing_checks
+from mjbeer.studies.validation import motion_checks, standing_checks
 
 _WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
 """The verdicts of the audit, short enough for a terminal."""
@@ -58,7 +58,7 @@ class Validation:
 
 def checks() -> list[Check]:
     """Return all checks of the validation, in the order of its table."""
-    motions = (motion_checks.checks, damped_checks.checks, motion_checks.models, motion_checks.extremes)
+    motions = motion_checks.checks, motion_checks.damped, motion_checks.orders, motion_checks.extremes
     return [check for chapter in (*motions, standing_checks.checks) for check in chapter()]
 
 

@@ -1,0 +1,241 @@
+"""Linear theory in advance: for which timesteps a small motion stays bounded, and for which accurate.
+
+**Integrators.** One turns linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with a matrix G of
+K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside the unit circle. For a Runge-Kutta
+method G = R(h L), where R is the polynomial of its tableau and L the matrix of the equations as x' = L x (E. Hairer,
+G. Wanner, Solving Ordinary Differential Equations II, section IV.2). MuJoCo's "Euler", "implicit", "implicitfast" and
+"discrete" are all the same semi-implicit Euler for forces like gravity, whose stiffness none of them treats
+implicitly.
+
+**Soft constraints.** In the solver a constraint is one row or several. A row has a residual r, for instance u - a roll,
+and a reference acceleration -b r' - k r. Because it is soft, only a share s of that is reached:
+
+    r'' = s (-b r' - k r) + (1 - s) a_free,
+
+where a_free is the acceleration without the constraint. With solref (tau, zeta) and a constant impedance d (solimp's
+dmin = dmax),
+
+    b = 2/(d tau),   k = d/(d tau zeta)^2,
+
+so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: the impedance drops out, and stability depends on
+h/tau and zeta alone. It does not drop out where MuJoCo overestimates the row's diagonal, as it does by default: then
+s < d, and the row is softer, and stable for longer timesteps, than its solref suggests.
+
+**Damping** is what an integrator may treat implicitly: all but RK4 and DOP853 do, but "Euler" not that of a tendon,
+which damps the reduced model.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.integrate import DOP853
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+from mjbeer.theory.scene import Scene
+
+RUNGE_KUTTA, IMPLICIT = ("RK4", "DOP853"), ("implicit", "implicitfast", "discrete")
+"""The integrators that are Runge-Kutta methods; MuJoCo's others are semi-implicit Euler. GaussJackson is a
+multistep method, and nothing here is about it. The implicit ones step with M + h D in place of M."""
+PERIODS = 200
+"""Number of periods over which a stable swing must stay bounded."""
+GROWTH = 100.0
+"""Largest factor by which a bounded swing may grow over `PERIODS`. Half a per cent below the limit of semi-implicit
+Euler a swing grows to 10 times its size, half a per cent above it to far more than this."""
+ACCURATE_PERIODS = 10
+"""Number of periods over which an accurate swing must stay accurate."""
+ACCURACY = 1e-2
+"""Largest error of an accurate swing: a distance in the plane of (phi, phi_dot/omega), over the amplitude."""
+MAX_IMPEDANCE = 0.9999
+"""Impedance of the hardest row that MuJoCo accepts, mjMAXIMP."""
+_CLASSICAL = np.array([[0, 0, 0, 0], [1 / 2, 0, 0, 0], [0, 1 / 2, 0, 0], [0, 0, 1, 0]]), np.array([1, 2, 2, 1]) / 6
+_TABLEAUS = {"RK4": _CLASSICAL, "DOP853": (np.asarray(DOP853.A[:12, :12]), np.asarray(DOP853.B))}
+_RATIO = 1.02
+"""Ratio of two successive values in the search for the first one that fails."""
+
+
+def polynomial(integrator: str) -> np.ndarray:
+    """Return the coefficients of R(z) = 1 + sum_j z^j b A^(j-1) 1 of a Runge-Kutta method, the constant first."""
+    stages, weights = _TABLEAUS[integrator]
+    powers, coefficients = np.ones(len(weights)), [1.0]
+    for _ in weights:
+        coefficients.append(float(weights @ powers))
+        powers = stages @ powers
+    return np.array(coefficients)
+
+
+def amplification(integrator: str, stiffness: ArrayLike, damping: ArrayLike = 0.0) -> np.ndarray:
+    """Return the matrix G of one step of q'' = -k q - b q', with `stiffness` K = k h^2 and `damping` B = b h.
+
+    K and B are numbers for one coordinate, or matrices of shape (n, n) for n coordinates; G has shape (2n, 2n).
+    Semi-implicit Euler, v += h a(q, v), q += h v, has G = ((1 - K, 1 - B), (-K, 1 - B)).
+    """
+    k = np.atleast_2d(np.asarray(stiffness, dtype=float))
+    b, one = np.broadcast_to(np.asarray(damping, dtype=float), k.shape), np.eye(len(k))
+    if integrator not in RUNGE_KUTTA:
+        return np.block([[one - k, one - b], [-k, one - b]])
+    rates = np.block([[np.zeros_like(k), one], [-k, -b]])
+    matrix = np.zeros_like(rates)
+    for coefficient in polynomial(integrator)[::-1]:  # Horner's scheme
+        matrix = rates @ matrix + coefficient * np.eye(len(rates))
+    return matrix
+
+
+def spectral_radius(matrix: np.ndarray) -> float:
+    """Return the largest magnitude of an eigenvalue."""
+    return float(np.abs(np.linalg.eigvals(matrix)).max())
+
+
+def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
+    """Return the states G^n `start` for n = 0 to `steps`, shape (steps + 1, len(start)); not finite on overflow."""
+    states, power = np.array([start], dtype=float), np.array(matrix)
+    with np.errstate(over="ignore", invalid="ignore"):
+        while len(states) <= steps:
+            states = np.concatenate([states, states @ power.T])
+            power = power @ power
+    return states[: steps + 1]
+
+
+def growth(integrator: str, swing: float) -> float:
+    """Return the logarithm of the factor by which a swing with omega h = `swing` grows over `PERIODS` periods."""
+    steps = PERIODS * 2 * math.pi / swing
+    return steps * math.log(spectral_radius(amplification(integrator, swing**2)))
+
+
+def error(integrator: str, swing: float) -> float:
+    """Return the largest error, as in `ACCURACY`, of a swing from rest with omega h = `swing` over `ACCURATE_PERIODS`.
+
+    For small h it is omega h/2 under semi-implicit Euler, whose ellipse in the phase plane leans, and (omega h)^4/120 a
+    radian under RK4.
+    """
+    steps = math.floor(ACCURATE_PERIODS * 2 * math.pi / swing)
+    states = motion(amplification(integrator, swing**2), np.array([1.0, 0.0]), steps)
+    angles = swing * np.arange(steps + 1)
+    return float(np.hypot(states[:, 0] - np.cos(angles), states[:, 1] / swing + np.sin(angles)).max())
+
+
+def stable_limit(integrator: str) -> float:
+    """Return the largest omega h with a bounded swing: 2 for semi-implicit Euler, 2 sqrt(2) for RK4, 5.97 for DOP853.
+
+    For RK4 it is 0.15 % more, as an instability needs time to grow.
+    """
+    return first(lambda swing: growth(integrator, swing) - math.log(GROWTH), 0.05, 20.0)
+
+
+def accurate_limit(integrator: str) -> float:
+    """Return the largest omega h with an accurate swing."""
+    return first(lambda swing: error(integrator, swing) - ACCURACY, 5e-3, stable_limit(integrator))
+
+
+def first(excess: Callable[[float], float], low: float, high: float) -> float:
+    """Return the smallest value from `low` to `high`, both positive, from which on `excess` is positive, or `high`.
+
+    Raises:
+      ValueError: if `excess` is positive at `low`.
+    """
+    if excess(low) > 0:
+        raise ValueError(f"the limit is exceeded already at {low!r}")
+    while low < high:
+        above = low * _RATIO
+        if excess(above) > 0:
+            return float(brentq(lambda x: math.copysign(1, excess(x)), low, above, xtol=1e-9 * low, rtol=1e-12))
+        low = above
+    return high
+
+
+def reached_share(impedance: float, excess: float) -> float:
+    """Return the share s of a row whose diagonal MuJoCo overestimates by a factor `excess`.
+
+    The regularizer R is (1 - d)/d times MuJoCo's diagonal; the share is A/(A + R) with the true diagonal A.
+    """
+    return 1 / (1 + (1 - impedance) / impedance * excess)
+
+
+@dataclass(frozen=True)
+class SoftRow:
+    """One row of a soft constraint, with the reference acceleration -b r' - k r."""
+
+    stiffness: float
+    """k [1/s^2], MuJoCo's K times the impedance."""
+    damping: float
+    """b [1/s]."""
+    impedance: float
+    """d, the share of the reference acceleration that a row with the exact diagonal reaches."""
+
+    def at_end_of_step(self, timestep: float) -> "SoftRow":
+        """Return the row that MuJoCo's "discrete" solves in place of this one.
+
+        Its reference acceleration is that of the residual at the end of the step: r' + h r'' and r + h r' + h^2 r''
+        in -b r' - k r. With S = 1 + h b + h^2 k that is -((b + h k) r' + k r)/S at the start of the step. The
+        softness (1 - d)/d is divided by S, but stays at least that of `MAX_IMPEDANCE`.
+        """
+        h = timestep
+        scale = 1 + h * self.damping + h**2 * self.stiffness
+        impedance = min(reached_share(self.impedance, 1 / scale), MAX_IMPEDANCE)
+        return SoftRow(self.stiffness / scale, (self.damping + h * self.stiffness) / scale, impedance)
+
+
+def spring(timeconst: float, dampratio: float, impedance: float) -> SoftRow:
+    """Return the row of solref = (timeconst [s], dampratio)."""
+    damping = 2 / (impedance * timeconst)
+    return SoftRow(damping**2 * impedance / (4 * dampratio**2), damping, impedance)
+
+
+def direct(stiffness: float, damping: float, impedance: float) -> SoftRow:
+    """Return the row of solref = (-stiffness [1/s^2], -damping [1/s])."""
+    return SoftRow(stiffness / impedance, damping / impedance, impedance)
+
+
+@dataclass(frozen=True, eq=False)
+class SmallMotion:
+    """Linear equations of the joints of a model, M q'' + D q' + K q = 0, on level ground about phi = 0.
+
+    Where an equality ties the joints, D is 0.
+    """
+
+    mass: np.ndarray
+    """Mass matrix M, shape (n, n)."""
+    gravity: np.ndarray
+    """Stiffness matrix K of gravity, shape (n, n)."""
+    damping: np.ndarray | float = 0.0
+    """Damping matrix D of a tendon, shape (n, n)."""
+    jacobian: np.ndarray | None = None
+    """The Jacobian J of an equality, shape (n,), where there is one."""
+
+    def exact(self, timestep: float) -> np.ndarray:
+        """Return the matrix exp(h L) of (q, h q') over a `timestep` h [s], without the equality."""
+        none, one = np.zeros_like(self.mass), np.eye(len(self.mass))
+        stiffness, damping = (np.linalg.solve(self.mass, each) for each in (self.gravity, self.damping + none))
+        return expm(np.block([[none, one], [-stiffness * timestep**2, -damping * timestep]]))
+
+    def step(self, integrator: str, timestep: float, row: SoftRow | None = None) -> np.ndarray:
+        """Return the matrix of one step of (q, h q') with a `timestep` h [s]; the equality, if any, is `row`."""
+        none = np.zeros_like(self.mass)
+        mass = self.mass + (timestep * self.damping if integrator in IMPLICIT else none)
+        stiffness, damping = (np.linalg.solve(mass, each) for each in (self.gravity, self.damping + none))
+        if row is not None and self.jacobian is not None:
+            row = row.at_end_of_step(timestep) if integrator == "discrete" else row
+            towards = np.linalg.solve(mass, self.jacobian)
+            gain = towards / (self.jacobian @ towards) * reached_share(row.impedance, 1.0)
+            stiffness = stiffness + np.outer(gain, row.stiffness * self.jacobian - self.jacobian @ stiffness)
+            damping = damping + np.outer(gain, row.damping * self.jacobian)
+        return amplification(integrator, stiffness * timestep**2, damping * timestep)
+
+
+def small_motion(scene: Scene, constrained: bool = False) -> SmallMotion:
+    """Return the small motion of a scene on level ground: of a sliding load in u and phi, of a frozen one in phi.
+
+    If `constrained`, a frozen one is in u and the can's roll, which the equality u = a roll ties.
+    """
+    moment, radius, inertia = scene.load.moment, scene.can.radius, scene.load.axis_inertia
+    if scene.attachment == "frozen" and not constrained:
+        return SmallMotion(scene.oscillator.inertia(np.zeros((1, 1))), np.full((1, 1), moment * scene.gravity))
+    gravity, ahead = np.diag([0.0, moment * scene.gravity]), np.array([-1 / radius, 1.0])
+    if constrained:
+        mass = np.array([[scene.mass, -moment], [-moment, scene.can.inertia + inertia]])
+        return SmallMotion(mass, gravity, jacobian=np.array([1.0, -radius]))
+    mass, law = np.array([[scene.effective_mass, -moment], [-moment, inertia]]), scene.damping_law
+    return SmallMotion(mass, gravity, law.linear * np.outer(ahead, ahead))

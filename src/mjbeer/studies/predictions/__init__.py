@@ -1,1 +1,0 @@
-"""Numerical errors that theory predicts; it imports `theory`, and no simulator."""
