@@ -180,8 +180,7 @@ def standing_can(given: Namespace) -> Standing:
 _PHI0 = "initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline"
 _ROLLING = "what makes the can roll: reduced coordinates, a joint equality, or contact with friction"
 _TIMESTEP = Option("timestep", "timestep; with a tolerance, interval between samples [s]", 1e-3)
-STEPS = Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP
-"""The options of what MuJoCo steps."""
+STEPS = Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP  # the options of what MuJoCo steps
 _FRICTION = Option("friction", "coefficient of friction: a contact slips beyond it", FRICTION)
 
 

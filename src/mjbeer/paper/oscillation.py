@@ -8,21 +8,29 @@ import numpy as np
 
 from mjbeer.model.setting import DOP853
 from mjbeer.paper import witness
-from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, Bound, Claim, Limit, Misprint, SceneConstants, Terms, Witness
+from mjbeer.paper.claim import (
+    APPROXIMATION,
+    CONSEQUENCE,
+    Bound,
+    Claim,
+    Limit,
+    Misprint,
+    SceneConstants,
+    Terms,
+    Witness,
+    equation,
+)
 from mjbeer.paper.witness import DECADE, EXACT, REDUCED, Looping, cosines, frequency, simulate_motion, swing
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import INCLINE
 from mjbeer.theory.scenes import sliding
 
-FAST = 350.0
-"""phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop."""
+FAST = 350.0  # phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop
 SLOW = 45.0
 """The same of a load that just loops. It takes 39.4 rad/s to loop; above 47.4 rad/s the can would leave the incline."""
-_HESITATION = 0.01
-"""Amplitude [rad] of the swing in which the can's hesitation is measured."""
+_HESITATION = 0.01  # amplitude [rad] of the swing in which the can's hesitation is measured
 _PHASE = np.linspace(0, 2 * math.pi, 65)
-_TOP = 3.1
-"""Angle [rad] beside the top from which a load is let go that does not loop."""
+_TOP = 3.1  # angle [rad] beside the top from which a load is let go that does not loop
 
 
 def squares_25(waves: tuple[Any, Any], part: int) -> Terms:
@@ -106,8 +114,8 @@ _NEXT_ORDER = "the next order in delta = 0.22"
 CLAIMS = (
     Claim("(25)", "u - s = b sin(phi), eq. (12); printed b cos(phi)",
         Witness(REDUCED, partial(swing, 0.1)), Bound(1e-12, "rounding"),
-        lambda q: (q.u - q.s, -q.b * q.sin_phi),
-        Misprint(1.10, lambda q: (q.u - q.s, -q.b * q.cos_phi), "How far the axis is ahead of the centre of mass",
+        equation("-b*sin_phi + (u - s)"),
+        Misprint(1.10, equation("-b*cos_phi + (u - s)"), "How far the axis is ahead of the centre of mass",
             r"u-s=b\,<\cos|\sin>\,\varphi"),
         quote="u = s + b cos φ"),
     Claim("(25)", "amplitude of the ripple of u at omega: b phi_0; printed none",

@@ -167,8 +167,7 @@ def balanced(k: float) -> Scene:
 
 
 REDUCED, EQUALITY, CONTACT = "MuJoCo, reduced", "MuJoCo, equality", "MuJoCo, contact"
-SMALL = 1e-3
-"""Amplitude [rad] of a small swing."""
+SMALL = 1e-3  # amplitude [rad] of a small swing
 SWING = Witness(REDUCED, swing)
 WIDE, NARROW = (Witness(REDUCED, partial(swing, amplitude)) for amplitude in (1.0, SMALL))
 METAL, WHEEL = Witness(EQUALITY, metal), Witness(EQUALITY, wheel)
@@ -180,8 +179,7 @@ HELD = Bound(2e-8, DRIFT)
 
 TOP = math.pi - 0.05
 """Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in balance."""
-GRIP = 1e6
-"""Friction coefficient so large that nothing slips."""
+GRIP = 1e6  # friction coefficient so large that nothing slips
 
 
 def fall_from_top(scene: Scene, timestep: float, friction: float) -> Trajectory:
@@ -195,20 +193,16 @@ def fall_from_top(scene: Scene, timestep: float, friction: float) -> Trajectory:
 
 DECADE = (50.0, 100.0, 200.0, 400.0)
 """Rates phi_dot [rad/s] at phi = 0 of loads that loop; their mean rates span a decade, 35 to 354 rad/s."""
-_SAMPLES = 256
-"""Samples of one turn; ripples up to the 128th multiple of the rate can be measured."""
+_SAMPLES = 256  # samples of one turn; ripples up to the 128th multiple of the rate can be measured
 
 
 @dataclass(frozen=True)
 class Looping:
     """The ripples of a load that loops, over one turn."""
 
-    rate: float
-    """Mean rate Omega of phi [rad/s]."""
-    phi: np.ndarray
-    """Amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k."""
-    sway: np.ndarray
-    """Amplitudes [m] of sin(k Omega t) in u less its steady acceleration, at index k."""
+    rate: float  # mean rate Omega of phi [rad/s]
+    phi: np.ndarray  # amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k
+    sway: np.ndarray  # amplitudes [m] of sin(k Omega t) in u less its steady acceleration, at index k
 
 
 def loop(scene: Scene, phi_dot0: float) -> Looping:
