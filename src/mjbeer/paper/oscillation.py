@@ -8,18 +8,7 @@ import numpy as np
 
 from mjbeer.model.setting import DOP853
 from mjbeer.paper import witness
-from mjbeer.paper.claim import (
-    APPROXIMATION,
-    CONSEQUENCE,
-    Bound,
-    Claim,
-    Limit,
-    Misprint,
-    SceneConstants,
-    Terms,
-    Witness,
-    equation,
-)
+from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, Bound, Claim, Limit, Misprint, SceneConstants, Terms, Witness
 from mjbeer.paper.witness import DECADE, EXACT, REDUCED, Looping, cosines, frequency, simulate_motion, swing
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import INCLINE
@@ -114,8 +103,8 @@ _NEXT_ORDER = "the next order in delta = 0.22"
 CLAIMS = (
     Claim("(25)", "u - s = b sin(phi), eq. (12); printed b cos(phi)",
         Witness(REDUCED, partial(swing, 0.1)), Bound(1e-12, "rounding"),
-        equation("-b*sin_phi + (u - s)"),
-        Misprint(1.10, equation("-b*cos_phi + (u - s)"), "How far the axis is ahead of the centre of mass",
+        lambda q: (q.u - q.s, -q.b * q.sin_phi),
+        Misprint(1.10, lambda q: (q.u - q.s, -q.b * q.cos_phi), "How far the axis is ahead of the centre of mass",
             r"u-s=b\,<\cos|\sin>\,\varphi"),
         quote="u = s + b cos φ"),
     Claim("(25)", "amplitude of the ripple of u at omega: b phi_0; printed none",

@@ -160,15 +160,14 @@ STORIES = (
 """All stories, in the paper's order."""
 
 
-def plots(folder: pathlib.Path) -> list[PlotJob]:
-    """Return the plots of the stories, to be drawn into a folder."""
-    return [PlotJob(story.plot, folder / story.name) for story in STORIES]
+def letters() -> str:
+    """Return the drawing of a can with the letters of the formulas, as SVG."""
+    return pathlib.Path(__file__).with_name("letters.svg").read_text(encoding="utf-8")
 
 
 def films(folder: pathlib.Path) -> list[FilmJob]:
     """Return the films of the stories, to be drawn into a folder."""
-    filmed = [(story.film, folder / f"{story.name}.mp4") for story in STORIES if story.film is not None]
-    return [FilmJob(film, path, *SIZE) for film, path in filmed]
+    return [FilmJob(story.film, folder / f"{story.name}.mp4", *SIZE) for story in STORIES if story.film is not None]
 
 
 def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
@@ -186,9 +185,10 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     files.make_folder(folder)
     with files.atomic_write(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
-        letters = pathlib.Path(__file__).with_name("letters.svg")
-        files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))
-        jobs.produce([*([] if missing else orders), *plots(folder)], console)
+        files.write(folder / "letters.svg", letters())
+        jobs.produce(
+            [*([] if missing else orders), *(PlotJob(story.plot, folder / story.name) for story in STORIES)], console
+        )
         lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
         lines += [f"Films: {missing}", ""] if missing else []
         for story in STORIES:

@@ -9,7 +9,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.model.build import build
-from mjbeer.model.joints import joint_addresses
+from mjbeer.model.joints import joint_addresses, to_states
 from mjbeer.model.mechanics import mass_unit
 from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
 from mjbeer.paper.claim import Bound, Motion, Witness
@@ -42,8 +42,8 @@ def measure_motion(run: Trajectory) -> Motion:
     scene, timestep = run.scene, run.timestep or 1e-3
     model = build(scene, require.choice("rolling", run.rolling, ROLLINGS), integrator=DOP853, timestep=timestep)
     data = mujoco.MjData(model)
-    rows = [_evaluate(model, data, scene, run, i) for i in range(len(run.time))]
-    axis, load, turn, energy, force = (np.array(column) for column in zip(*rows, strict=True))
+    samples = [_evaluate(model, data, scene, state) for state in to_states(model, run)]
+    axis, load, turn, energy, force = (np.array(column) for column in zip(*samples, strict=True))
     energy, force = energy / mass_unit(scene), force / mass_unit(scene)
     arm = load[:, 0] - axis[:, 0]
     across = load[:, :, 2] - axis[:, :, 2]
@@ -70,21 +70,11 @@ def measure_motion(run: Trajectory) -> Motion:
     )
 
 
-def _evaluate(
-    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, run: Trajectory, i: int
-) -> tuple[np.ndarray, ...]:
-    """Return what MuJoCo computes at sample `i`: how the axis and the load's centre of mass move, the load's angular
+def _evaluate(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, state: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return what MuJoCo computes in a state: how the axis and the load's centre of mass move, the load's angular
     velocity and acceleration, the energies, and the constraint's force along the incline."""
-    values = {
-        "slide": (run.u[i], run.u_dot[i]),
-        "lift": (run.lift[i], run.lift_dot[i]),
-        "roll": (run.roll[i], run.roll_dot[i]),
-        "swing": (run.phi[i] - run.roll[i], run.phi_dot[i] - run.roll_dot[i]),
-        "phi": (run.phi[i], run.phi_dot[i]),
-    }
+    data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
     names = joint_addresses(model)
-    for name in names:
-        data.joint(name).qpos[0], data.joint(name).qvel[0] = values[name]
     mujoco.mj_forward(model, data)
     mujoco.mj_energyPos(model, data)
     mujoco.mj_energyVel(model, data)

@@ -78,7 +78,7 @@ def html(
     scenes, summary = {name: _scene(name, films.get(name)) for name in FILMS}, stability_maps.summary(maps).values()
     wrong, others = _misprints(validation), [name for name in stability_maps.FIGURES if name not in _MAP]
     return environment.get_template("page.html").render(
-        sketch=pathlib.Path(stories.__file__).with_name("letters.svg").read_text(encoding="utf-8"),
+        sketch=stories.letters(),
         races=[scenes.pop(name) for name in RACES],
         films=list(scenes.values()),
         not_drawn=not_drawn,
