@@ -102,15 +102,3 @@ def test_without_opengl_the_films_are_missing_and_named(
     assert f"Films: {line}\n" in text
     assert "[Film]" not in text
     assert capsys.readouterr().err.endswith(f"{line}\n")
-
-
-def test_a_film_that_fails_or_a_folder_that_cannot_be_written_to_leaves_no_summary(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
-    stubs.draw(monkeypatch, fail_at="told.mp4")
-    (tmp_path / "stories.md").write_text("of an earlier run")
-    assert main(["paper", "--films", "--output", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.endswith("mjbeer: cannot draw told.mp4\n")
-    assert set(os.listdir(tmp_path)) == SKETCH
-    assert main(["paper", "--output", str(tmp_path / "letters.svg")]) == 2
-    assert "mjbeer: cannot write" in capsys.readouterr().err
