@@ -10,7 +10,7 @@ import pytest
 from mjbeer import exact
 from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
-from mjbeer.drawing.film import Film, Take
+from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
@@ -39,7 +39,7 @@ def motions(film: Film) -> list[Trajectory]:
     """The motions of a film: one, or those of the cans that it compares."""
     if isinstance(film, Race):
         return [runner.trajectory for runner in film.runners()]
-    assert isinstance(film, Take)
+    assert isinstance(film, MotionFilm)
     return [film.trajectory()]
 
 

@@ -15,7 +15,7 @@ from mjbeer import paper
 from mjbeer.checks import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
-from mjbeer.drawing.film import Take
+from mjbeer.drawing.film import MotionFilm
 from mjbeer.output import terminal
 from mjbeer.paper.claim import CORRECTED
 from mjbeer.report import films, formulas, page
@@ -191,7 +191,7 @@ def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
     from mjbeer.cli.motions import trajectory_of
 
     film = FILMS[name]
-    assert isinstance(film, Take)
+    assert isinstance(film, MotionFilm)
     given = parse(shlex.split(films.COMMANDS[name])[1:])
     ours, theirs = film.trajectory(), trajectory_of(given)
     assert (ours.phi0, ours.phi_dot0) == pytest.approx(

@@ -73,7 +73,7 @@ class Film(Protocol):
 
 
 @dataclass(frozen=True)
-class Take:
+class MotionFilm:
     """The film of a motion."""
 
     trajectory: Callable[[], Trajectory]  # a function that computes the motion, and that can be pickled

@@ -12,7 +12,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS, Camera
-from mjbeer.drawing.film import RenderPlan, Take
+from mjbeer.drawing.film import MotionFilm, RenderPlan
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.sheet import require_pixels
 from mjbeer.exceptions import ParameterError, RenderingError
@@ -144,4 +144,4 @@ def _failure(said: str) -> RenderingError:
 def _plan(trajectory: Trajectory, camera: Camera, speed: float) -> RenderPlan:
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
-    return Take(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
+    return MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from rich.console import Console
 
-from mjbeer.drawing import opengl, studio
-from mjbeer.drawing.film import Film, Take
+from mjbeer.drawing import jobs, opengl
+from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.jobs import FilmJob, PlotJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
-from mjbeer.drawing.studio import Filmed, Plotted
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
 from mjbeer.output.plots import chart
@@ -88,7 +88,7 @@ STORIES = (
         "the frequency. It is drawn without its constant, and from the same start.",
         (1, 1, 7.5, 5),
         plots_sliding.draw_hesitation,
-        Take(
+        MotionFilm(
             plots_sliding.HESITATION,
             speed=0.1,
             look=Look("A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost")),
@@ -105,7 +105,7 @@ STORIES = (
         "first order, and only near the truth when the beer is slow.",
         (1, 2, 11, 5.2),
         plots_sliding.draw_looping,
-        Take(
+        MotionFilm(
             plots_sliding.LOOPING,
             speed=0.1,
             look=Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces")),
@@ -140,7 +140,7 @@ STORIES = (
         "Footnote 8's equation as printed has ½ a b in place of a b, and gives another swing.",
         (2, 1, 7.5, 7),
         plots_frozen.draw_rocking,
-        Take(
+        MotionFilm(
             plots_frozen.ROCKING,
             speed=0.5,
             look=Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths")),
@@ -165,7 +165,7 @@ STORIES = (
         "and then it hops, 7 mm high.",
         (2, 1, 7.5, 7),
         plots_frozen.draw_slip_and_hop,
-        Take(
+        MotionFilm(
             plots_frozen.PARTING,
             speed=0.04,
             still=0.9,
@@ -196,15 +196,15 @@ STORIES = (
 """All stories, in the paper's order."""
 
 
-def plots(folder: pathlib.Path) -> list[Plotted]:
+def plots(folder: pathlib.Path) -> list[PlotJob]:
     """Return the plots of the stories, to be drawn into a folder."""
-    return [Plotted(story.plot, folder / story.name) for story in STORIES]
+    return [PlotJob(story.plot, folder / story.name) for story in STORIES]
 
 
-def films(folder: pathlib.Path) -> list[Filmed]:
+def films(folder: pathlib.Path) -> list[FilmJob]:
     """Return the films of the stories, to be drawn into a folder."""
     filmed = [(story.film, folder / f"{story.name}.mp4") for story in STORIES if story.film is not None]
-    return [Filmed(film, path, *SIZE) for film, path in filmed]
+    return [FilmJob(film, path, *SIZE) for film, path in filmed]
 
 
 def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
@@ -224,7 +224,7 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
         (folder / "stories.md").unlink(missing_ok=True)
         letters = pathlib.Path(__file__).with_name("letters.svg")
         files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))
-        studio.produce([*([] if missing else orders), *plots(folder)], console)
+        jobs.produce([*([] if missing else orders), *plots(folder)], console)
         lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
         lines += [f"Films: {missing}", ""] if missing else []
         for story in STORIES:

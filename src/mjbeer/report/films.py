@@ -4,17 +4,17 @@ import math
 import pathlib
 from functools import partial
 
-from mjbeer.drawing.film import Take
+from mjbeer.drawing.film import MotionFilm
+from mjbeer.drawing.jobs import FilmJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
-from mjbeer.drawing.studio import Filmed
 from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
-FILMS: dict[str, Race | Take | Carry] = {
+FILMS: dict[str, Race | MotionFilm | Carry] = {
     "race": Race(
         "Which can wins?",
         races.of_beer,
@@ -35,7 +35,7 @@ FILMS: dict[str, Race | Take | Carry] = {
         hurry=15,
         facts="all cans ¾ full, let go with a level surface",
     ),
-    "sliding": Take(
+    "sliding": MotionFilm(
         partial(simulate, sliding(can=races.METAL), 1.2, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="Half a can of beer, let go at φ = 60°. The beer slides in its can without friction and swings. The "
@@ -44,7 +44,7 @@ FILMS: dict[str, Race | Take | Carry] = {
         still=0.4,
         look=Look("Half a can of beer that slides in it", ("phi", "ahead"), ("phi", "ghost")),
     ),
-    "frozen": Take(
+    "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
         speed=0.2,
         caption="The beer is frozen to the can and let go with the beer on top: it rolls down ever faster, in jerks. "
@@ -52,7 +52,7 @@ FILMS: dict[str, Race | Take | Carry] = {
         still=0.55,
         look=Look("Frozen beer, let go with the beer on top", ("u", "normal"), ("phi", "paths", "forces")),
     ),
-    "pendulum": Take(
+    "pendulum": MotionFilm(
         partial(simulate, pendulum(), 1.5, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="A hoop wheel with a pendulum on its axle, let go at φ = 60°. The wheel goes to and fro about the "
@@ -60,7 +60,7 @@ FILMS: dict[str, Race | Take | Carry] = {
         still=0.4,
         look=Look("A pendulum on the axle of a wheel", ("phi", "ahead"), ("phi", "ghost")),
     ),
-    "hoop": Take(
+    "hoop": MotionFilm(
         partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
         speed=0.1,
         caption="A light hoop with a heavy bar on its rim, pushed at 16 rad/s with the bar on top, on level ground. "
@@ -87,7 +87,7 @@ _SMALL, _WIDE = (640, 360, 25), (1152, 648, 25)
 """Width and height [pixels] and pictures per second in a quick report, and of a race, which has the page's width."""
 
 
-def orders(folder: pathlib.Path, quick: bool) -> list[Filmed]:
+def orders(folder: pathlib.Path, quick: bool) -> list[FilmJob]:
     """Return the films of the scenes, to be drawn into a folder."""
     sizes = {name: _SMALL if quick else _WIDE if name in RACES else stories.SIZE for name in FILMS}
-    return [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
+    return [FilmJob(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]

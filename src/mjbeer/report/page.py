@@ -14,8 +14,8 @@ from markupsafe import Markup, escape
 
 from mjbeer import paper
 from mjbeer.checks import Result
-from mjbeer.drawing.film import Take
-from mjbeer.drawing.studio import Plotted
+from mjbeer.drawing.film import MotionFilm
+from mjbeer.drawing.jobs import PlotJob
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.paper.claim import Claim
@@ -52,13 +52,13 @@ class Shown:
         return self.plot is not None and self.plot.width > _WIDE
 
 
-def plots(folder: pathlib.Path) -> list[Plotted]:
+def plots(folder: pathlib.Path) -> list[PlotJob]:
     """Return the plots of the page that are not those of the stories, by the names of files in a folder."""
     benchmark = Benchmark.load(SHIPPED)
     scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
     drawn = {f"error-{case}": partial(work_precision.draw, scene) for case, scene in scenes.items()}
     return [
-        Plotted(draw, folder / name, in_memory=True)
+        PlotJob(draw, folder / name, in_memory=True)
         for name, draw in (drawn | stability_maps.figures(stability_maps.load())).items()
     ]
 
@@ -141,7 +141,7 @@ def _scene(name: str, drawn: Film | None) -> Shown:
     """Return a film of the scenes, or what there is of it if it was not drawn."""
     film = FILMS[name]
     command = f"{COMMANDS[name]} --output {name}.mp4" if name in COMMANDS else "mjbeer report"
-    head = film.look if isinstance(film, Take) else film
+    head = film.look if isinstance(film, MotionFilm) else film
     return Shown(name, head.title if head else name, film.caption, command, film=drawn)
 
 

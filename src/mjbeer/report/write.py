@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 from rich.console import Console
 
-from mjbeer.drawing import opengl, studio
+from mjbeer.drawing import jobs, opengl
 from mjbeer.output import files
 from mjbeer.paper import stories
 from mjbeer.report import films, page
@@ -37,7 +37,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         # The checks take longest, and compile what the films run; plots are quick.
         checks = SimpleNamespace(path=path / "checks", write=partial(validate, None))
         orders = [checks, *drawn, *told, *plots]
-        validation, *made = studio.produce(orders, console)
+        validation, *made = jobs.produce(orders, console)
         still = {order.path: poster for order, poster in zip(drawn + told, made, strict=False)}
         scenes, filmed = (
             {each.path.stem: (each.path.read_bytes(), still[each.path]) for each in of} for of in (drawn, told)
