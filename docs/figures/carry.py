@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer.exceptions import LiquidWarning
 from mjbeer.output import plots
-from mjbeer.simulation.carry import Carried, carry
+from mjbeer.report.carry import Carried, carry
 from mjbeer.theory.standing import INDICATIVE, standing
 
 DISTANCE, MOVE, AFTER = 0.4, 1.0, 1.0

@@ -53,13 +53,13 @@ class Recorder(Sheet):
         return super().text(place, words, *arguments, **more)
 
 
-def drawn(motion: Trajectory, kind: Mark, time: float) -> tuple[Recorder, View, np.ndarray]:
-    """Draw a mark, and return the sheet, the view, and the coordinates at that time."""
+def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
+    """Draw marks, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
     view = CameraPath.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
-    Marks(motion, (kind,), PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
+    Marks(motion, kinds, PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
     return sheet, view, now
 
 
@@ -84,7 +84,7 @@ def differ(one: float, other: float) -> float:
 def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float) -> None:
     """One line is along the incline, or across it over a bob; the other is turned by phi, clockwise."""
     motion = exact(make(), TIMES, phi)
-    sheet, _, _ = drawn(motion, "phi", 0.0)
+    sheet, _, _ = drawn(motion, 0.0, "phi")
     first, second, arc = sheet.lines
     along = -motion.scene.incline + (math.pi / 2 if motion.scene.load.fill is None else 0.0)
     assert min(differ(direction(first), along), differ(direction(first), along + math.pi)) < ROUNDING
@@ -98,7 +98,7 @@ def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float)
 @pytest.mark.parametrize("make", [frozen, sliding, pendulum, hoop])
 def test_paths_are_those_of_fig_3(make: Any) -> None:
     motion = exact(make(), TIMES, 2.0)
-    sheet, view, (u, phi, roll, _) = drawn(motion, "paths", 0.3)
+    sheet, view, (u, phi, roll, _) = drawn(motion, 0.3, "paths")
     rim, centre = sheet.lines
     a, b = motion.scene.can.radius, motion.scene.load.offset
     load = place(motion, view, u - b * math.sin(phi), a - b * math.cos(phi))
@@ -111,7 +111,7 @@ def test_paths_are_those_of_fig_3(make: Any) -> None:
 
 def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     motion = exact(frozen(), TIMES, 2.0)
-    sheet, view, (u, *_) = drawn(motion, "forces", 0.1)
+    sheet, view, (u, *_) = drawn(motion, 0.1, "normal", "friction")
     (tail, head), (start, end) = sheet.arrows
     assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)  # under the drawn wall
     assert differ(direction(np.array([tail, head])), math.pi / 2 - motion.scene.incline) < ROUNDING
@@ -128,7 +128,7 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
 def test_the_ghost_is_where_even_acceleration_has_it() -> None:
     """s = g sin(alpha) t^2/2 in a massless can, eq. (9); the can itself is b sin(phi) ahead."""
     motion = exact(sliding(), TIMES, 1.0)
-    sheet, view, (u, phi, _, _) = drawn(motion, "ghost", 0.4)
+    sheet, view, (u, phi, _, _) = drawn(motion, 0.4, "ghost")
     ring = sheet.lines[0]
     middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
     even = 9.81 * math.sin(motion.scene.incline) * 0.4**2 / 2
@@ -141,7 +141,7 @@ def guided(scene: Scene, times: np.ndarray, camera: Camera) -> tuple[Recorder, B
     board = Board.of(scene, display.model)
     view = CameraPath.fit(scene, camera, times, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
     sheet = Recorder(*PIXELS)
-    guides(sheet, board, view, 0, UNIT)
+    guides(sheet, board, view, 0)
     return sheet, board, view
 
 

@@ -9,11 +9,11 @@ from functools import cached_property, partial
 import numpy as np
 from scipy.optimize import brentq
 
-from mjbeer.drawing.camera import View, in_space
+from mjbeer.drawing.camera import View, in_space, scale
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet
+from mjbeer.drawing.sheet import INK, Colour, Sheet
 from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.drawing.words import in_degrees
 from mjbeer.exceptions import ParameterError
@@ -95,6 +95,7 @@ class Race:
     hurry: float = 1.0  # how many times faster time runs once all cans but the last have finished
     facts: str = ""  # what holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title
     strips: tuple[str, ...] = ()  # names of the quantities in the charts
+    caveat: str = ""  # what is not so in reality; it stands at the bottom of the scene
 
     @property
     def caption(self) -> str:
@@ -134,8 +135,8 @@ class Race:
     def _pictures(
         self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
-        sheet, unit, scenes = Sheet(width, height), height / UNITS, [runner.trajectory.scene for runner in runners]
-        top, below = round(HEIGHT * unit), round(STRIP * unit) if self.strips else 0
+        sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
+        top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit) if self.strips else 0
         display = Display.of(scenes, _APART)
         scenery = Scenery(scenes[0], display.model, (0.0,) if self.strips else (0.0, self.length))
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
@@ -148,18 +149,27 @@ class Race:
         facts = [f"{self.length:g} m"] * (not below) + [f"incline {in_degrees(scenes[0].incline)}"]
         words = self.title, ", ".join(facts + [self.facts] * bool(self.facts))
         results = {} if below else self._results(runners)
+        starts = [runner.trajectory.u[0] * bool(below) for runner in runners]  # in a race all start at one line
         with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
             for time in times:
                 sheet.boxes.clear()
                 now = np.concatenate([runner.positions(np.array([time])) for runner in runners])
+                now[:, 0] += starts
                 painter.paint(sheet, view, now, top)
-                head(sheet, words, time, later[1] if time >= later[0] else self.speed, unit)
-                for runner, lane in zip(runners, display.lanes, strict=True):
+                head(sheet, words, time, later[1] if time >= later[0] else self.speed)
+                for runner, lane, u in zip(runners, display.lanes, now[:, 0] * scale(scenes[0]), strict=True):
                     finish, said = results.get(runner.name, (math.inf, ""))
                     if time < finish:
-                        said = f"now sped up {later[1]:.3g} times" if time >= later[0] else ""
-                    column, row = view.pixel(in_space(scenes[0], -1.6 * RADIUS, 0.0, lane))
-                    _plate(sheet, runner, said, column, row + top)
+                        said = f"now sped up {later[1]:.3g} times" if time >= later[0] else runner.note
+                    # It travels with the can, and stays at the finish.
+                    column, row = view.pixel(in_space(scenes[0], min(u, self.length) - 1.5 * RADIUS, 0.0, lane))
+                    lines = [(runner.name, True, runner.colour), (said, said != runner.note, INK)]
+                    draw_plate(sheet, lines[: 1 + bool(said)], column, row + top)
+                if below:
+                    _draw_centres(sheet, view, top, runners, display, now)
+                if self.caveat:
+                    note = sheet.unit * np.array([1.2, -1.5]) + [0, top + view.pixels[1]]
+                    sheet.text(note, self.caveat, 1.1 * sheet.unit, halo=True)
                 if strip is not None:
                     strip.draw(sheet, time, top + view.pixels[1])
                 yield sheet.picture()
@@ -180,21 +190,40 @@ class Race:
         for runner in runners:
             place = finishes.index(finish := runner.finish(self.length))
             ordinal = ("1st", "2nd", "3rd")[place] if place < 3 else f"{place + 1}th"
-            theory = runner.finish_of_theory(self.length)
-            results[runner.name] = finish, f"{ordinal}: {finish:.2f} s, theory {theory:.2f} s"
+            results[runner.name] = finish, f"{ordinal}: {finish:.2f} s"
         return results
 
 
-def _plate(sheet: Sheet, runner: Runner, said: str, right: float, middle: float) -> None:
-    """Draw a plate with a can's name, its note and what else is said, at the plate's right edge's middle."""
-    unit = sheet.height / UNITS
-    lines: list[tuple[str, float, Colour, bool]] = [(runner.name, 1.2 * unit, runner.colour, True)]
-    lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
-    lines += [(said, 1.05 * unit, INK, True)] * bool(said)
-    boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
+def _draw_centres(
+    sheet: Sheet, view: View, top: int, runners: Sequence[Runner], display: Display, now: np.ndarray
+) -> None:
+    """Mark the cans' centres of mass at their near ends, and join them."""
+    size, places = scale(runners[0].trajectory.scene), []
+    for number, (runner, (u, phi, _, lift)) in enumerate(zip(runners, now, strict=True)):
+        scene = runner.trajectory.scene
+        along, height = (
+            u - scene.load.offset * math.sin(phi),
+            lift + scene.can.radius - scene.load.offset * math.cos(phi),
+        )
+        places.append(view.pixel(in_space(scene, along * size, height * size, display.front(number)), top))
+    sheet.line(np.array(places), 0.2 * sheet.unit, INK, dashes=(3, 3))
+    for place in places:
+        sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))
+    sheet.text(places[0] + sheet.unit * np.array([1.0, 1.2]), "centre of mass", 1.1 * sheet.unit, halo=True)
+
+
+def draw_plate(sheet: Sheet, lines: Sequence[tuple[str, bool, Colour]], right: float, middle: float) -> None:
+    """Draw a plate with a name and what else is said, each with whether it is bold and its colour.
+
+    The middle of the plate's right edge is given.
+    """
+    unit, written = sheet.unit, []
+    for number, (words, bold, colour) in enumerate(lines):
+        written.append((words, (1.05 if number else 1.2) * unit, colour, bold))
+    boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in written]
     left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
     corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
     sheet.area(np.array(corners), (1.0, 1.0, 1.0), alpha=0.9)
-    for line, (words, size, colour, bold) in enumerate(lines):
+    for line, (words, size, colour, bold) in enumerate(written):
         row = middle + (line - (len(lines) - 1) / 2) * _LINE * unit
         sheet.text((left + 0.6 * unit, row), words, size, colour, bold=bold)

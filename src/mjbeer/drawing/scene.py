@@ -7,7 +7,7 @@ too small or too large for the graphics, which compute in single precision.
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import mujoco
 import numpy as np
@@ -60,6 +60,22 @@ def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     return before**2 * begin + after**2 * end
 
 
+class Posed(Protocol):
+    """What a painter draws: a model that is posed by a row of numbers for each of its cans.
+
+    The meshes that are `changing` are other ones after each pose. An outline is around a can's near and far end.
+    """
+
+    @property
+    def model(self) -> mujoco.MjModel: ...
+    @property
+    def data(self) -> mujoco.MjData: ...
+    @property
+    def changing(self) -> Sequence[int]: ...
+    def pose(self, positions: np.ndarray) -> None: ...
+    def outline(self, number: int, position: np.ndarray) -> np.ndarray: ...
+
+
 @dataclasses.dataclass(frozen=True, eq=False)
 class Display:
     """A board with cans of one size on it. Their joints are named as in the templates, with a prefix for each lane."""
@@ -68,6 +84,7 @@ class Display:
     data: mujoco.MjData
     scenes: Sequence[Scene]
     lanes: Sequence[float]  # where each can is across the board [m], away from the reader
+    changing: Sequence[int] = ()
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
@@ -165,7 +182,6 @@ class Scenery:
         sheet.clip(None)
 
     def _wall(self, sheet: Sheet, view: View, top: int) -> None:
-        shift = np.array([0, top])
         y, texture = float(self.model.geom("wall").pos[1]), self._texture("grid")
         corners = view.corners(y)
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -174,12 +190,12 @@ class Scenery:
         plumb = np.stack([np.stack([x, np.full_like(x, end)], axis=-1) for end in (low[1], high[1])], axis=1)
         level = np.stack([np.stack([np.full_like(z, end), z], axis=-1) for end in (low[0], high[0])], axis=1)
         lines = np.insert(np.concatenate([plumb, level]), 1, y, axis=-1)
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)) + shift, self._lit(texture[64, 64], _NEAR, view))
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1), top), self._lit(texture[64, 64], _NEAR, view))
         width = 2 * _SQUARE / len(texture) * view.scale(np.insert(low, 1, y))
-        sheet.line(_apart(view.pixel(lines) + shift), width, self._lit(texture[0, 0], _NEAR, view))
+        sheet.line(_apart(view.pixel(lines, top)), width, self._lit(texture[0, 0], _NEAR, view))
 
     def _board(self, sheet: Sheet, view: View, top: int) -> None:
-        board, texture, shift = self.model.geom("board"), self._texture("planks"), np.array([0, top])
+        board, texture = self.model.geom("board"), self._texture("planks")
         (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
         seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(self.scene, 1.0, 0.0)
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
@@ -192,7 +208,7 @@ class Scenery:
                 """Return the places of the parts of this face that begin somewhere down the incline."""
                 ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
                 points = [in_space(self.scene, along, z, y) for along, (y, z) in ends]
-                return _apart(view.pixel(np.stack(points, axis=1)) + shift)
+                return _apart(view.pixel(np.stack(points, axis=1), top))
 
             if (view.eye - in_space(self.scene, 0.0, one[1], one[0])) @ normal <= 0:
                 continue
@@ -200,6 +216,19 @@ class Scenery:
             sheet.area(bands(dark, _STRIPE), self._lit(texture[16, 48], normal, view))
             if len(self.lines) and normal is up:
                 sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(255 * _PAINT, normal, view))
+
+    def shade(self, sheet: Sheet, view: View, outline: np.ndarray, top: int) -> None:
+        """Draw the shadow on the board of a can whose ends have an outline, as `Display.outline` gives it."""
+        (along, up), light = in_space(self.scene, np.eye(2)[0], np.eye(2)[1], 0.0), self.model.light_dir[0]
+        surface = float(self.model.geom("board").pos[2] + self.model.geom("board").size[2])
+        fallen = outline - np.multiply.outer((outline @ up - surface) / (light @ up), light)
+        near, far = ([ring[(ring @ along).argmin()], ring[(ring @ along).argmax()]] for ring in fallen)
+        corners = np.array([*near, *far[::-1]])
+        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
+        for share in (0.8, 0.95):
+            shape = corners.mean(axis=0) + share * (corners - corners.mean(axis=0))
+            sheet.area(view.pixel(shape, top), (0.25, 0.15, 0.05), alpha=0.16)
+        sheet.clip(None)
 
     def _texture(self, name: str) -> np.ndarray:
         """Return the texture of a name, shape (height, width, 3)."""
@@ -226,7 +255,7 @@ class Painter:
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
-    def __init__(self, display: Display, scenery: Scenery, width: int, height: int, still: bool) -> None:
+    def __init__(self, display: Posed, scenery: Scenery, width: int, height: int, still: bool) -> None:
         """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
 
         Raises:
@@ -255,6 +284,11 @@ class Painter:
         else:
             sheet.put(self._empty, 0, top)
         self._display.pose(positions)
+        self._gl.make_current()
+        for mesh in self._display.changing:
+            mujoco.mjr_uploadMesh(self._display.model, self._context, mesh)
+        for number, position in enumerate(positions):
+            self._scenery.shade(sheet, view, self._display.outline(number, position), top)
         for number, position in reversed(list(enumerate(positions))):  # the nearest at last
             left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
             if right > left and lower > upper:
