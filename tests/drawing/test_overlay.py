@@ -1,6 +1,7 @@
 """What is drawn at the can is what it says: the angle, the paths, the forces, and even acceleration."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,9 @@ import pytest
 
 from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
 from mjbeer.drawing.camera import Camera, CameraPath, View, on_incline, scale
-from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides
+from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides, head
 from mjbeer.drawing.scene import Display, coordinates
-from mjbeer.drawing.sheet import Box, Sheet
+from mjbeer.drawing.sheet import Box, Sheet, overlap
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
@@ -179,3 +180,35 @@ def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -
     for number, tick in zip(numbers, ticks, strict=True):
         x, z = on_incline(scene, number / radius * RADIUS, board.under)
         assert tick == pytest.approx(view.pixel(np.array([x, board.front, z])), abs=PIXEL)
+
+
+def test_distances_begin_where_the_can_is_let_go() -> None:
+    """Frozen beer on top begins at u = pi a; the axis has the number 0 below it there."""
+    motion, display = exact(frozen(), FEW, math.pi), Display.of([frozen()])
+    view = CameraPath.fit(motion.scene, "fixed", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    sheet = Recorder(*PIXELS)
+    guides(sheet, Board.of(motion.scene, display.model, motion.u[0]), view, 0)
+    numbers = [words for words in sheet.words if words.endswith(" m")]
+    tick = sheet.lines[2:][numbers.index("0 m")][0]
+    x, z = on_incline(motion.scene, math.pi * RADIUS, Board.of(motion.scene, display.model).under)
+    assert tick == pytest.approx(view.pixel(np.array([x, display.model.geom("board").pos[1] - 0.075, z])), abs=PIXEL)
+
+
+def test_the_gap_is_as_high_as_the_can_flies() -> None:
+    motion = replace(exact(frozen(), TIMES, 2.0), lift=np.full_like(TIMES, 0.007))
+    sheet, view, _ = drawn(motion, 0.3, "gap")
+    assert sheet.words == ["7 mm"]
+    ((tail, head),) = sheet.arrows
+    radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
+    assert np.hypot(*(head - tail)) == pytest.approx(0.007 / 0.033 * radius, rel=1e-3)  # perspective
+    assert not drawn(exact(frozen(), TIMES, 2.0), 0.3, "gap")[0].words
+
+
+@pytest.mark.parametrize("width", [640, 1280])
+def test_no_title_runs_into_the_time(width: int) -> None:
+    sheet = Recorder(width, 360)
+    head(sheet, ("a long title " * 5, "many words " * 8), 0.0, 0.25)
+    title, other = (box for box in sheet.boxes if box[0] < width / 4)
+    for box in sheet.boxes:
+        assert not overlap(box, title) or box == title
+        assert not overlap(box, other) or box == other

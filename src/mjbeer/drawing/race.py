@@ -18,7 +18,6 @@ from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.drawing.words import in_degrees
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.exact import exact
 from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
@@ -50,22 +49,10 @@ class Runner:
         """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if it ends before."""
         if self.distance[-1] < length:
             return math.inf
-        return self._when(lambda time: self.positions(np.array([time]))[0, 0] - length)
-
-    def finish_of_theory(self, length: float) -> float:
-        """Return when exact theory has the can at a `length` [m] from the start [s]; infinite where `finish` is."""
-        if self.distance_of_theory(self.trajectory.time[-1]) < length:
-            return math.inf
-        return self._when(lambda time: self.distance_of_theory(time) - length)
-
-    def _when(self, ahead: Callable[[float], float]) -> float:
-        return float(brentq(ahead, 1e-3, self.trajectory.time[-1], xtol=1e-12))
-
-    def distance_of_theory(self, time: float) -> float:
-        """Return how far exact theory has the can from the start at a `time` [s], in metres."""
-        motion = self.trajectory
-        theory = exact(motion.scene, np.array([0.0, time]), motion.phi0, motion.phi_dot0)
-        return float(theory.u[1] - theory.u[0])
+        moment = brentq(
+            lambda t: self.positions(np.array([t]))[0, 0] - length, 1e-3, self.trajectory.time[-1], xtol=1e-12
+        )
+        return float(moment)
 
     def positions(self, times: np.ndarray) -> np.ndarray:
         """Return u from the start [m], phi, roll [rad] and lift [m] at some times [s], shape (times, 4).

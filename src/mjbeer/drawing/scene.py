@@ -34,9 +34,12 @@ _RIM = 1.12  # radius of what is drawn of a can, in radii, with room for what st
 _NEAR_PLANE, _FAR_PLANE = 0.2, 20.0  # nearest and farthest that is drawn, in distances of what is looked at
 _STRIPE = math.pi / 2 * RADIUS
 """Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
-_SQUARE = 0.1
-"""Distance of the lines on the wall [m]: it repeats its texture, whose edge is a line, with x = 0 in its middle."""
+_SQUARE, _LINE = 0.1, 0.1 / 64
+"""Distance of the lines on the wall [m], with x = 0 in the middle between two, and their width."""
 _PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003  # colour of lines across the board, and half their width [m]
+_PALE, _DARK = np.array([0.94, 0.84, 0.69]), np.array([0.84, 0.71, 0.54])
+_WALL, _GRID = np.array([0.985, 0.99, 1.0]), np.array([0.84, 0.87, 0.92])
+"""Colours of the board's stripes, and of the wall and its lines, as in looks/world.xml."""
 _NEAR = np.array([0.0, -1.0, 0.0])  # unit vector towards the reader
 
 
@@ -182,7 +185,7 @@ class Scenery:
         sheet.clip(None)
 
     def _wall(self, sheet: Sheet, view: View, top: int) -> None:
-        y, texture = float(self.model.geom("wall").pos[1]), self._texture("grid")
+        y = float(self.model.geom("wall").pos[1])
         corners = view.corners(y)
         low, high = corners.min(axis=0), corners.max(axis=0)
         ranges = np.floor(np.stack([low, high], axis=1) / _SQUARE + 0.5)
@@ -190,12 +193,12 @@ class Scenery:
         plumb = np.stack([np.stack([x, np.full_like(x, end)], axis=-1) for end in (low[1], high[1])], axis=1)
         level = np.stack([np.stack([np.full_like(z, end), z], axis=-1) for end in (low[0], high[0])], axis=1)
         lines = np.insert(np.concatenate([plumb, level]), 1, y, axis=-1)
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1), top), self._lit(texture[64, 64], _NEAR, view))
-        width = 2 * _SQUARE / len(texture) * view.scale(np.insert(low, 1, y))
-        sheet.line(_apart(view.pixel(lines, top)), width, self._lit(texture[0, 0], _NEAR, view))
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1), top), self._lit(_WALL, _NEAR, view))
+        width = _LINE * view.scale(np.insert(low, 1, y))
+        sheet.line(_separated(view.pixel(lines, top)), width, self._lit(_GRID, _NEAR, view))
 
     def _board(self, sheet: Sheet, view: View, top: int) -> None:
-        board, texture = self.model.geom("board"), self._texture("planks")
+        board = self.model.geom("board")
         (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
         seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(self.scene, 1.0, 0.0)
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
@@ -208,43 +211,37 @@ class Scenery:
                 """Return the places of the parts of this face that begin somewhere down the incline."""
                 ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
                 points = [in_space(self.scene, along, z, y) for along, (y, z) in ends]
-                return _apart(view.pixel(np.stack(points, axis=1), top))
+                return _separated(view.pixel(np.stack(points, axis=1), top))
 
             if (view.eye - in_space(self.scene, 0.0, one[1], one[0])) @ normal <= 0:
                 continue
-            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(texture[16, 16], normal, view))
-            sheet.area(bands(dark, _STRIPE), self._lit(texture[16, 48], normal, view))
+            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(_PALE, normal, view))
+            sheet.area(bands(dark, _STRIPE), self._lit(_DARK, normal, view))
             if len(self.lines) and normal is up:
-                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(255 * _PAINT, normal, view))
+                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(_PAINT, normal, view))
 
     def shade(self, sheet: Sheet, view: View, outline: np.ndarray, top: int) -> None:
         """Draw the shadow on the board of a can whose ends have an outline, as `Display.outline` gives it."""
-        (along, up), light = in_space(self.scene, np.eye(2)[0], np.eye(2)[1], 0.0), self.model.light_dir[0]
-        surface = float(self.model.geom("board").pos[2] + self.model.geom("board").size[2])
-        fallen = outline - np.multiply.outer((outline @ up - surface) / (light @ up), light)
+        along, up = in_space(self.scene, np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
+        light, board = self.model.light_dir[0], self.model.geom("board")
+        fallen = outline - np.multiply.outer((outline @ up - board.pos[2] - board.size[2]) / (light @ up), light)
         near, far = ([ring[(ring @ along).argmin()], ring[(ring @ along).argmax()]] for ring in fallen)
         corners = np.array([*near, *far[::-1]])
+        middle = corners.mean(axis=0)
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
-        for share in (0.8, 0.95):
-            shape = corners.mean(axis=0) + share * (corners - corners.mean(axis=0))
-            sheet.area(view.pixel(shape, top), (0.25, 0.15, 0.05), alpha=0.16)
+        for share in (0.8, 0.95):  # its edge is soft
+            sheet.area(view.pixel(middle + share * (corners - middle), top), (0.25, 0.15, 0.05), alpha=0.16)
         sheet.clip(None)
-
-    def _texture(self, name: str) -> np.ndarray:
-        """Return the texture of a name, shape (height, width, 3)."""
-        texture = self.model.tex(name)
-        shape = int(texture.height[0]), int(texture.width[0]), int(texture.nchannel[0])
-        return self.model.tex_data[int(texture.adr[0]) :][: math.prod(shape)].reshape(shape)
 
     def _lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> tuple[float, float, float]:
         """Return the colour of a face that is turned to a `normal`, lit by the sun and from the eye."""
         head, sun = self.model.vis.headlight, self.model.light_diffuse[0] * max(0.0, -normal @ self.model.light_dir[0])
         light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
-        red, green, blue = np.minimum(colour / 255 * light, 1.0).tolist()
+        red, green, blue = np.minimum(colour * light, 1.0).tolist()
         return red, green, blue
 
 
-def _apart(shapes: np.ndarray) -> np.ndarray:
+def _separated(shapes: np.ndarray) -> np.ndarray:
     """Return places of several lines or polygons of shape (n, k, 2) as one path, with gaps (NaN)."""
     return np.concatenate([shapes, np.full_like(shapes[:, :1], np.nan)], axis=1).reshape(-1, 2)
 

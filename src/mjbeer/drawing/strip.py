@@ -44,8 +44,6 @@ class Line:
     values: np.ndarray  # values at these times
     colour: tuple[float, float, float] | None = None
     """Its colour; None for theory's line, which is seen from the beginning."""
-    possible: float = math.inf
-    """Time [s] from which the line is dotted, because the motion is possible only if the incline can pull."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +69,8 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         title, values, limits = QUANTITIES[name]
         lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
         if theory is not None:
-            lines.append(Line("theory", theory.time, values(theory.scene, theory), possible=theory.rolls_until()))
+            rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
+            lines.append(Line("theory", theory.time[rolls], values(theory.scene, theory)[rolls]))
         if name == "normal" and trajectory.rolling == "contact":
             title += f", mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
         if (peak := lines[0].values.max()) > limits.get("high", math.inf):
@@ -241,17 +240,9 @@ class Strip:
         """Draw a chart but for the lines that are to be seen up to now only, and return those."""
         unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
-            possible = line.time <= line.possible
-            style: dict[str, Any] = {
-                "color": line.colour or _THEORY,
-                "linewidth": (0.18 if line.colour else 0.5) * unit,
-                "animated": line.colour is not None,
-            }
-            panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
-            if not possible.all():
-                style |= {"linestyle": ":", "linewidth": 0.25 * unit}
-                label = f"{line.name}, if held down"
-                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style, label=label)
+            style: dict[str, Any] = {"color": line.colour or _THEORY, "animated": line.colour is not None}
+            width = (0.18 if line.colour else 0.5) * unit
+            panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
         for first, last in self._marked:
             panel.axvspan(first, last, color=_MARKED, linewidth=0)
         panel.set_title(chart.title, fontsize=self._letters, loc="left", pad=0.45 * unit)
