@@ -44,7 +44,7 @@ def test_the_liquid_is_the_cut_of_the_can_by_its_surface(fill: float, tilt: floa
 def test_a_tilted_surface_is_drawn_where_it_is() -> None:
     """What MuJoCo's model of the picture has: each can in its lane, and the highest point of its liquid at the wall."""
     can = standing()
-    cans = CarriedCans(can, [(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 0.3)
+    cans = CarriedCans.held(can, [(1.0, 0.0, 0.0), (0.0, 0.0, 1.0)], 0.3)
     cans.pose(np.array([[0.1, 0.2], [0.3, -0.1]]))
     for number, (prefix, x, rise) in enumerate((("", 0.1, 0.2), ("1-", 0.3, -0.1))):
         geom = next(each for each in range(cans.model.ngeom) if cans.model.geom_dataid[each] == cans.changing[number])

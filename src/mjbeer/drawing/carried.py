@@ -1,7 +1,10 @@
 """Standing cans in grippers, to be drawn: cut open in front, and with a liquid whose plane surface can tilt."""
 
+import functools
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
 
 import mujoco
 import numpy as np
@@ -9,7 +12,8 @@ from scipy.optimize import brentq
 from scipy.spatial import ConvexHull, QhullError
 
 from mjbeer.drawing.camera import circle
-from mjbeer.model.build import compile_spec, specify
+from mjbeer.drawing.scene import Display, prefix, side_by_side
+from mjbeer.model.build import specify
 from mjbeer.model.looks import WALL
 from mjbeer.theory.standing import Standing
 
@@ -62,86 +66,75 @@ def cut(radius: float, length: float, fill: float, up: np.ndarray) -> tuple[np.n
     return triangles, normals
 
 
-class CarriedCans:
-    """Grippers side by side over a table, each with a can of one kind; a `Painter` draws it like a `Display`."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CarriedCans(Display):
+    """Grippers side by side over a table, each with a can of one kind."""
 
-    def __init__(self, can: Standing, colours: Sequence[tuple[float, float, float]], apart: float) -> None:
-        """Prepare grippers with pads of some colours, the nearest first, `apart` from each other [m]."""
-        self.can, self.lanes = can, [lane * apart for lane in range(len(colours))]
-        shell, radius = can.can, can.can.radius
-        self._wall, self.top = (1 + WALL) * radius, _HIGH + shell.length + 0.07
+    can: Standing
+
+    @classmethod
+    def held(cls, can: Standing, colours: Sequence[tuple[float, float, float]], apart: float) -> Self:
+        """Return grippers with pads of some colours, the nearest first, `apart` from each other [m]."""
+        lanes, length, radius = [lane * apart for lane in range(len(colours))], can.can.length, can.can.radius
+        wall, hand = (1 + WALL) * radius, length + 0.03
+        half, high = wall + 0.024, hand / 2 - 0.015
+        fingers = [([0.005, 0.01, high], side * (half - 0.01), high + 0.03) for side in (-1, 1)]
+        steel = [*fingers, ([half, 0.014, 0.008], 0, hand), ([0.014, 0.012, 0.02], 0, hand + 0.02)]
         specs = [specify(can, visuals=True) for _ in colours]
         for number, (spec, colour) in enumerate(zip(specs, colours, strict=True)):
             for geom in [each for each in spec.geoms if each.name not in ("board", "wall", "can_end")]:
                 spec.delete(geom)
-            body, box = spec.body("can"), mujoco.mjtGeom.mjGEOM_BOX
-            triangles, normals = _padded(*cut(radius, shell.length, can.fill, np.array([0.0, 0.0, 1.0])))
-            spec.add_mesh(
-                name="liquid",
-                uservert=triangles.ravel(),
-                usernormal=normals.ravel(),
-                userface=np.arange(3 * _TRIANGLES),
-                userfacenormal=np.arange(3 * _TRIANGLES),
-                inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
-            )
-            body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="liquid", material="beer", mass=0)
-            wide = math.pi * self._wall / _PLATES / 2
+            triangles, normals = _padded(*cut(radius, length, can.fill, np.array([0.0, 0.0, 1.0])))
+            liquid = spec.add_mesh(name="liquid", inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL)
+            liquid.uservert, liquid.usernormal = triangles.ravel(), normals.ravel()
+            liquid.userface = liquid.userfacenormal = np.arange(3 * _TRIANGLES)
+            add = functools.partial(spec.body("can").add_geom, type=mujoco.mjtGeom.mjGEOM_BOX)
+            add(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="liquid", material="beer")
             for angle in math.pi * (np.arange(_PLATES) + 0.5) / _PLATES:
-                place = [self._wall * math.cos(angle), self._wall * math.sin(angle), shell.length / 2]
-                quat = [math.cos(angle / 2), 0, 0, math.sin(angle / 2)]
-                size = [0.001, 1.1 * wide, shell.length / 2]
-                body.add_geom(type=box, size=size, pos=place, quat=quat, material="metal", mass=0)
-            hand, half = shell.length + 0.03, self._wall + 0.024
-            fingers = [([0.005, 0.01, hand / 2 - 0.015], side * (half - 0.01), hand / 2 + 0.015) for side in (-1, 1)]
-            for size, x, z in (*fingers, ([half, 0.014, 0.008], 0, hand), ([0.014, 0.012, 0.02], 0, hand + 0.02)):
-                body.add_geom(type=box, size=size, pos=[x, 0, z], rgba=_STEEL, mass=0)
-            for x in (-self._wall - 0.005, self._wall + 0.005):
-                body.add_geom(type=box, size=[0.004, 0.012, 0.03], pos=[x, 0, 0.06], rgba=[*colour, 1], mass=0)
+                place = [wall * math.cos(angle), wall * math.sin(angle), length / 2]
+                size = [0.001, 0.55 * math.pi * wall / _PLATES, length / 2]  # they overlap a little
+                add(size=size, pos=place, quat=[math.cos(angle / 2), 0, 0, math.sin(angle / 2)], material="metal")
+            for size, x, z in steel:
+                add(size=size, pos=[x, 0, z], rgba=_STEEL)
+            for x in (-wall - 0.005, wall + 0.005):
+                add(size=[0.004, 0.012, 0.03], pos=[x, 0, length / 2], rgba=[*colour, 1])
             for geom in spec.geoms:
                 geom.group = _UNSEEN if geom.name in ("board", "wall") else number
                 geom.contype = geom.conaffinity = 0
-        table, *others = specs
-        for number, (lane, spec) in enumerate(zip(self.lanes[1:], others, strict=True), start=1):
-            table.worldbody.add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), f"{number}-", "")
-        for plane in (table.geom("board"), table.geom("wall")):
-            plane.pos += [0, self.lanes[-1] * (0.5 if plane.name == "board" else 1), 0]
-        table.geom("board").size += [0, self.lanes[-1] / 2, 0]
-        self.model = compile_spec(table)
-        self.data = mujoco.MjData(self.model)
-        self.changing = [self.model.mesh(f"{prefix}liquid").id for prefix in self._prefixes()]
-        """Meshes that are to be uploaded again after each pose."""
-
-    def _prefixes(self) -> list[str]:
-        return [f"{number}-" if number else "" for number in range(len(self.lanes))]
+        model = side_by_side(specs, lanes)
+        changing = [model.mesh(f"{prefix(number)}liquid").id for number in range(len(lanes))]
+        return cls(model=model, data=mujoco.MjData(model), scenes=(), lanes=lanes, changing=changing, can=can)
 
     def pose(self, positions: np.ndarray) -> None:
         """Put each can at x [m], with a surface that rises at the wall ahead by so many radii: a row for each."""
-        for prefix, lane, mesh, (x, rise) in zip(self._prefixes(), self.lanes, self.changing, positions, strict=True):
-            self.data.joint(f"{prefix}free").qpos[:3] = x, lane, _HIGH
+        model, can = self.model, self.can.can
+        for number, (mesh, (x, rise)) in enumerate(zip(self.changing, positions, strict=True)):
+            self.data.joint(f"{prefix(number)}free").qpos[:3] = x, self.lanes[number], _HIGH
             up = np.array([-rise, 0.0, 1.0]) / math.hypot(rise, 1.0)
-            triangles, normals = _padded(*cut(self.can.can.radius, self.can.can.length, self.can.fill, up))
+            triangles, normals = _padded(*cut(can.radius, can.length, self.can.fill, up))
             turn = np.zeros(9)
-            mujoco.mju_quat2Mat(turn, self.model.mesh_quat[mesh])
-            for field, values in (("vert", triangles - self.model.mesh_pos[mesh]), ("normal", normals)):
-                first = getattr(self.model, f"mesh_{field}adr")[mesh]
-                kept = getattr(self.model, f"mesh_{field}")[first : first + 3 * _TRIANGLES]
-                kept[:] = values.reshape(-1, 3) @ turn.reshape(3, 3)
-        mujoco.mj_kinematics(self.model, self.data)
-        mujoco.mj_camlight(self.model, self.data)
+            mujoco.mju_quat2Mat(turn, model.mesh_quat[mesh])
+            begin, first = model.mesh_vertadr[mesh], model.mesh_normaladr[mesh]
+            vertices = (triangles - model.mesh_pos[mesh]).reshape(-1, 3) @ turn.reshape(3, 3)
+            model.mesh_vert[begin : begin + 3 * _TRIANGLES] = vertices
+            model.mesh_normal[first : first + 3 * _TRIANGLES] = normals.reshape(-1, 3) @ turn.reshape(3, 3)
+        mujoco.mj_kinematics(model, self.data)
+        mujoco.mj_camlight(model, self.data)
 
     def outline(self, number: int, position: np.ndarray) -> np.ndarray:
         """Return the corners of the near and the far side of what is around a gripper [m], shape (2, 4, 3)."""
-        side, depth = self._wall + 0.026, self._wall + 0.002
-        left, right = position[0] - side, position[0] + side
-        corners = np.array([[left, _HIGH], [right, _HIGH], [right, self.top], [left, self.top]])
-        return np.stack([np.insert(corners, 1, self.lanes[number] + y, axis=1) for y in (-depth, depth)])
+        top, wall = _HIGH + self.can.can.length + 0.07, (1 + WALL) * self.can.can.radius
+        left, right = position[0] - wall - 0.026, position[0] + wall + 0.026
+        corners = np.array([[left, _HIGH], [right, _HIGH], [right, top], [left, top]])
+        return np.stack([np.insert(corners, 1, self.lanes[number] + y, axis=1) for y in (-wall, wall)])
 
     def wall(self, number: int, x: float, rise: float) -> np.ndarray:
         """Return points [m] around the front of a can where its surface is when it has risen by so many radii."""
         turn = np.linspace(math.pi, 2 * math.pi, 24)
         height = _HIGH + self.can.height + rise * self.can.can.radius
-        across = x + self._wall * np.cos(turn), self.lanes[number] + self._wall * np.sin(turn)
-        return np.stack([*across, np.full_like(turn, height)], axis=1)
+        wall = (1 + WALL) * self.can.can.radius
+        points = [x + wall * np.cos(turn), self.lanes[number] + wall * np.sin(turn), np.full_like(turn, height)]
+        return np.stack(points, axis=1)
 
 
 def _padded(triangles: np.ndarray, normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,5 @@
 """A film of a motion: its pictures one after the other, how fast it is shown, and its caption."""
 
-import math
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass
@@ -34,8 +33,6 @@ class RenderPlan:
     speed: float  # playback speed: 1 is real time, 0.5 is half as fast
     draw: Callable[[np.ndarray, int, int], Generator[np.ndarray]]
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height, width, 3), uint8."""
-    later: tuple[float, float] = (math.inf, 1.0)
-    """A time [s] from which on the playback speed is another, and that speed."""
 
     def times(self, fps: float) -> np.ndarray:
         """Return the times [s] of the pictures at `fps` frames per second of the video.
@@ -46,16 +43,14 @@ class RenderPlan:
           ParameterError: if `fps` or `speed` is not greater than 0, or the video would have too many frames.
         """
         fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", self.speed)
-        duration, turn = self.end - self.start, min(self.end, self.later[0])
-        before = (turn - self.start) / speed
-        count = (before + (self.end - turn) / self.later[1]) * fps
+        duration = self.end - self.start
+        count = duration / speed * fps
         if count > _MOST_FRAMES:
             raise ParameterError(
                 f"a video must have at most {_MOST_FRAMES:g} frames, got {duration:g} s at {fps:g} frames per second "
                 f"and a speed of {speed:g}, which are {count:.3g}"
             )
-        seconds = np.arange(max(1, round(count))) / fps
-        return np.where(seconds <= before, self.start + speed * seconds, turn + self.later[1] * (seconds - before))
+        return self.start + speed / fps * np.arange(max(1, round(count)))
 
 
 class Film(Protocol):

@@ -182,7 +182,7 @@ class Marks:
             for level in (-WALL, height):
                 pen.line(np.array([[place, level], [place + 1.1, level]]), 0.02, INK)
             pen.arrow(np.array([place + 0.9, -WALL]), np.array([place + 0.9, height]), _SKID)
-            pen.text(np.array([place + 1.3, height / 2]), f"{1e3 * now[3]:.0f} mm", INK)
+            pen.text(np.array([place + 1.8, height / 2]), f"{1e3 * now[3]:.0f} mm", INK)
 
     def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         until = np.searchsorted(self.fine, time, side="right")

@@ -11,10 +11,9 @@ from scipy.optimize import brentq
 
 from mjbeer.drawing.camera import View, in_space, scale
 from mjbeer.drawing.film import RenderPlan
-from mjbeer.drawing.overlay import HEIGHT, STRIP, head
+from mjbeer.drawing.overlay import HEIGHT, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import INK, Colour, Sheet
-from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
 from mjbeer.drawing.words import in_degrees
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -65,10 +64,10 @@ class Runner:
 
 @dataclass(frozen=True)
 class Race:
-    """A film of several cans of one size, let go together on one incline.
+    """A film of several cans of one size, let go together on one incline; each has its time by its name at the finish.
 
-    Without `strips` it is a race: it lasts until all have reached the finish, and each then has its time by its name.
-    With them, the cans are compared by charts below the picture, for as long as all of their motions last.
+    With `centres` it is no race: the cans' centres of mass are marked and joined, from one line on, for as long as all
+    motions last.
     """
 
     title: str
@@ -77,12 +76,11 @@ class Race:
     speed: float
     told: Callable[[], str]  # a function that says what is seen, in whole sentences, for the text beside the film
     still: float
-    after: float = 0.0
-    """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
-    hurry: float = 1.0  # how many times faster time runs once all cans but the last have finished
+    after: float = 0.0  # how long it goes on after the last can that it waits for has finished [s]
+    missing: int = 0  # how many cans it does not wait for; the film then ends with the times that they will need
     facts: str = ""  # what holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title
-    strips: tuple[str, ...] = ()  # names of the quantities in the charts
     caveat: str = ""  # what is not so in reality; it stands at the bottom of the scene
+    centres: bool = False
 
     @property
     def caption(self) -> str:
@@ -96,14 +94,11 @@ class Race:
           ParameterError: if a can of a race does not finish.
         """
         runners = self.runners()
-        if self.strips:
-            end, later = min(float(runner.trajectory.time[-1]) for runner in runners), (math.inf, self.speed)
+        if self.centres:
+            end = min(float(runner.trajectory.time[-1]) for runner in runners)
         else:
-            finishes = self.finishes(runners)
-            end = finishes[-1] + self.after * self.hurry
-            later = (finishes[-2] + self.after, self.speed * self.hurry) if self.hurry != 1 else (math.inf, self.speed)
-
-        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, later), later)
+            end = self.finishes(runners)[-1 - self.missing] + self.after
+        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, end))
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
@@ -120,55 +115,42 @@ class Race:
         return sorted(runner.finish(self.length) for runner in runners)
 
     def _pictures(
-        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, width: int, height: int
+        self, runners: Sequence[Runner], end: float, times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
         sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
-        top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit) if self.strips else 0
+        top, size = round(HEIGHT * sheet.unit), scale(scenes[0])
         display = Display.of(scenes, _APART)
-        scenery = Scenery(scenes[0], display.model, (0.0,) if self.strips else (0.0, self.length))
+        scenery = Scenery(scenes[0], display.model, (0.0,) if self.centres else (0.0, self.length))
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_BEFORE * self.length, self.length)]
         outlines = [display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
         points = np.concatenate(outlines)
         eye = points.mean(axis=0) + _FAR * self.length * _EYE
-        view = View.towards(eye, points, (sheet.width, sheet.height - top - below), _MARGIN)
-        strip = Strip(self._charts(runners), sheet.width, below) if below else None
-        facts = [f"{self.length:g} m"] * (not below) + [f"incline {in_degrees(scenes[0].incline)}"]
+        view = View.towards(eye, points, (sheet.width, sheet.height - top), _MARGIN)
+        facts = [f"{self.length:g} m"] * (not self.centres) + [f"incline {in_degrees(scenes[0].incline)}"]
         words = self.title, ", ".join(facts + [self.facts] * bool(self.facts))
-        results = {} if below else self._results(runners)
-        starts = [runner.trajectory.u[0] * bool(below) for runner in runners]  # in a race all start at one line
+        results = {} if self.centres else self._results(runners)
+        starts = [runner.trajectory.u[0] * self.centres for runner in runners]  # in a race all start at one line
         with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
             for time in times:
                 sheet.boxes.clear()
                 now = np.concatenate([runner.positions(np.array([time])) for runner in runners])
                 now[:, 0] += starts
                 painter.paint(sheet, view, now, top)
-                head(sheet, words, time, later[1] if time >= later[0] else self.speed)
-                for runner, lane, u in zip(runners, display.lanes, now[:, 0] * scale(scenes[0]), strict=True):
-                    finish, said = results.get(runner.name, (math.inf, ""))
-                    if time < finish:
-                        said = f"now sped up {later[1]:.3g} times" if time >= later[0] else runner.note
+                head(sheet, words, time, self.speed)
+                for runner, lane, u in zip(runners, display.lanes, now[:, 0] * size, strict=True):
+                    finish, result = results.get(runner.name, (math.inf, ""))
+                    arrived = time >= finish or (end < finish < math.inf and time >= end - self.after)
+                    said = (result if time >= finish else f"needs {finish:.2f} s", True, INK)
+                    said = said if arrived else (runner.note, False, INK)
                     # It travels with the can, and stays at the finish.
-                    column, row = view.pixel(in_space(scenes[0], min(u, self.length) - 1.5 * RADIUS, 0.0, lane))
-                    lines = [(runner.name, True, runner.colour), (said, said != runner.note, INK)]
-                    draw_plate(sheet, lines[: 1 + bool(said)], column, row + top)
-                if below:
-                    _draw_centres(sheet, view, top, runners, display, now)
-                if self.caveat:
-                    note = sheet.unit * np.array([1.2, -1.5]) + [0, top + view.pixels[1]]
-                    sheet.text(note, self.caveat, 1.1 * sheet.unit, halo=True)
-                if strip is not None:
-                    strip.draw(sheet, time, top + view.pixels[1])
+                    along = min(u, self.length) - 1.5 * RADIUS
+                    column, row = view.pixel(in_space(scenes[0], along, 0.0, lane), top)
+                    draw_plate(sheet, [(runner.name, True, runner.colour), said][: 1 + bool(said[0])], column, row)
+                if self.centres:
+                    _join(sheet, view.pixel(np.array([display.centre(*of) for of in enumerate(now)]), top))
+                sheet.text((1.2 * sheet.unit, height - 1.5 * sheet.unit), self.caveat, 1.1 * sheet.unit, halo=True)
                 yield sheet.picture()
-
-    def _charts(self, runners: Sequence[Runner]) -> list[Chart]:
-        """Return the charts of the quantities, with a line for each can."""
-        charts = []
-        for title, values, limits in (QUANTITIES[name] for name in self.strips):
-            motions = [(runner, runner.trajectory, runner.trajectory.scene) for runner in runners]
-            lines = [Line(runner.name, run.time, values(scene, run), runner.colour) for runner, run, scene in motions]
-            charts.append(Chart(heading(title, motions[0][2]), lines, **limits))
-        return charts
 
     def _results(self, runners: Sequence[Runner]) -> dict[str, tuple[float, str]]:
         """Return when each can finishes [s], and what its plate then says, by the cans' names."""
@@ -181,19 +163,9 @@ class Race:
         return results
 
 
-def _draw_centres(
-    sheet: Sheet, view: View, top: int, runners: Sequence[Runner], display: Display, now: np.ndarray
-) -> None:
-    """Mark the cans' centres of mass at their near ends, and join them."""
-    size, places = scale(runners[0].trajectory.scene), []
-    for number, (runner, (u, phi, _, lift)) in enumerate(zip(runners, now, strict=True)):
-        scene = runner.trajectory.scene
-        along, height = (
-            u - scene.load.offset * math.sin(phi),
-            lift + scene.can.radius - scene.load.offset * math.cos(phi),
-        )
-        places.append(view.pixel(in_space(scene, along * size, height * size, display.front(number)), top))
-    sheet.line(np.array(places), 0.2 * sheet.unit, INK, dashes=(3, 3))
+def _join(sheet: Sheet, places: np.ndarray) -> None:
+    """Mark centres of mass, of which the first is the nearest, and join them."""
+    sheet.line(places, 0.2 * sheet.unit, INK, dashes=(3, 3))
     for place in places:
         sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))
     sheet.text(places[0] + sheet.unit * np.array([1.0, 1.2]), "centre of mass", 1.1 * sheet.unit, halo=True)

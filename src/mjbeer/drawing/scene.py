@@ -7,7 +7,7 @@ too small or too large for the graphics, which compute in single precision.
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
@@ -63,22 +63,6 @@ def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     return before**2 * begin + after**2 * end
 
 
-class Posed(Protocol):
-    """What a painter draws: a model that is posed by a row of numbers for each of its cans.
-
-    The meshes that are `changing` are other ones after each pose. An outline is around a can's near and far end.
-    """
-
-    @property
-    def model(self) -> mujoco.MjModel: ...
-    @property
-    def data(self) -> mujoco.MjData: ...
-    @property
-    def changing(self) -> Sequence[int]: ...
-    def pose(self, positions: np.ndarray) -> None: ...
-    def outline(self, number: int, position: np.ndarray) -> np.ndarray: ...
-
-
 @dataclasses.dataclass(frozen=True, eq=False)
 class Display:
     """A board with cans of one size on it. Their joints are named as in the templates, with a prefix for each lane."""
@@ -87,7 +71,7 @@ class Display:
     data: mujoco.MjData
     scenes: Sequence[Scene]
     lanes: Sequence[float]  # where each can is across the board [m], away from the reader
-    changing: Sequence[int] = ()
+    changing: Sequence[int] = ()  # meshes that are other ones after each pose
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
@@ -107,23 +91,15 @@ class Display:
             for geom in spec.geoms:
                 of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
                 geom.group = number % _UNSEEN if of_can else _UNSEEN
-        board, *others = specs
-        for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
-            spec.option.tolerance = board.option.tolerance  # nothing is stepped here
-            board.body("incline").add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
-        planks, wall = board.geom("board"), board.geom("wall")
-        planks.pos += [0, lanes[-1] / 2, 0]
-        planks.size += [0, lanes[-1] / 2, 0]
-        wall.pos += [0, lanes[-1], 0]
-        model = compile_spec(board)
+        model = side_by_side(specs, lanes)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 
     def paint(self, labels: Sequence[Colour], loads: Sequence[Colour | None]) -> None:
         """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
         for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
-            self.model.mat(_prefix(number) + "label").rgba[:3] = label
+            self.model.mat(prefix(number) + "label").rgba[:3] = label
             for name, share in (("load", 0.0), ("foam", _PALER)):
-                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, _prefix(number) + name)
+                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, prefix(number) + name)
                 if load is not None and geom >= 0:
                     self.model.mat_rgba[self.model.geom_matid[geom], :3] = np.array(load) * (1 - share) + share
 
@@ -133,7 +109,7 @@ class Display:
         for number, (scene, (u, phi, roll, lift)) in enumerate(zip(self.scenes, positions, strict=True)):
             values = {"slide": u * scale(scene), "lift": lift * scale(scene), "roll": roll, "swing": phi - roll}
             for name, value in values.items():
-                if (joint := _prefix(number) + name) in joints:
+                if (joint := prefix(number) + name) in joints:
                     self.data.joint(joint).qpos[:] = value
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
@@ -152,9 +128,31 @@ class Display:
         ring = centre + circle(_RIM * RADIUS)
         return np.stack([np.insert(ring, 1, y, axis=1) for y in (near, near + self._length(number))])
 
+    def centre(self, number: int, position: np.ndarray) -> np.ndarray:
+        """Return where the near end of a can has the centre of mass of its load [m], for its u, phi, roll and lift."""
+        scene, (u, phi, _, lift) = self.scenes[number], position
+        along, height = u - scene.load.offset * math.sin(phi), lift - scene.load.offset * math.cos(phi)
+        size = scale(scene)
+        return in_space(scene, along * size, RADIUS + height * size, self.front(number))
 
-def _prefix(number: int) -> str:
+
+def prefix(number: int) -> str:
+    """Return with what the names begin that belong to a lane."""
     return f"{number}-" if number else ""
+
+
+def side_by_side(specs: Sequence[mujoco.MjSpec], lanes: Sequence[float]) -> mujoco.MjModel:
+    """Return a model with the board of the first of some specifications, and the cans of all of them in lanes."""
+    first, *others = specs
+    parent = first.body("incline") or first.worldbody
+    for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+        spec.option.tolerance = first.option.tolerance  # nothing is stepped here
+        parent.add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), prefix(number), "")
+    board, wall = first.geom("board"), first.geom("wall")
+    board.pos += [0, lanes[-1] / 2, 0]
+    board.size += [0, lanes[-1] / 2, 0]
+    wall.pos += [0, lanes[-1], 0]
+    return compile_spec(first)
 
 
 def _resize(scene: Scene) -> Scene:
@@ -252,7 +250,7 @@ class Painter:
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
-    def __init__(self, display: Posed, scenery: Scenery, width: int, height: int, still: bool) -> None:
+    def __init__(self, display: Display, scenery: Scenery, width: int, height: int, still: bool) -> None:
         """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
 
         Raises:

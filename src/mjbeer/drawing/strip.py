@@ -75,14 +75,10 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
             title += f", mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
         if (peak := lines[0].values.max()) > limits.get("high", math.inf):
             title += f", up to {peak:.0f}"
-        drawn.append(Chart(heading(title, trajectory.scene), lines, **limits))
+        if not trajectory.scene.incline:
+            title = title.replace("down the incline", "along the ground")
+        drawn.append(Chart(title, lines, **limits))
     return drawn
-
-
-def heading(title: str, scene: Scene) -> str:
-    """Return a chart's title, which speaks of the ground where it is level."""
-    level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
-    return title if scene.incline else level
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:
@@ -143,11 +139,6 @@ Quantity = tuple[str, Callable[[Scene, Coordinates], np.ndarray], dict[str, Any]
 QUANTITIES: dict[str, Quantity] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
     "u": ("distance down the incline [m]", lambda _, motion: motion.u - motion.u[0], {}),
-    "centre": (
-        "distance of the centre of mass [m]",
-        lambda scene, motion: motion.u - scene.load.offset * np.sin(motion.phi),
-        {},
-    ),
     "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
     "ahead": (
         "ahead of even acceleration [mm]",
@@ -215,7 +206,7 @@ class Strip:
             figure = Figure(figsize=(width / 72, height / 72), dpi=72)
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
-            sides = {"left": 4.5 * self._letters / width, "right": 1 - 2 * unit / width}
+            sides = {"left": 4.5 * self._letters / width, "right": 1 - 2 * self._letters / width}
             between = 6 * self._letters / (width / len(charts) - 6 * self._letters)
             low = (0.6 * unit + (1.2 if single else 2.4) * self._letters) / height
             figure.subplots_adjust(**sides, top=1 - 1.8 * self._letters / height, bottom=low, wspace=between)

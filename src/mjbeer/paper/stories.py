@@ -76,7 +76,7 @@ STORIES = (
             speed=0.1,
             told=str,  # the story has a caption
             still=0.2,
-            strips=("ahead", "centre"),
+            centres=True,
         ),
     ),
     Story(

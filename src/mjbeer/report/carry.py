@@ -110,7 +110,7 @@ class Carry:
     def _draw(self, moves: dict[Move, Carried], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         sheet, ground = Sheet(width, height), sliding(0.0)
         top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit)
-        cans = CarriedCans(standing(modes=0), [move.colour for move in moves], _APART)
+        cans = CarriedCans.held(standing(modes=0), [move.colour for move in moves], _APART)
         points = [cans.outline(number, np.array([x])).reshape(-1, 3) for number in (0, 1) for x in (_LEFT, _DISTANCE)]
         view = View.towards(_EYE, np.concatenate(points), (width, height - top - below), 0.02)
         strip = Strip([Chart("force [N]", _lines(moves))], width, below)
@@ -137,7 +137,7 @@ class Carry:
                 yield sheet.picture()
 
 
-_APART, _LEFT = 0.3, -0.26
+_APART, _LEFT = 0.34, -0.26
 _EYE = np.array([0.1, -2.2, 1.5])
 
 
