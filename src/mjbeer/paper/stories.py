@@ -65,13 +65,13 @@ STORIES = (
         (2, 1, 6, 6.2),
         story_plots.draw_trivial,
         Race(
-            "Whether its beer swings or not, a can gets equally far",
+            "One beer swings, one does not: their centres of mass stay abreast",
             _let_go,
             length=0.36,
             speed=0.1,
             told=str,  # the story has a caption
             still=0.2,
-            strips=("phi", "u"),
+            centres=True,
         ),
     ),
     Story(
@@ -86,7 +86,9 @@ STORIES = (
         MotionFilm(
             story_plots.HESITATION,
             speed=0.1,
-            look=Look("A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost")),
+            look=Look(
+                "A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
+            ),
         ),
     ),
     Story(
@@ -103,7 +105,12 @@ STORIES = (
         MotionFilm(
             story_plots.LOOPING,
             speed=0.1,
-            look=Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces")),
+            look=Look(
+                "Beer that loops in its can all but lifts it",
+                ("normal", "phi"),
+                ("phi", "normal"),
+                notes=("light", "heavy"),
+            ),
         ),
     ),
     Story(
@@ -143,7 +150,14 @@ STORIES = (
             story_plots.PARTING,
             speed=0.04,
             still=0.9,
-            look=Look("Frozen beer rolls down, slips and hops", ("slip", "lift"), ("forces", "skid"), "close", "μ = 1"),
+            look=Look(
+                "Frozen beer rolls down, slips and hops",
+                ("lift", "slip"),
+                ("skid", "gap"),
+                "close",
+                "μ = 1; the first 0.68 s are left out",
+                ("flies", "slips"),
+            ),
         ),
     ),
     Story(

@@ -31,9 +31,10 @@ FILMS: dict[str, Race | MotionFilm | Carry] = {
         speed=1 / 3,
         told=races.told_of_liquids,
         still=2.2,
-        after=0.2,
-        hurry=15,
+        after=0.4,
+        missing=1,
         facts="all cans ¾ full, let go with a level surface",
+        caveat="Each liquid is one lump here. Real water and oil are soon too fast to stay at the bottom.",
     ),
     "sliding": MotionFilm(
         partial(simulate, sliding(can=races.METAL), 1.2, math.radians(60), tolerance=1e-9),
@@ -42,7 +43,9 @@ FILMS: dict[str, Race | MotionFilm | Carry] = {
         "can goes to and fro about the dashed one, which accelerates evenly: it hesitates with every swing. The camera "
         "moves along evenly.",
         still=0.4,
-        look=Look("Half a can of beer that slides in it", ("phi", "ahead"), ("phi", "ghost")),
+        look=Look(
+            "Beer slides in its can, and the can hesitates", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
+        ),
     ),
     "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
@@ -50,15 +53,26 @@ FILMS: dict[str, Race | MotionFilm | Carry] = {
         caption="The beer is frozen to the can and let go with the beer on top: it rolls down ever faster, in jerks. "
         "The film ends just before the can would leave the incline.",
         still=0.55,
-        look=Look("Frozen beer, let go with the beer on top", ("u", "normal"), ("phi", "paths", "forces")),
+        look=Look(
+            "Frozen beer rolls down in jerks",
+            ("normal", "u"),
+            ("paths", "normal", "friction"),
+            notes=("heavy", "light"),
+        ),
     ),
     "pendulum": MotionFilm(
         partial(simulate, pendulum(), 1.5, math.radians(60), tolerance=1e-9),
         speed=0.25,
-        caption="A hoop wheel with a pendulum on its axle, let go at φ = 60°. The wheel goes to and fro about the "
-        "dashed one, which accelerates evenly.",
+        caption="Does a wheel roll evenly with a pendulum on its axle? No: the wheel goes to and fro about the dashed "
+        "one, which accelerates evenly. Nothing but their weight drives wheel and bob down the incline together, so "
+        "that the wheel hesitates whenever its bob is uphill, and runs ahead whenever it is downhill.",
         still=0.4,
-        look=Look("A pendulum on the axle of a wheel", ("phi", "ahead"), ("phi", "ghost")),
+        look=Look(
+            "A pendulum in a wheel: does the wheel roll evenly?",
+            ("u_dot", "ahead"),
+            ("phi", "ghost"),
+            notes=("hesitates",),
+        ),
     ),
     "hoop": MotionFilm(
         partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
@@ -68,7 +82,12 @@ FILMS: dict[str, Race | MotionFilm | Carry] = {
         "times a second. Each landing is a blow; N is the mean over 10 ms. When the bar comes up, the hoop hops a "
         "radius high.",
         still=0.24,
-        look=Look("A hoop with a heavy bar on its rim, pushed at 16 rad/s", ("normal", "lift"), ("paths", "forces")),
+        look=Look(
+            "Why does a hoop fly? The bar on its rim lifts it",
+            ("lift", "normal"),
+            ("paths", "normal"),
+            notes=("flies", "heavy", "light"),
+        ),
     ),
     "carry": Carry(),
 }
