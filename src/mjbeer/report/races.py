@@ -96,7 +96,7 @@ def told_of_liquids() -> str:
         f"honey is last: when the ice arrives it has come {100 * way:.0f} cm, and it needs {times['honey']:.2f} s. It "
         "is between water and ice, yet slower than both. It neither slides freely nor turns with its can, and as it "
         f"rubs it takes all that the incline gives: it creeps with {100 * speed:.1f} cm/s. Each liquid is one lump "
-        "here, and the times are this model's. Real water and oil are soon so fast that they need not stay at the bottom, "
-        f"and of real honey the wall carries up to {100 * carried:.0f} % round with it. With half or twice the "
+        "here, and the times are this model's. Real water and oil are soon so fast that they need not stay at the "
+        f"bottom, and of real honey the wall carries up to {100 * carried:.0f} % round with it. With half or twice the "
         "viscosity honey is last as well."
     )
