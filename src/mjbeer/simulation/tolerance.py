@@ -137,12 +137,12 @@ class ToleranceLoop:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
         Of a smooth motion, runs of Gauss-Jackson are tried first; otherwise all runs are DOP853's, the second with a
-        64th of the local tolerance of the first, and others with an eighth of that of the run before. The first starts
-        a nudge from `start`. The error estimate is a multiple of the distance of the last two runs at the samples, and
-        no less than what the drift of energy and momentum implies: over many turns the errors of two runs may be the
-        same by chance. From the third run of DOP853 on a share of the distance before counts if that is larger. What an
-        equality loses is estimated by its accelerations. The solution has the record of all steps of the last run, for
-        a coefficient of `friction`.
+        64th of the local tolerance of the first, and others with an eighth of that of the run before, or the least. The
+        first starts a nudge from `start`. The error estimate is a multiple of the distance of the last two runs at the
+        samples, and no less than what the drift of energy and momentum implies: over many turns the errors of two runs
+        may be the same by chance. From the third run of DOP853 on a share of the distance before counts if that is
+        larger. What an equality loses is estimated by its accelerations. The solution has the record of all steps of
+        the last run, for a coefficient of `friction`.
 
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
