@@ -27,11 +27,9 @@ _PARTS = np.linspace(0, 1, 33)
 _COMPARED = 256
 """Samples at which runs of Gauss-Jackson are compared, if there are more, but for light wheels, whose load may be fast
 for a moment only. The error of the others changes within a part of a swing."""
-_SAFETY = 1.0
-"""Error estimate over the distance of the first two runs, which is the error of the coarser one, and much larger."""
 _SAFETY_BY_CHANCE = 3.0
-"""The same from the third run on, where rounding counts, and for tolerances outside `_ASYMPTOTIC`: two runs may agree
-by chance."""
+"""Error estimate over the distance of two runs from the third run on, where rounding counts, and for tolerances outside
+`_ASYMPTOTIC`: two runs may agree by chance."""
 _BRIEF = 4.0
 """The same for Gauss-Jackson and a light wheel, whose load makes much of a moment's error while it passes
 the lowest point: two runs whose errors were the same by chance were 2.8 times as far off as they should have been."""
@@ -65,12 +63,10 @@ _FIRST_RATIO, _RATIO = 64.0, 8.0
 take 1.7 and 1.3 times the evaluations. Errors scatter by ten about what a local tolerance lets expect: with a ratio of
 8 the first two runs were within a third of their common error once in 3,000 random liquids."""
 _ROUNDED_RATIO = 2.0
-"""The same for distances that are counted on where both may be rounding: replays of the runs of light wheels, at 1,613
-tolerances, then kept to all of them, the worst to 0.94 of it; with `_RATIO` five were missed, by up to 2.3."""
+"""The same, at least, and for distances that are counted on where both may be rounding: replays of the runs of light
+wheels, at 1,613 tolerances, then kept to all of them, the worst to 0.94 of it; with `_RATIO` five were missed."""
 _SMALLEST = 1e-16
 """Local tolerance below which the error of a step is rounding."""
-_LEAST_RATIO = 1.5
-"""Least local tolerance of the last but one run over that of the last."""
 _STALLED = 0.75
 """Error estimate over that of the run before, above which the finer run was no progress."""
 _PATIENCE = 2
@@ -232,7 +228,9 @@ class ToleranceLoop:
             return states
 
         local = max(min(_FIRST * tolerance, _COARSEST), _FIRST_RATIO * self._smallest)
-        coarse, safety, stalled, estimate = run(start + self._nudge, local), self._safety(tolerance), 0, math.inf
+        smooth = _ASYMPTOTIC[0] < tolerance <= _ASYMPTOTIC[1] and not self._rounded
+        safety = 1.0 if smooth else _SAFETY_BY_CHANCE  # the distance is the error of the coarser run, and much larger
+        coarse, stalled, estimate = run(start + self._nudge, local), 0, math.inf
         distances, ratios = [0.0], [1.0, _FIRST_RATIO]
         while True:
             local /= ratios[-1]
@@ -245,7 +243,7 @@ class ToleranceLoop:
                 break
             stalled = 0 if max(error, drift) <= _STALLED * estimate else stalled + 1
             ratios.append(min(_RATIO, local / self._smallest))
-            if ratios[-1] < _LEAST_RATIO or stalled > _PATIENCE:
+            if ratios[-1] < _ROUNDED_RATIO or stalled > _PATIENCE:
                 end = "with ever smaller steps" if stalled > _PATIENCE else "at the limit of rounding"
                 if error <= tolerance:
                     reason = f"two runs agree, but energy or momentum drift like an error of {drift:.2g} rad"
@@ -278,11 +276,6 @@ class ToleranceLoop:
                 f'{lost:.2g} rad; rolling="reduced" loses nothing',
             )
         return lost
-
-    def _safety(self, tolerance: float) -> float:
-        """Return the error estimate of a tolerance [rad] over the distance of the first two runs."""
-        smooth = _ASYMPTOTIC[0] < tolerance <= _ASYMPTOTIC[1] and not self._rounded
-        return _SAFETY if smooth else _SAFETY_BY_CHANCE
 
 
 def _not_reached(tolerance: float, reason: str) -> ToleranceError:
