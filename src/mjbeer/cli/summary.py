@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import finite
+from mjbeer.checks import json_values
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
@@ -102,7 +102,7 @@ class Summary:
         lines = [
             f"{name:<31} {shown.format(value)} {unit}".rstrip() if "{" in shown else f"{name:<31} {shown}"
             for name, value, unit, shown in self.rows
-            if "{" not in shown or finite(value) is not None
+            if "{" not in shown or json_values(value) is not None
         ]
         return "\n".join(lines) + "\n"
 
@@ -110,7 +110,7 @@ class Summary:
         """Return the figures as a JSON object, with units in the names; what is not finite becomes null."""
         content = {f"{name} [{unit}]" if unit else name: value for name, value, unit, _ in self.rows}
         content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
-        return json.dumps(finite(content), indent=2, allow_nan=False) + "\n"
+        return json.dumps(json_values(content), indent=2, allow_nan=False) + "\n"
 
 
 def _needed(run: Trajectory) -> str:

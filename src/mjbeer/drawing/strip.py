@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.exact import solution
+from mjbeer.theory.exact import exact_motion
 from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
@@ -63,7 +63,7 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
     if trajectory.rolling != "exact" and trajectory.time[0] >= 0:
         times = np.linspace(trajectory.time[0], trajectory.time[-1], _SMOOTH)
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
-            theory = solution(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
+            theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
     for name in names:
         title, values, limits = QUANTITIES[name]

@@ -4,7 +4,6 @@ Lengths are in can radii a, areas in a^2 and inertias in m a^2, unless a unit is
 that the beer subtends at the axis.
 """
 
-import dataclasses
 import math
 from functools import cache, partial
 from typing import Any
@@ -55,7 +54,7 @@ def _integral_36(beta: np.ndarray) -> np.ndarray:
 @cache
 def _segments(fills: tuple[float, ...] = FILLS) -> Segment:
     """Return the segments of some fills, by quadrature, as one whose fields are arrays."""
-    columns: Any = np.transpose([dataclasses.astuple(segment(fill)) for fill in fills])
+    columns: Any = np.transpose([segment(fill) for fill in fills])
     return Segment(*columns)
 
 

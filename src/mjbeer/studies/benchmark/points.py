@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import finite
+from mjbeer.checks import json_values
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Rolling, Setting
 from mjbeer.theory.can import Can
@@ -174,7 +174,7 @@ class Benchmark:
     def json(self) -> str:
         """Return the study as JSON, with a line a point."""
         about = json.dumps({"command": COMMAND, "settings": self.settings, "machine": self.machine})
-        points = (json.dumps(finite(asdict(point)), allow_nan=False) for point in self.points)
+        points = (json.dumps(json_values(asdict(point)), allow_nan=False) for point in self.points)
         return f'{about[:-1]}, "points": [\n' + ",\n".join(points) + "\n]}\n"
 
     def of(self, case: str) -> list[Point]:

@@ -23,7 +23,7 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.studies import attached_can
 from mjbeer.studies.stability.taylor_series import LongMotionError, series
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.exact import exact, solution
+from mjbeer.theory.exact import exact, exact_motion
 from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene
 
@@ -169,7 +169,7 @@ def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tupl
     """Return which of `JUDGES` has the motion at increasing `times` [s], the motions that a run may be near, and by how
     much the two theories differ [rad], relative beyond 1 rad: infinitely, if by more than rounding explains."""
     try:
-        first = Angles.of(scene, solution(scene, times, phi0, phi_dot0), phi0, phi_dot0)
+        first = Angles.of(scene, exact_motion(scene, times, phi0, phi_dot0), phi0, phi_dot0)
     except (NoLibrationError, ParameterError, ToleranceError):  # on a separatrix, and beyond what rounding leaves it
         first = None
     second = _by_series(scene, times, phi0, phi_dot0)
