@@ -86,7 +86,8 @@ def html(
     environment.filters["inline"] = _inline
     made = "mjbeer paper" + " --films" * (not quick)
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
-    scenes, summary = {name: _scene(name, films.get(name)) for name in FILMS}, stability_maps.summary(maps).values()
+    scenes = {name: _scene(name, films.get(name)) for name in FILMS}
+    runs, same, _ = stability_maps.summary(maps["maps"])
     return environment.get_template("page.html").render(
         sketch=pathlib.Path(stories.__file__).with_name("letters.svg").read_text(encoding="utf-8"),
         races=[scenes.pop(name) for name in RACES],
@@ -102,8 +103,8 @@ def html(
             Shown(f"stability-{name}", figure.title, figure.caption, maps["command"], plots[f"stability-{name}"])
             for name, figure in stability_maps.FAMILIES.items()
         ],
-        runs=round(sum(of["runs"] for of in summary)),
-        same=sum(of["as predicted"] for of in summary) / sum(of["runs"] for of in summary),
+        runs=runs,
+        same=same,
         misprints=(misprints := _misprints(validation)),
         kinds=Counter(row.misprint.kind for _, row in misprints if row.misprint),
         quoted=[row for row in paper.claims() if row.quote and not row.misprint],
