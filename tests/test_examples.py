@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from mjbeer import standing
-from mjbeer.simulation.carry import carry
+from mjbeer.report.carry import carry
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 EXAMPLES = CHECKOUT / "examples"
@@ -53,7 +53,7 @@ def test_cans_on_a_slope_of_one_s_own_move_as_theory_says() -> None:
 
 @pytest.mark.slow
 def test_cans_that_are_carried_are_felt_as_theory_says() -> None:
-    """The forces and the ringing of `simulation/carry.py`; the weld of the gripper is softer by 1 %."""
+    """The forces and the ringing of the film; the weld of the gripper is softer by 1 %."""
     times, forces = load("carry")["forces"]()
     for name, modes in (("beer", 1), ("rigid", 0)):
         run = carry(standing(modes=modes))

@@ -2,18 +2,16 @@
 
 import math
 import pathlib
-import warnings
 
 import numpy as np
 
-from mjbeer.exceptions import LiquidWarning
 from mjbeer.output import plots
-from mjbeer.simulation.carry import Carried, carry
+from mjbeer.report.carry import Carried, carry
 from mjbeer.theory.standing import INDICATIVE, standing
 
 DISTANCE, MOVE, AFTER = 0.4, 1.0, 1.0
 """How far and how long a can is moved [m], [s], and how long it is watched afterwards [s]."""
-MOVES = tuple(float(each) for each in np.geomspace(0.6, 2.5, 24))
+MOVES = tuple(float(each) for each in np.geomspace(0.6, 2.5, 72))
 """Times of the moves of the right panel [s]."""
 MODES = {"beer that sloshes": 1, "rigid": 0}
 
@@ -25,11 +23,9 @@ def peak(run: Carried, start: float, end: float) -> float:
 
 def draw(path: pathlib.Path) -> None:
     """Draw the force while a can is moved in a second, and the rigid can's error over the time of the move."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", LiquidWarning)  # the plot says where
-        beer, rigid = (
-            [carry(standing(modes=modes), DISTANCE, move, AFTER) for move in (*MOVES, MOVE)] for modes in MODES.values()
-        )
+    beer, rigid = (
+        [carry(standing(modes=modes), DISTANCE, move, AFTER) for move in (*MOVES, MOVE)] for modes in MODES.values()
+    )
     peaks = [np.array([peak(run, 0.0, move) for run, move in zip(of, MOVES, strict=False)]) for of in (beer, rigid)]
     after = np.array([peak(run, move, math.inf) for run, move in zip(beer, MOVES, strict=False)])
     highest = np.array([np.abs(run.rise).max() for run in beer[:-1]])
@@ -42,8 +38,9 @@ def draw(path: pathlib.Path) -> None:
         right.plot(MOVES, 100 * (1 - peaks[1] / peaks[0]), color=plots.COLOURS[1], label="peak force")
         right.plot(MOVES, 100 * after / peaks[0], color=plots.COLOURS[2], label="ringing after the stop")
         first = float(np.interp(-INDICATIVE, -highest, MOVES))
+        right.set_ylim(-1, 24)  # so that the curves leave room for the note and the legend
         right.axvspan(min(MOVES), first, color=plots.GREY, alpha=0.12, linewidth=0)
-        plots.note(right, "surface rises\nby more than 0.3 R", (min(MOVES), right.get_ylim()[1]), (4, -14))
+        plots.note(right, "surface rises\nby more than 0.3 R", (min(MOVES), 24), (4, -16))
         plots.label(right, "time of the move [s]", "error of a rigid can [% of the peak]", "what a rigid can misses")
         right.legend()
 

@@ -116,7 +116,7 @@ def draw_first_metre(path: pathlib.Path) -> None:
     """Draw the mean acceleration over the first metre over the water in the can, on three inclines, and its spread."""
     title = "An estimate: the friction of a little water makes a can slower than an empty one"
     subtitle = f"12-oz can of {1e3 * CAN.mass:.3g} g with water, let go with a level surface; no measurement is fitted"
-    with chart(path, 1, 2, width=13, height=6, title=title, subtitle=subtitle) as (inclines, spread):
+    with chart(path, 1, 2, width=10, height=6.6, title=title, subtitle=subtitle) as (inclines, spread):
         gentle = math.radians(_INCLINES[0])
         free = [water_in(float(volume), gentle, friction=0.0) for volume in _VOLUMES]
         footnote = [scene.acceleration() / (scene.gravity * math.sin(gentle)) for scene in free]
@@ -130,7 +130,7 @@ def draw_first_metre(path: pathlib.Path) -> None:
         for degrees in _INCLINES:
             incline = math.radians(degrees)
             mean, lump = _simulated(incline)
-            inclines.plot(_VOLUMES, mean, color=_BEYOND, linewidth=1.2, label=_TOO_FAST)
+            inclines.plot(_VOLUMES, mean, **_BEYOND)
             if lump.any():
                 named = f"MuJoCo: friction of water, {degrees:g}°"
                 inclines.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0], label=named)
@@ -141,22 +141,25 @@ def draw_first_metre(path: pathlib.Path) -> None:
         most, least = _simulated(gentle, 1 / SPREAD)[0], _simulated(gentle, SPREAD)[0]
         band = f"the friction divided or multiplied by {SPREAD:g}"
         spread.fill_between(_VOLUMES, least, most, color=COLOURS[5], alpha=0.3, linewidth=0, label=band)
-        spread.plot(_VOLUMES, mean, color=_BEYOND, linewidth=1.2, label=_TOO_FAST)
+        spread.plot(_VOLUMES, mean, **_BEYOND)
         spread.plot(_VOLUMES, np.where(lump, mean, np.nan), color=COLOURS[0])
         with_air = _simulated(gentle, 1.0, DRAG)[0]
         spread.plot(_VOLUMES, with_air, "--", color=COLOURS[1], linewidth=1.2, label="MuJoCo: with the air as well, 2°")
         ylabel = "mean acceleration over the first metre / g sin α"
         label(inclines, "water in the can [mL]", ylabel, "On three inclines, without air")
         label(spread, "water in the can [mL]", ylabel, f"How sure it is, at {in_degrees(gentle)}")
+        for axes in (inclines, spread):
+            axes.plot([], [], label=_TOO_FAST, **_BEYOND)
         inclines.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
         note(inclines, "Rosch: slower near 10 mL", (_ROSCH, 0.38), (6, 0))
         note(inclines, "Jackson et al.: a nearly full can comes near g sin α", (400, 1.035), (0, 0), ha="right")
         note(inclines, "Jackson et al.: a nearly empty can\nis slower than ½ g sin α", (0.33, 0.33), (0, 0))
-        note(inclines, "from above: " + ", ".join(f"{each:g}°" for each in _INCLINES[::-1]), (60, 0.7), (0, 0))
+        steepest_first = ", ".join(f"{each:g}°" for each in _INCLINES[::-1])
+        note(inclines, f"from above: {steepest_first}", (400, 0.57), (0, 0), ha="right")
         note(inclines, "hoop: ½", (400, 0.5), (0, 7), ha="right")
         depth = f"a puddle less than {1e3 * capillary_length():.1f} mm deep,\nwhich surface tension shapes"
         note(inclines, depth, (0.33, 0.74), (0, 0))
-        name_below([inclines, spread], 3)
+        name_below([inclines, spread], 2)
 
 
 def draw_liquids(path: pathlib.Path) -> None:
@@ -167,7 +170,7 @@ def draw_liquids(path: pathlib.Path) -> None:
     }
     title = "From frictionless to frozen: a lump of liquid comes to a terminal speed"
     subtitle = f"{in_words(sliding(), {'load'})}; let go with a level surface; lines by MuJoCo"
-    with chart(path, 1, 2, width=13, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
+    with chart(path, 1, 2, width=10, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
         for (name, scene), colour in zip((scenes | {"ice": frozen()}).items(), _PAINTS, strict=True):
             run = let_go(scene, times)
             truth = exact(scene, times[::50], -INCLINE)
@@ -176,7 +179,7 @@ def draw_liquids(path: pathlib.Path) -> None:
             lump = run.u - run.u[0] < whole
             for axes in (fast, slow):
                 if not lump.all():
-                    axes.plot(times, run.u_dot, color=_BEYOND, linewidth=1.2, label=_TOO_FAST)
+                    axes.plot(times, run.u_dot, **(_BEYOND | {"color": colour}))
                 axes.plot(times, np.where(lump, run.u_dot, np.nan), color=colour, label=name)
                 axes.plot(truth.time, truth.u_dot, ".", color="black", markersize=4, label="exact theory")
                 if real and lump.all():
@@ -184,14 +187,16 @@ def draw_liquids(path: pathlib.Path) -> None:
             if not lump.all():
                 note(fast, name, (times[-1], run.u_dot[-1]), (-4, 8), ha="right")
         fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
+        fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
         ylabel, closer = "speed of the can down the incline [m/s]", "The slow ones, seen closer"
         label(fast, "time t [s]", ylabel, "All of them", xlim=(0, 6), ylim=(-0.3, 5))
         label(slow, "time t [s]", ylabel, closer, xlim=(0, 2), ylim=(-0.2, 0.6))
         name_below([fast, slow], 5)
 
 
-_BEYOND, _TOO_FAST = "#A8A8A8", "beyond the model: too fast for the liquid to stay below"
-"""Colour and name of motions in which the wall's centrifugal acceleration exceeds gravity's part across the incline."""
+_BEYOND = {"color": COLOURS[0], "linestyle": ":", "linewidth": 1.3}
+_TOO_FAST = "beyond the model: too fast for the liquid to stay below"
+"""Look and name of motions in which the wall's centrifugal acceleration exceeds gravity's part across the incline."""
 _PAINTS = (GREY, COLOURS[0], COLOURS[4], COLOURS[2], COLOURS[1], COLOURS[3], COLOURS[5])
 """Colours of no friction, of the liquids from thin to thick, and of ice."""
 

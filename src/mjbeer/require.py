@@ -9,8 +9,7 @@ import os
 import pathlib
 import reprlib
 import warnings
-from collections.abc import Generator, Iterable
-from contextlib import contextmanager
+from collections.abc import Iterable
 from typing import Any, TypeVar
 
 import numpy as np
@@ -27,7 +26,6 @@ RATIO = 1e6  # of two masses, or of inertias compared with masses at the radius,
 GRAVITY = 1e-3, 1e3  # that is not 0 [m/s^2]
 ANGLE = 1e4  # at the start, either way [rad]
 RATE = 1e6  # at the start, either way [rad/s]
-DAMPING_RATE = 1e9  # at which damping may decay [1/s]
 TIMESTEP = 1e-7, 10.0  # [s]
 
 _SHORT = reprlib.Repr()
@@ -88,15 +86,10 @@ def warn_of_degrees(phi0: float) -> None:
 
 def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
     """Return a list, a tuple, a range or a one-dimensional array of finite numbers as doubles, of shape (samples,)."""
-    listed = isinstance(value, (list, tuple, range)) or hasattr(value, "__array__")
-    try:
-        array = np.asarray(value if listed and not isinstance(value, np.ma.MaskedArray) else None)
-    except (TypeError, ValueError):  # lists of different lengths
-        array = np.asarray(None)
+    array = np.asarray(value)
     if array.ndim != 1 or not len(array) or array.dtype.kind not in "iuf":
         raise _refused(f"{name} must be a list or a one-dimensional array of one or more numbers", unit, value)
-    if not (finite := np.isfinite(array)).all():
-        index = int(np.argmin(finite))
+    for index in np.flatnonzero(~np.isfinite(array)):
         number(f"{name}[{index}]", array[index], unit)
     return array.astype(float, copy=False)
 
@@ -104,15 +97,13 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     """Return times [s], none before 0, as a new array of shape (samples,); a single number will do as well."""
     if not increasing and math.isfinite(_float(value)):
-        return np.array([non_negative(name, value, "s")])
+        value = [value]
     array = samples(name, value, "s").copy()
-    if array.min() < 0:
-        index = int(np.argmax(array < 0))
+    for index in np.flatnonzero(array < 0):
         non_negative(f"{name}[{index}]", array[index], "s")
-    if increasing and (falls := array[1:] <= array[:-1]).any():
-        index = int(np.argmax(falls)) + 1
-        earlier, later = (format_value(array[place]) for place in (index - 1, index))
-        raise ParameterError(f"{name} must increase, but {name}[{index}] is {later} s after {earlier} s")
+    if increasing and (falls := np.flatnonzero(np.diff(array) <= 0)).size:
+        earlier, later = (format_value(each) for each in array[falls[0] : falls[0] + 2])
+        raise ParameterError(f"{name} must increase, but {name}[{falls[0] + 1}] is {later} s after {earlier} s")
     return array
 
 
@@ -127,11 +118,7 @@ def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
 def path(value: Any) -> pathlib.Path:
     """Return the path of a file to be written."""
     name = os.fspath(value) if isinstance(value, os.PathLike) else value
-    try:
-        possible = isinstance(name, str) and name and b"\0" not in os.fsencode(name)
-    except UnicodeEncodeError:  # half of a surrogate pair, which stands for no character
-        possible = False
-    if not possible:
+    if not isinstance(name, str) or not name or "\0" in name:
         raise ParameterError(f"path must be the name of a file, got {format_value(value)}")
     return pathlib.Path(name)
 
@@ -162,22 +149,9 @@ def set_fields(instance: object, **values: object) -> None:
         object.__setattr__(instance, name, value)
 
 
-@contextmanager
-def naming_given(**given: object) -> Generator[None]:
-    """Add to an error in the `with` block, about computed values, the values that were given."""
-    try:
-        yield
-    except ParameterError as error:
-        listed = ", ".join(f"{name} = {format_value(value)}" for name, value in given.items())
-        raise ParameterError(f"{error}, which follows from {listed}") from None
-
-
 def format_value(value: object) -> str:
     """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
-    try:
-        text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)
-    except (ValueError, RuntimeError):  # an integer of 5000 digits, and what a foreign __repr__ raises
-        text = f"<{type(value).__name__}>"
+    text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)
     return " ".join(text.splitlines())
 
 

@@ -55,9 +55,9 @@ def test_a_report_ends_with_its_processes(
     handler: signal.Handlers, numbers: list[int], status: int, tmp_path: pathlib.Path
 ) -> None:
     code = (
-        "import sys; from mjbeer.cli.app import main; from mjbeer.drawing.studio import Plotted; "
+        "import sys; from mjbeer.cli.app import main; from mjbeer.drawing.jobs import PlotJob; "
         "from mjbeer.report import page; from tests.support.processes import draw_and_sleep; "
-        "page.plots = lambda folder: [Plotted(draw_and_sleep, folder / 'plot')]; sys.exit(main())"
+        "page.plot_jobs = lambda folder: [PlotJob(draw_and_sleep, folder / 'plot')]; sys.exit(main())"
     )
     words = ["report", "--output", str(tmp_path / "new")]
     with start(words, code, preexec_fn=lambda: signal.signal(signal.SIGHUP, handler)) as process:

@@ -106,4 +106,4 @@ def test_the_camera_pans_where_the_can_would_be_small() -> None:
 def test_a_can_at_rest_fills_what_it_may() -> None:
     taken = shot(MOTIONS["stays"], "auto")
     pixels = RADIUS * taken.view(0.0).scale(np.array([0.0, PLANE, 0.0]))
-    assert pixels == pytest.approx(0.22 * WIDE[1], rel=1e-9)
+    assert pixels == pytest.approx(WIDE[1] / 3.5, rel=1e-9)

@@ -9,10 +9,10 @@ import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
 from mjbeer.drawing.camera import CameraPath, View, on_incline, scale
-from mjbeer.drawing.film import Take
+from mjbeer.drawing.film import MotionFilm
 from mjbeer.drawing.overlay import Look, header_height
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import UNITS, Sheet
+from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.load import segment
 
@@ -27,13 +27,13 @@ def motion(incline: float = 0.2) -> Trajectory:
 
 
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
-    """Return the view of the film of a motion without charts and marks, below its title."""
+    """Return the view of the film of a motion without charts and marks, below its title: 1.35 radii around its can."""
     plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return CameraPath.fit(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels).view(0.0)
+    return CameraPath.fit(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels, 1.35, 1.75).view(0.0)
 
 
 def picture(run: Trajectory, time: float, width: int, height: int) -> np.ndarray:
-    (drawn,) = Take(lambda: run, 1.0).plan().draw(np.array([time]), width, height)
+    (drawn,) = MotionFilm(lambda: run, 1.0).plan().draw(np.array([time]), width, height)
     return drawn
 
 
@@ -70,10 +70,10 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
         lift=rest,
         lift_dot=rest,
     )
-    top = header_height(FIXED, SIZE[1] / UNITS)
+    top = header_height(FIXED, Sheet(*SIZE).unit)
     view = still_view(still, (SIZE[0], SIZE[1] - top))
     axes = on_incline(scene, u * scale(scene), RADIUS)
-    drawn = Take(lambda: still, 1.0, FIXED).plan().draw(times, *SIZE)
+    drawn = MotionFilm(lambda: still, 1.0, FIXED).plan().draw(times, *SIZE)
     return [Seen(each, view, top, axis) for each, axis in zip(drawn, axes, strict=True)]
 
 
@@ -171,7 +171,7 @@ def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytes
     closed = []
     real = Painter.close
     monkeypatch.setattr(Painter, "close", lambda painter: (closed.append(painter), real(painter)))
-    drawing = Take(motion, 1.0, FIXED).plan().draw(np.linspace(0, 0.4, 5), 64, 36)
+    drawing = MotionFilm(motion, 1.0, FIXED).plan().draw(np.linspace(0, 0.4, 5), 64, 36)
     next(drawing)
     assert closed == []
     drawing.close()

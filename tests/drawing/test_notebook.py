@@ -81,7 +81,7 @@ def test_a_video_is_no_file_of_another_kind(tmp_path: pathlib.Path) -> None:
 
 def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
     run = simulate(frozen(), 0.5, 1.0, rolling="contact")
-    monkeypatch.setattr("mjbeer.simulation.run.second", lambda _: pytest.fail("a second run"))
+    monkeypatch.setattr("mjbeer.simulation.run.compare_uneven", lambda _: pytest.fail("a second run"))
     assert repr(run) == (
         f"<Run frozen, contact, RK4: 501 samples to t = 0.5 s, phi = {run.phi[-1]:.6g} rad, u = {run.u[-1]:.6g} m>"
     )

@@ -1,6 +1,7 @@
 """What is drawn at the can is what it says: the angle, the paths, the forces, and even acceleration."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,9 @@ import pytest
 
 from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
 from mjbeer.drawing.camera import Camera, CameraPath, View, on_incline, scale
-from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides
+from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides, head
 from mjbeer.drawing.scene import Display, coordinates
-from mjbeer.drawing.sheet import Box, Sheet
+from mjbeer.drawing.sheet import Box, Sheet, overlap
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
@@ -53,13 +54,13 @@ class Recorder(Sheet):
         return super().text(place, words, *arguments, **more)
 
 
-def drawn(motion: Trajectory, kind: Mark, time: float) -> tuple[Recorder, View, np.ndarray]:
-    """Draw a mark, and return the sheet, the view, and the coordinates at that time."""
+def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
+    """Draw marks, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
     view = CameraPath.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
-    Marks(motion, (kind,), PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
+    Marks(motion, kinds, PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
     return sheet, view, now
 
 
@@ -84,7 +85,7 @@ def differ(one: float, other: float) -> float:
 def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float) -> None:
     """One line is along the incline, or across it over a bob; the other is turned by phi, clockwise."""
     motion = exact(make(), TIMES, phi)
-    sheet, _, _ = drawn(motion, "phi", 0.0)
+    sheet, _, _ = drawn(motion, 0.0, "phi")
     first, second, arc = sheet.lines
     along = -motion.scene.incline + (math.pi / 2 if motion.scene.load.fill is None else 0.0)
     assert min(differ(direction(first), along), differ(direction(first), along + math.pi)) < ROUNDING
@@ -98,7 +99,7 @@ def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float)
 @pytest.mark.parametrize("make", [frozen, sliding, pendulum, hoop])
 def test_paths_are_those_of_fig_3(make: Any) -> None:
     motion = exact(make(), TIMES, 2.0)
-    sheet, view, (u, phi, roll, _) = drawn(motion, "paths", 0.3)
+    sheet, view, (u, phi, roll, _) = drawn(motion, 0.3, "paths")
     rim, centre = sheet.lines
     a, b = motion.scene.can.radius, motion.scene.load.offset
     load = place(motion, view, u - b * math.sin(phi), a - b * math.cos(phi))
@@ -111,7 +112,7 @@ def test_paths_are_those_of_fig_3(make: Any) -> None:
 
 def test_forces_push_the_can_where_it_touches_the_incline() -> None:
     motion = exact(frozen(), TIMES, 2.0)
-    sheet, view, (u, *_) = drawn(motion, "forces", 0.1)
+    sheet, view, (u, *_) = drawn(motion, 0.1, "normal", "friction")
     (tail, head), (start, end) = sheet.arrows
     assert head == pytest.approx(place(motion, view, u, -WALL * 0.033), abs=ROUNDING)  # under the drawn wall
     assert differ(direction(np.array([tail, head])), math.pi / 2 - motion.scene.incline) < ROUNDING
@@ -128,7 +129,7 @@ def test_forces_push_the_can_where_it_touches_the_incline() -> None:
 def test_the_ghost_is_where_even_acceleration_has_it() -> None:
     """s = g sin(alpha) t^2/2 in a massless can, eq. (9); the can itself is b sin(phi) ahead."""
     motion = exact(sliding(), TIMES, 1.0)
-    sheet, view, (u, phi, _, _) = drawn(motion, "ghost", 0.4)
+    sheet, view, (u, phi, _, _) = drawn(motion, 0.4, "ghost")
     ring = sheet.lines[0]
     middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
     even = 9.81 * math.sin(motion.scene.incline) * 0.4**2 / 2
@@ -141,7 +142,7 @@ def guided(scene: Scene, times: np.ndarray, camera: Camera) -> tuple[Recorder, B
     board = Board.of(scene, display.model)
     view = CameraPath.fit(scene, camera, times, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
     sheet = Recorder(*PIXELS)
-    guides(sheet, board, view, 0, UNIT)
+    guides(sheet, board, view, 0)
     return sheet, board, view
 
 
@@ -179,3 +180,35 @@ def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -
     for number, tick in zip(numbers, ticks, strict=True):
         x, z = on_incline(scene, number / radius * RADIUS, board.under)
         assert tick == pytest.approx(view.pixel(np.array([x, board.front, z])), abs=PIXEL)
+
+
+def test_distances_begin_where_the_can_is_let_go() -> None:
+    """Frozen beer on top begins at u = pi a; the axis has the number 0 below it there."""
+    motion, display = exact(frozen(), FEW, math.pi), Display.of([frozen()])
+    view = CameraPath.fit(motion.scene, "fixed", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    sheet = Recorder(*PIXELS)
+    guides(sheet, Board.of(motion.scene, display.model, motion.u[0]), view, 0)
+    numbers = [words for words in sheet.words if words.endswith(" m")]
+    tick = sheet.lines[2:][numbers.index("0 m")][0]
+    x, z = on_incline(motion.scene, math.pi * RADIUS, Board.of(motion.scene, display.model).under)
+    assert tick == pytest.approx(view.pixel(np.array([x, display.model.geom("board").pos[1] - 0.075, z])), abs=PIXEL)
+
+
+def test_the_gap_is_as_high_as_the_can_flies() -> None:
+    motion = replace(exact(frozen(), TIMES, 2.0), lift=np.full_like(TIMES, 0.007))
+    sheet, view, _ = drawn(motion, 0.3, "gap")
+    assert sheet.words == ["7 mm"]
+    ((tail, head),) = sheet.arrows
+    radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
+    assert np.hypot(*(head - tail)) == pytest.approx(0.007 / 0.033 * radius, rel=1e-3)  # perspective
+    assert not drawn(exact(frozen(), TIMES, 2.0), 0.3, "gap")[0].words
+
+
+@pytest.mark.parametrize("width", [640, 1280])
+def test_no_title_runs_into_the_time(width: int) -> None:
+    sheet = Recorder(width, 360)
+    head(sheet, ("a long title " * 5, "many words " * 8), 0.0, 0.25)
+    title, other = (box for box in sheet.boxes if box[0] < width / 4)
+    for box in sheet.boxes:
+        assert not overlap(box, title) or box == title
+        assert not overlap(box, other) or box == other

@@ -15,8 +15,8 @@ from rich.console import Console
 
 from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
-from mjbeer.drawing.film import Take
-from mjbeer.drawing.studio import Filmed, produce
+from mjbeer.drawing.film import MotionFilm
+from mjbeer.drawing.jobs import FilmJob, produce
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from tests.support.processes import run
 
@@ -25,7 +25,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:unclosed file
 
 SIZE = {"width": 320, "height": 180}
 motion = partial(exact, frozen(), np.linspace(0, 0.5, 51), 1.0)
-TAKE = Take(motion, speed=1.0, still=0.2)
+FILM = MotionFilm(motion, speed=1.0, still=0.2)
 
 
 def decode(path: pathlib.Path) -> tuple[str, np.ndarray]:
@@ -64,7 +64,7 @@ def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path
     assert re.search(r"Input #0.*mp4.*Video: h264 .*yuv420p.*bt709.* 320x180.* 20 fps", about, re.DOTALL)
     assert frames.shape == (10, 180, 320, 3)
     # The last frame is that of its time, but for what H.264 leaves out.
-    drawn = TAKE.plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
+    drawn = FILM.plan().draw(np.array([9, 8, 0]) / 20, 320, 180)
     off = [np.abs(frames[-1] - each.astype(float)).mean() for each in drawn]
     assert 1.5 * off[0] < min(off[1:])
 
@@ -74,7 +74,7 @@ def test_speed_stretches_time(
     speed: float, fps: float, expected: int, undrawn: list[int], tmp_path: pathlib.Path
 ) -> None:
     """And of the frames never more than two are held."""
-    assert Take(motion, speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
+    assert MotionFilm(motion, speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
     video.render(motion(), tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
     assert len(decode(tmp_path / "can.mp4")[1]) == len(undrawn) == expected
     assert max(undrawn) <= 2
@@ -147,7 +147,7 @@ def test_an_interrupted_video_leaves_what_was_there(
 def test_films_are_made_in_other_processes_or_one_error_is_told(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    orders = [Filmed(TAKE, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
+    orders = [FilmJob(FILM, tmp_path / f"{name}.mp4", 160, 90, 10) for name in "ab"]
     stills = produce(orders, Console(quiet=True))
     assert sorted(os.listdir(tmp_path)) == ["a.mp4", "b.mp4"]
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()

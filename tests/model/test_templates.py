@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from mjbeer import Scene, build, exact, export, frozen, hoop, pendulum, simulate, sliding, specify
+from mjbeer import Scene, build, exact, export, frozen, hoop, pendulum, refill, simulate, sliding, specify, standing
 from mjbeer.exceptions import TemplateError, UntrustedWarning
 from mjbeer.model import mjcf_file, setting
 from mjbeer.model.check import file_fault
@@ -301,3 +301,30 @@ def test_a_folder_of_one_s_own_has_looks_of_its_own(copy: pathlib.Path, monkeypa
     monkeypatch.delenv(setting.VARIABLE)
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) != green
     assert list(build(SCENES["sliding"], visuals=True, mjcf=copy).mat("beer").rgba) == green
+
+
+# What stands
+
+
+TURNED = np.random.default_rng(5).normal(size=(200, 4))
+
+
+@pytest.mark.parametrize("fill", [None, 0.05, 0.1, 0.2, 0.5, 0.8, 0.97])
+def test_what_is_drawn_of_a_standing_can_s_beer_stays_inside_the_wall(fill: float | None) -> None:
+    """However the pendulum hangs: the file that a viewer opens, and a can of any fill, from which it is `refill`ed."""
+    model = load("standing") if fill is None else build(standing(fill=0.5), visuals=True)
+    if fill is not None:
+        refill(model, standing(fill=fill), prefix="")
+    data, radius, length = mujoco.MjData(model), *(model.geom("can").size[:2] * [1, 2])
+    turn = np.linspace(0, 2 * np.pi, 33)
+    for quat in (*np.eye(4)[:1], *TURNED):
+        data.joint("slosh1").qpos[:] = quat / np.linalg.norm(quat)
+        mujoco.mj_kinematics(model, data)
+        for name in ("beer", "beer_top"):
+            drawn, (wide, half, _) = data.geom(name), model.geom(name).size
+            rims = [np.stack([wide * np.cos(turn), wide * np.sin(turn), 0 * turn + end]) for end in (-half, half)]
+            x, y, z = drawn.xmat.reshape(3, 3) @ np.concatenate(rims, axis=1) + drawn.xpos[:, np.newaxis]
+            assert np.hypot(x, y).max() < radius * (1 + 1e-6)  # the file has ten digits
+            if wide > 1e-3 * radius:  # what does not show, as its pivot is too high, may be above
+                assert z.min() > -1e-6 * length
+                assert z.max() < length * (1 + 1e-6)

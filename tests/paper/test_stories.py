@@ -10,12 +10,12 @@ import pytest
 from mjbeer import exact
 from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
-from mjbeer.drawing.film import Film, Take
+from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
 from mjbeer.paper.hopping import MU
-from mjbeer.paper.plots_frozen import footnote_8_as_printed, skids
+from mjbeer.paper.story_plots import footnote_8_as_printed, skids
 from mjbeer.paper.witness import footnote_scene
 from mjbeer.theory.trajectory import Trajectory
 from tests.support import stubs
@@ -39,7 +39,7 @@ def motions(film: Film) -> list[Trajectory]:
     """The motions of a film: one, or those of the cans that it compares."""
     if isinstance(film, Race):
         return [runner.trajectory for runner in film.runners()]
-    assert isinstance(film, Take)
+    assert isinstance(film, MotionFilm)
     return [film.trajectory()]
 
 
@@ -102,15 +102,3 @@ def test_without_opengl_the_films_are_missing_and_named(
     assert f"Films: {line}\n" in text
     assert "[Film]" not in text
     assert capsys.readouterr().err.endswith(f"{line}\n")
-
-
-def test_a_film_that_fails_or_a_folder_that_cannot_be_written_to_leaves_no_summary(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
-    stubs.draw(monkeypatch, fail_at="told.mp4")
-    (tmp_path / "stories.md").write_text("of an earlier run")
-    assert main(["paper", "--films", "--output", str(tmp_path)]) == 2
-    assert capsys.readouterr().err.endswith("mjbeer: cannot draw told.mp4\n")
-    assert set(os.listdir(tmp_path)) == SKETCH
-    assert main(["paper", "--output", str(tmp_path / "letters.svg")]) == 2
-    assert "mjbeer: cannot write" in capsys.readouterr().err

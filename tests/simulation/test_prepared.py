@@ -30,16 +30,16 @@ def none_idle(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run, "_pool", {})
 
 
-def bits(prepared: Simulator) -> bytes:
-    return prepared.solve(prepared.start(0.7, 2.0), TIMES).states.tobytes()
+def bits(simulator: Simulator) -> bytes:
+    return simulator.solve(simulator.initial_state(0.7, 2.0), TIMES).states.tobytes()
 
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
     for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
         for _ in range(2):  # the second time the model has the scene's numbers already
-            with Simulator.from_pool(scene, setting) as prepared:
-                assert bits(prepared) == bits(Simulator(scene, setting))
+            with Simulator.from_pool(scene, setting) as simulator:
+                assert bits(simulator) == bits(Simulator(scene, setting))
     assert len(run._pool) < len(SCENES)
 
 
@@ -58,10 +58,10 @@ def test_a_set_up_comes_back_from_a_run_that_failed(monkeypatch: pytest.MonkeyPa
         Simulator.from_pool(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed,
     ):
         failed.solve(np.array([0.0, 0.7, 0.0, 1e9]), np.array([0.0, 100.0]))
-    with Simulator.from_pool(SCENES[0], Setting(tolerance=1e-13)) as prepared:
-        assert prepared.model is failed.model
+    with Simulator.from_pool(SCENES[0], Setting(tolerance=1e-13)) as simulator:
+        assert simulator.model is failed.model
         with pytest.raises(ToleranceError):
-            prepared.solve(prepared.start(0.7, 2.0), np.array([0.0, 1e5]))
-    with Simulator.from_pool(SCENES[1], SETTINGS[0]) as prepared:
-        assert prepared.model is failed.model
-        assert bits(prepared) == bits(Simulator(SCENES[1], SETTINGS[0]))
+            simulator.solve(simulator.initial_state(0.7, 2.0), np.array([0.0, 1e5]))
+    with Simulator.from_pool(SCENES[1], SETTINGS[0]) as simulator:
+        assert simulator.model is failed.model
+        assert bits(simulator) == bits(Simulator(SCENES[1], SETTINGS[0]))

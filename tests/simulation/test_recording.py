@@ -9,8 +9,8 @@ from mjbeer import Scene, frozen, pendulum, sliding
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import build
 from mjbeer.model.joints import initial_state
+from mjbeer.simulation.fixed_step import Recorder
 from mjbeer.simulation.smooth_recorder import _NAMES, SmoothRecorder
-from mjbeer.simulation.stepping import Recorder
 from mjbeer.simulation.tolerance import _longest, even_at_most
 from tests.support.scenes import METAL
 

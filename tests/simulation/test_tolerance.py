@@ -225,8 +225,6 @@ def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
         found = distance(run, truth, scene.can.radius)
         assert found < 1e-6 if right else found > 1e-2
         assert run.trusted == right, run.warnings
-        # The work of damping is a corrected trapezoid over the 1e-3 s in which can and load come together at the most.
-        assert run.energy_drift < 1e-3 or not right
 
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality"])

@@ -18,7 +18,7 @@ def motion(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) 
         return [state[2], state[3], float(u_ddot), float(phi_ddot)]
 
     radius, (u, u_dot) = scene.can.radius, scene.start(phi0, phi_dot0)
-    longest = float(np.diff(times).max())  # between the ends of long steps SciPy knows fewer digits
+    longest = float(np.diff(times).max()) / 8  # SciPy loses digits in long steps, and where drag turns round
     found = solve_ivp(
         slope, (0, times[-1]), [u, phi0, u_dot, phi_dot0], "DOP853", times, max_step=longest, rtol=FINE,
         atol=FINE * np.array([radius, 1.0, radius, 1.0]),

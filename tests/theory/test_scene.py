@@ -67,7 +67,7 @@ def test_damping_and_drag_have_rates() -> None:
         assert wheel(damping=damping * (1 - 1e-9) if isinstance(damping, float) and damping > 1 else damping).dissipates
     wheel(drag=0.19e9)
     refuses("rate of damping must be 0, or between 1e-12 and 1e+09 [1/s], got", wheel, damping=1.01e9 / rate)
-    refuses("which follows from damping = Damping(linear=0.0, quadratic", wheel, damping=Damping(quadratic=1e9 / rate))
+    refuses("rate of damping must be 0, or between", wheel, damping=Damping(quadratic=1e9 / rate))
     refuses("rate of drag must be 0, or between 1e-12 and 1e+09 [1/s], got 1050000000.0", wheel, drag=0.21e9)
 
 
@@ -80,11 +80,7 @@ REFUSED = [
     ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got 1.57", lambda: sliding(math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
     ("a can without mass has no inertia, got mass 0 kg and inertia 1e-05 kg m^2", lambda: Can(inertia=1e-5)),
-    (
-        "load mass must be between 1e-09 and 1e+09 [kg], got 0.0, which follows from radius = 0.033, length = 0.12, "
-        "fill = 1e-300, density = 1000.0",
-        lambda: sliding(fill=1e-300),
-    ),
+    ("load mass must be between 1e-09 and 1e+09 [kg], got 0.0", lambda: sliding(fill=1e-300)),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
     ("'drag', 'load', 'attachment'; got 'fil'", lambda: sliding().replace(fil=0.3)),
@@ -101,7 +97,7 @@ def test_what_is_no_scene_is_refused(message: str, make: Callable[[], object]) -
 )
 def test_something_has_to_resist_rotation(attachment: str, offset: float) -> None:
     """J(0) = 0: at phi = 0 the load neither turns nor moves, and the can weighs nothing."""
-    with pytest.raises(ParameterError, match=r"nothing resists rotation at phi = 0: .* can mass 0.0 kg"):
+    with pytest.raises(ParameterError, match=r"nothing resists rotation at phi = 0: .* and Can\(radius"):
         Scene(Can.massless(), Load.point(0.2, offset), 0.1, attachment)
 
 

@@ -12,7 +12,7 @@ from typing import Any, NoReturn, cast
 
 import mjbeer
 from mjbeer.cli import motions, studies
-from mjbeer.cli.arguments import SCENES_TOLD, STANDING, STANDING_OPTIONS, Command, Parser, scene_options
+from mjbeer.cli.arguments import SCENE_MEANINGS, STANDING, STANDING_OPTIONS, Command, Parser, scene_options
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
@@ -67,22 +67,21 @@ def parse(words: Sequence[str]) -> Namespace:
       ParameterError: if the words are not understood.
       SystemExit: after --help and --version.
     """
-    top = Parser(_DESCRIPTION, prog="mjbeer")
+    top = Parser(description=_DESCRIPTION, prog="mjbeer")
     top.add_argument("--version", action="version", version=f"mjbeer {mjbeer.__version__}")
-    parsers = top.below("commands", "COMMAND", {name: str(each.run.__doc__) for name, each in COMMANDS.items()})
+    parsers = top.add_words("commands", "COMMAND", {name: str(each.run.__doc__) for name, each in COMMANDS.items()})
     # Only the command that is meant gets its options, which are many.
-    name = next((word for word in words if word in COMMANDS), "")
-    if name:
+    if name := next((word for word in words if word in COMMANDS), ""):
         at, command = parsers[name], COMMANDS[name]
         if command.numbers is None:
-            at.add(command.options)
+            at.add_options(command.options)
         else:
-            scenes = SCENES_TOLD | ({"standing": STANDING} if command.standing else {})
-            for scene, below in at.below("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
+            scenes = SCENE_MEANINGS | ({"standing": STANDING} if command.standing else {})
+            for scene, below in at.add_words("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
                 if scene == "standing":
-                    below.add((*STANDING_OPTIONS, *command.standing))
+                    below.add_options((*STANDING_OPTIONS, *command.standing))
                 else:
-                    below.add((*scene_options(scene, command.numbers), *command.options))
+                    below.add_options((*scene_options(scene, command.numbers), *command.options))
     # argparse takes -1e-3 and -1:1:5 for options, unless they are joined to theirs.
     joined = re.sub(r"\0(?=-[\d.])", "=", "\0".join(["", *words])).split("\0")[1:]
     given, others = top.parse_known_args(joined)

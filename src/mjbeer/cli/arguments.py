@@ -9,8 +9,7 @@ import inspect
 import math
 import pathlib
 from argparse import Namespace
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple, NoReturn, Self
 
 import numpy as np
@@ -55,12 +54,11 @@ def several(text: str) -> float | np.ndarray:
     try:
         if ":" in text:
             first, last, count = text.split(":")
-            if not 1 <= int(count) <= 10**8:  # they take a gigabyte
-                raise ValueError
-            numbers = np.linspace(require.number("", float(first)), require.number("", float(last)), int(count))
+            with np.errstate(invalid="ignore"):
+                numbers = np.linspace(float(first), float(last), min(int(count), 10**8))  # they take a gigabyte
         else:
             numbers = np.array([float(each) for each in text.split(",")])
-        if not np.isfinite(numbers).all():
+        if not (numbers.size and np.isfinite(numbers).all()):
             raise ValueError
     except ValueError:
         raise argparse.ArgumentTypeError(
@@ -76,14 +74,13 @@ class Option(NamedTuple):
     """
 
     name: str
-    told: str
+    help: str
     default: Any = None
     kind: Any = float  # a function that reads a word, or the names that are allowed; bool, if the option takes no value
     otherwise: str = ""
 
 
-@dataclass(frozen=True)
-class Command:
+class Command(NamedTuple):
     """A command: the function that runs it, whose docstring says what it does, and its options."""
 
     run: Callable[[Namespace], int]
@@ -102,41 +99,41 @@ def command(*options: Option, **more: Any) -> Callable[[Callable[[Namespace], in
 class Parser(argparse.ArgumentParser):
     """A parser whose errors are one line each."""
 
-    def __init__(self, told: str, **settings: Any) -> None:
-        lines = functools.partial(argparse.HelpFormatter, max_help_position=28)
-        settings = {"formatter_class": lines, "allow_abbrev": False, "description": " ".join(told.split())} | settings
-        super().__init__(**settings)
+    def __init__(self, **settings: Any) -> None:
+        settings["description"] = " ".join(settings["description"].split())
+        settings["formatter_class"] = functools.partial(argparse.HelpFormatter, max_help_position=28)
+        super().__init__(allow_abbrev=False, **settings)
 
     def error(self, message: str) -> NoReturn:
         raise ParameterError(f"{message}; see `{self.prog} --help`")
 
-    def below(self, title: str, name: str, told: Mapping[str, str], of: str = "") -> dict[str, Self]:
+    def add_words(self, title: str, name: str, meanings: Mapping[str, str], before: str = "") -> dict[str, Self]:
         """Add words of which one must follow, with what they mean, and return the parser of each.
 
-        Their help begins with `of`.
+        Their help begins with `before`.
         """
         choice = self.add_subparsers(title=title, dest=name.lower(), metavar=name, required=True)
-        made = {}
-        for word, meaning in told.items():
-            first, _, _ = meaning.partition("\n\n")
-            made[word] = choice.add_parser(word, help=" ".join(first.split()).removesuffix("."), told=of + meaning)
-        return made
+        return {
+            word: choice.add_parser(word, help=meaning.split(".\n")[0].removesuffix("."), description=before + meaning)
+            for word, meaning in meanings.items()
+        }
 
-    def add(self, options: Sequence[Option]) -> None:
+    def add_options(self, options: Iterable[Option]) -> None:
         """Add options."""
-        self.usage = "%(prog)s [options]" + " [NAME ...]" * any(isinstance(each.default, tuple) for each in options)
+        self.usage = "%(prog)s [options]"
         metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
         for name, told, default, kind, otherwise in options:
             shown = otherwise or (f"{default:g}" if isinstance(default, float) else default)
-            how: dict[str, Any] = {"help": told, "action": "store_true"}
+            how: dict[str, Any] = {"type": kind, "metavar": metavars[kind]} if kind in metavars else {"choices": kind}
             if isinstance(default, tuple):
+                self.usage += " [NAME ...]"
                 self.add_argument(name, nargs="*", metavar="NAME", help=f"{told} (default: {', '.join(default)})")
-                continue
-            if kind is not bool:
-                how = {"help": f"{told} ({shown})" if shown == REQUIRED else f"{told} (default: {shown})"}
-                how |= {"type": kind, "metavar": metavars[kind]} if callable(kind) else {"choices": kind}
+            elif kind is bool:
+                self.add_argument(f"--{name}", action="store_true", help=told)
+            else:
+                how |= {"help": f"{told} ({shown if shown == REQUIRED else f'default: {shown}'})"}
                 how |= {"default": default, "required": shown == REQUIRED}
-            self.add_argument("--" + name.replace("_", "-"), **how)
+                self.add_argument("--" + name.replace("_", "-"), **how)
 
 
 def defaults(scene: str) -> dict[str, Any]:
@@ -156,10 +153,10 @@ def scene_options(scene: str, numbers: Callable[[str], Any]) -> Iterable[Option]
 
 
 STANDING = "a can that stands on a floor, free in space, with a liquid that sloshes"
-SCENES_TOLD = {
+SCENE_MEANINGS = {
     name: str(make.__doc__).split("\n")[0].removeprefix("Return the scene of ") for name, make in SCENES.items()
 }
-STANDING_OPTIONS = (
+STANDING_OPTIONS = (  # the can is of aluminium sheet
     Option("liquid", _MEANINGS["liquid"], "beer", NAMES),
     Option("fill", "height of the liquid as a fraction of the can's length, between 0 and 1", 0.5),
     Option("radius", _MEANINGS["radius"], RADIUS),
@@ -168,7 +165,6 @@ STANDING_OPTIONS = (
     Option("damping_ratio", "damping of each mode over the critical one", None, float, "what the viscosity gives"),
     Option("gravity", _MEANINGS["gravity"], GRAVITY),
 )
-"""The options of a standing can, which is of aluminium sheet."""
 
 
 def standing_can(given: Namespace) -> Standing:
@@ -180,8 +176,7 @@ def standing_can(given: Namespace) -> Standing:
 _PHI0 = "initial phi, the angle of the load [degrees]: 0 where its centre of mass is nearest to the incline"
 _ROLLING = "what makes the can roll: reduced coordinates, a joint equality, or contact with friction"
 _TIMESTEP = Option("timestep", "timestep; with a tolerance, interval between samples [s]", 1e-3)
-STEPS = Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP
-"""The options of what MuJoCo steps."""
+STEPS = Option("integrator", "one of MuJoCo's", "RK4", INTEGRATORS), _TIMESTEP  # the options of what MuJoCo steps
 _FRICTION = Option("friction", "coefficient of friction: a contact slips beyond it", FRICTION)
 
 
@@ -222,9 +217,9 @@ def radians(name: str, value: Any, unit: str = "degrees") -> Any:
     Raises:
       ParameterError: if one is not finite; the message has the `name` of the option and the `unit` of its value.
     """
-    for each in np.atleast_1d(value).tolist():
+    for each in np.ravel(value).tolist():
         require.number(name, each, unit)
-    return math.radians(value) if np.ndim(value) == 0 else np.radians(value)
+    return np.radians(value) if isinstance(value, np.ndarray) else math.radians(value)
 
 
 def start(given: Namespace) -> dict[str, Any]:
@@ -236,13 +231,13 @@ def start(given: Namespace) -> dict[str, Any]:
     return {"phi0": radians("phi0", phi0), "phi_dot0": radians("phi_dot0", given.phi_dot0, "degrees/s")}
 
 
-def asked(given: Namespace) -> dict[str, Any]:
+def scene_arguments(given: Namespace) -> dict[str, Any]:
     """Return the options of the scene, as `make` takes them: the incline in radians.
 
     Raises:
       ParameterError: if the incline is not between -90 and 90 degrees.
     """
-    for each in np.atleast_1d(given.incline).tolist():
+    for each in np.ravel(given.incline).tolist():
         if not abs(each) < 90:
             raise ParameterError(f"incline must be between -90 and 90 [degrees], got {each!r}")
     options = {name: getattr(given, name) for name in defaults(given.scene)}
@@ -258,7 +253,7 @@ def make(function: Callable[..., Any], **options: Any) -> Any:
 
 def scene(given: Namespace) -> Scene:
     """Return the scene that was asked for, and say what a liquid takes that was not given."""
-    options = asked(given)
+    options = scene_arguments(given)
     if given.scene == "liquid":
         say(str(make(liquid_in, **{name: value for name, value in options.items() if name != "drag"})))
     return make(SCENES[given.scene], **options)

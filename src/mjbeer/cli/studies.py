@@ -2,6 +2,7 @@
 
 import contextlib
 import functools
+import math
 import pathlib
 import time
 from argparse import Namespace
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from mjbeer import require
-from mjbeer.cli.arguments import SCENES, Option, asked, command, make, run_options, several, start, steps
+from mjbeer.cli.arguments import SCENES, Option, command, make, run_options, scene_arguments, several, start, steps
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
@@ -61,7 +62,7 @@ def sweep(given: Namespace) -> int:
 
     if given.output.suffix not in ENDINGS:
         raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")
-    options = asked(given) | start(given)
+    options = scene_arguments(given) | start(given)
     varied = [each for each in options.values() if isinstance(each, np.ndarray)]
     if given.output.suffix in PLOTS and len(varied) not in (1, 2):
         raise ParameterError(
@@ -70,7 +71,7 @@ def sweep(given: Namespace) -> int:
     if given.tolerance is None and given.integrator is None:
         given.tolerance = 1e-6
     maker = functools.partial(make, SCENES[given.scene])
-    cast("Any", maker).__qualname__ = given.scene
+    cast("Any", maker).__module__, cast("Any", maker).__qualname__ = "mjbeer", given.scene
     resumed = given.output if given.output.suffix == ".nc" else None
     with files.atomic_write(given.output) if resumed is None else contextlib.nullcontext() as temporary:
         options |= {"quantity": given.quantity, "output": resumed, "overwrite": given.overwrite, **steps(given)}
@@ -194,25 +195,19 @@ def _conclude(validation: "Validation", began: float) -> int:
 def _plot(result: "xarray.Dataset", quantity: str, path: pathlib.Path) -> None:
     """Plot a quantity over one parameter, or as a map over two, with angles in degrees."""
     import matplotlib as mpl
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
 
     from mjbeer.output.plots import STYLE
 
-    shown = result.copy()
-    for name in (*shown.coords, quantity):
-        unit = shown[name].attrs.get("units", "")
-        if "rad" in unit and name != "error":
-            values = np.degrees(shown[name].values)
-            shown[name] = shown[name].dims, values, shown[name].attrs | {"units": unit.replace("rad", "°")}
-    with mpl.rc_context(STYLE):
-        figure = plt.figure(figsize=(7, 4.5), layout="constrained")
-        axes = figure.add_subplot()
-        values = shown[quantity].where(np.isfinite(shown[quantity]))
-        if values.ndim == 1:
-            values.plot.line(ax=axes, marker="." if values.size < 100 else "")
-        else:
-            values.plot.pcolormesh(ax=axes, x=values.dims[0], cmap="cividis", rasterized=True)
-            axes.grid(visible=False)
+    shown = result[quantity].where(np.isfinite(result[quantity]))
+    angles = {name: of for name, of in shown.coords.items() if of.attrs.get("units") == "rad"}
+    shown = shown.assign_coords({name: (of.dims, np.degrees(of.values), {"units": "°"}) for name, of in angles.items()})
+    if "rad" in (unit := shown.attrs.get("units", "")) and quantity != "error":
+        shown = (shown * math.degrees(1)).assign_attrs(shown.attrs | {"units": unit.replace("rad", "°")})
+    with mpl.rc_context(STYLE | {"axes.grid": shown.ndim == 1}):
+        figure = Figure((7, 4.5), layout="constrained")
+        axes = figure.subplots()
+        of_map = {"x": shown.dims[0], "cmap": "cividis", "center": False}
+        shown.plot(ax=axes, **(of_map if shown.ndim == 2 else {"marker": "."}))
         axes.set_title(f"{result.attrs['make']}, {result.attrs['duration']:.6g} s")
-        figure.savefig(path, facecolor="white", dpi=150)
-        plt.close(figure)
+        figure.savefig(path, dpi=150)

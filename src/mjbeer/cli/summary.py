@@ -9,19 +9,19 @@ from typing import Any
 
 import numpy as np
 
+from mjbeer.checks import finite
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_EQUATIONS = {
+_EQUATIONS = {  # which equations a motion solves, by how the can rolls
     "exact": "rolling, by theory",
     "reduced": "rolling, in reduced coordinates",
     "equality": "rolling, by a joint equality",
     "contact": "a soft contact with friction",
 }
-"""Which equations a motion solves, by how the can rolls."""
 Row = tuple[str, Any, str, str]
 """A name, a value, its unit, and how text shows it: as a format, or in words where it is none."""
 
@@ -64,11 +64,11 @@ class Summary:
         rolls = run.rolling == "contact" or math.isinf(self.rolls_until[self.friction])
         holds = rolls and not (run.rolling_warnings or run.liquid_warnings)
         scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
-        frictions, ends = [], []
-        for each, end in self.rolls_until.items():
-            forever = math.isinf(end)
-            frictions.append({"friction coefficient": each, "to the end": forever, "until [s]": _finite(end)})
-            ends.append(f"{'to the end' if forever else f'until t = {end:.6g} s'} with friction {each:g}")
+        until = self.rolls_until.items()
+        frictions = [{"friction coefficient": of, "to the end": math.isinf(end), "until [s]": end} for of, end in until]
+        ends = [
+            f"until t = {end:.6g} s with friction {of:g}".replace("until t = inf s", "to the end") for of, end in until
+        ]
         return (
             ("rolling", run.rolling, "", "{}"),
             ("integrator", run.integrator, "", "{}"),
@@ -85,7 +85,12 @@ class Summary:
             ("least normal force needed", normal.min(), "N", "{:.4g}"),
             ("largest normal force needed", normal.max(), "N", "{:.4g}"),
             ("friction coefficient needed", run.record.needed_friction, "", _needed(run)),
-            ("can roll without slipping", frictions, "", f"\n{'':<32}".join(ends)),
+            (
+                "can roll without slipping",
+                frictions,
+                "",
+                f"\n{'':<32}".join(ends).replace("until t = inf s", "to the end"),
+            ),
             *_steady(run.scene),
             ("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
             ("equations solved", solved, "", f"{'yes' if solved else 'no'}: those of {_EQUATIONS[run.rolling]}"),
@@ -97,15 +102,15 @@ class Summary:
         lines = [
             f"{name:<31} {shown.format(value)} {unit}".rstrip() if "{" in shown else f"{name:<31} {shown}"
             for name, value, unit, shown in self.rows
-            if "{" not in shown or _finite(value) is not None
+            if "{" not in shown or finite(value) is not None
         ]
         return "\n".join(lines) + "\n"
 
     def json(self) -> str:
         """Return the figures as a JSON object, with units in the names; what is not finite becomes null."""
-        content = {f"{name} [{unit}]" if unit else name: _finite(value) for name, value, unit, _ in self.rows}
+        content = {f"{name} [{unit}]" if unit else name: value for name, value, unit, _ in self.rows}
         content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
-        return json.dumps(content, indent=2, allow_nan=False) + "\n"
+        return json.dumps(finite(content), indent=2, allow_nan=False) + "\n"
 
 
 def _needed(run: Trajectory) -> str:
@@ -133,8 +138,3 @@ def _steady(scene: Scene) -> Generator[Row]:
     swing = [f"{root.real:.4g} +- {root.imag:.4g}i" for root in roots or () if root.imag > 0]
     pairs = [[root.real, root.imag] for root in roots] if roots else None
     yield "modes, real and imaginary parts", pairs, "1/s", f"{', '.join([*creep, *swing])} 1/s" if roots else "{}"
-
-
-def _finite(value: Any) -> Any:
-    """Return a number for JSON, which has no infinity and no NaN: those become None. Others are left as they are."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value

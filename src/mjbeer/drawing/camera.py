@@ -19,10 +19,8 @@ small."""
 CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan", "close")
 _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
-_AROUND = 1.95
+_AROUND = 1.75
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
-_ROOM = 3.0  # what is seen below it where marks are below the board
-_LARGEST = 0.22  # largest radius of a can, in heights of the picture
 _SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
 _FAR = 8.0  # distance of the eye, in half diagonals of the picture: the longer, the less of the can's inside is seen
 _ABOVE = 0.18  # how far the eye is above the middle of the picture, in heights: it sees the board's upper side
@@ -92,11 +90,11 @@ class View:
         middle = (low + high) / 2
         return replace(whole, low=middle - half, high=middle + half, pixels=pixels)
 
-    def pixel(self, points: np.ndarray) -> np.ndarray:
-        """Return column and row of points [m] of shape (..., 3), from the upper left corner of the picture."""
+    def pixel(self, points: np.ndarray, top: int = 0) -> np.ndarray:
+        """Return column and row of points [m] of shape (..., 3), on a sheet where the picture begins at row `top`."""
         seen = (np.asarray(points) - self.eye) @ self.axes.T
         across = (seen[..., :2] / -seen[..., 2:] - self.low) / (self.high - self.low)
-        return (across * [1, -1] + [0, 1]) * self.pixels
+        return (across * [1, -1] + [0, 1]) * self.pixels + np.array([0, top])
 
     def corners(self, y: float) -> np.ndarray:
         """Return x and z [m] of the picture's corners, in turn, in a plane across the can's axis, shape (4, 2)."""
@@ -154,15 +152,16 @@ class CameraPath:
         lift: np.ndarray,
         plane: float,
         pixels: tuple[int, int],
-        room: bool = False,
+        around: float = _AROUND,
+        below: float = _AROUND,
     ) -> "CameraPath":
         """Return the path that shows a can that is at `u` and `lift` [m] at some times [s].
 
-        With `room`, there is some for marks below the can.
+        At least so many radii are seen `around` the can's axis, and `below` it.
         """
         along, height = u * scale(scene), lift * scale(scene)
         if camera == "auto":
-            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels, room)
+            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels, around, below)
             camera = "fixed" if RADIUS / fixed.metres[1] >= _SMALLEST else "pan"
         if camera == "fixed" or len(time) < 3 or np.ptp(time) == 0:
             way = Polynomial([(along.min() + along.max()) / 2])
@@ -171,8 +170,8 @@ class CameraPath:
         else:
             way = partial(np.interp, xp=time, fp=along)
         places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([_AROUND, _ROOM if room else _AROUND])
-        high = places.max(axis=0) + RADIUS * _AROUND
+        low = places.min(axis=0) - RADIUS * np.array([around, below])
+        high = places.max(axis=0) + RADIUS * around
         shape = np.array(pixels) / pixels[1]
-        tall = max(float(((high - low) / shape).max()), RADIUS / _LARGEST)
+        tall = float(((high - low) / shape).max())
         return cls(scene, way, (low + high) / 2, tall * shape, plane, pixels, still=camera == "fixed")

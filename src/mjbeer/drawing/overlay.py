@@ -1,7 +1,7 @@
 """What is drawn over the pictures of a motion to explain it: words above, marks at the can, numbers on the board."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, Self
@@ -11,17 +11,17 @@ import numpy as np
 
 from mjbeer.drawing import strip
 from mjbeer.drawing.camera import Camera, View, circle, in_space, scale
-from mjbeer.drawing.sheet import INK, UNITS, Box, Colour, Sheet, overlap
+from mjbeer.drawing.sheet import INK, Box, Colour, Sheet, overlap
 from mjbeer.drawing.words import in_words
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.scene import GRAVITY, Scene
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-Mark = Literal["phi", "paths", "forces", "ghost", "skid"]
-"""phi: the angle of the load. paths: of a point on the rim and of the load's centre of mass. forces: N and F. ghost: a
-can that accelerates evenly. skid: the track that is left on the incline where the can slips."""
+Mark = Literal["phi", "paths", "normal", "friction", "ghost", "skid", "gap"]
+"""phi: the angle of the load. paths: of a point on the rim and of the load's centre of mass. normal, friction: N and F.
+ghost: a can that accelerates evenly. skid: the track on the incline where the can slips. gap: how high it flies."""
 _TITLES = {
     "sliding": "Beer that slides in its can without friction",
     "frozen": "Beer frozen to its can",
@@ -40,13 +40,14 @@ class Look:
     marks: tuple[Mark, ...] = ("phi", "paths")  # what is drawn to explain the motion
     camera: Camera = "auto"  # how the camera moves
     facts: str = ""  # what is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title
+    notes: tuple[str, ...] = ()  # what is said while it happens; the charts mark when the first one is
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
         """Return the look of a motion of which nothing else is known."""
         title = _DAMPED if trajectory.scene.dissipates else _TITLES[looks.name(trajectory.scene)]
         if trajectory.rolling == "contact":
-            return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "forces"), camera=camera)
+            return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "normal", "friction"), camera=camera)
         if trajectory.scene.dissipates:
             return cls(title, strips=("phi", "u_dot"), camera=camera)
         if trajectory.scene.attachment == "sliding":
@@ -58,18 +59,23 @@ class Look:
 
 HEIGHT = 4.1  # height of the first two lines
 STRIP = 10  # height of the charts below a picture
+NOTE = 3  # height of a note, at the top of the scene
 _LEGEND = 1.5  # height of the third line, which tells what the marks mean, if they need it
 _FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
-_GREY = "#52606d"
+_GREY, _PLATE = "#52606d", (1.0, 0.95, 0.72)
+_PARTS = {"sliding": ("can", "beer"), "frozen": ("can", "beer"), "pendulum": ("wheel", "bob"), "hoop": ("hoop", "bar")}
+"""What rolls and what is in it, by the names of looks."""
 _RIM, _CENTRE, _GHOST, _SKID = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of the track."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
 _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
     "phi": (),
-    "paths": (("—", _RIM, "path of a point on the rim"), ("—", _CENTRE, "path of the centre of mass")),
-    "forces": (("→", _NORMAL, "normal force N"), ("→", _FRICTION, "friction F")),
+    "paths": (("—", _RIM, "a point on the rim"), ("—", _CENTRE, "centre of mass")),
+    "normal": (("→", _NORMAL, "normal force N"),),
+    "friction": (("→", _FRICTION, "friction F"),),
     "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
     "skid": (("—", _SKID, "where the {} slips"),),
+    "gap": (),
 }
 """What the marks are: a sign, its colour, and its meaning."""
 
@@ -79,29 +85,51 @@ def header_height(look: Look, unit: float) -> int:
     return round((HEIGHT + (_LEGEND if any(_LEGENDS[mark] for mark in look.marks) else 0)) * unit)
 
 
-def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed: float, unit: float) -> None:
+def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed: float) -> None:
     """Draw the lines above a picture as they are at a `time` [s]."""
     duration = float(trajectory.time[-1] - trajectory.time[0])
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
     words = in_words(trajectory.scene) + (f"; {look.facts}" if look.facts else "")
-    head(sheet, (look.title, words), time, speed, unit, digits)
+    head(sheet, (look.title, words), time, speed, digits)
+    unit = sheet.unit
     sheet.blank(0, round(HEIGHT * unit), sheet.width, header_height(look, unit))
-    body, column = "can" if looks.name(trajectory.scene) in ("sliding", "frozen") else "wheel", 1.2 * unit
+    (body, _), column = _PARTS[looks.name(trajectory.scene)], 1.2 * unit
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
         *_, column, _ = sheet.text((column, _THIRD * unit), sign, 1.1 * unit, colour, bold=True)
         *_, column, _ = sheet.text((column + 0.5 * unit, _THIRD * unit), meaning.format(body), 1.0 * unit)
         column += 1.8 * unit
 
 
-def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, unit: float, digits: int = 2) -> None:
+def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, digits: int = 2) -> None:
     """Draw a title and a scene in words, the `time` [s] with some digits after the point, and the playback speed."""
-    pace = f"slowed down {1 / speed:.3g} times" if speed < 1 else f"sped up {speed:.3g} times"
+    pace, unit = f"slowed down {1 / speed:.3g} times" if speed < 1 else f"sped up {speed:.3g} times", sheet.unit
     sheet.blank(0, 0, sheet.width, round(HEIGHT * unit))
-    sheet.text((1.2 * unit, _FIRST * unit), words[0], 1.45 * unit, bold=True)
-    sheet.text((1.2 * unit, _SECOND * unit), words[1], 1.1 * unit, _GREY)
-    right = sheet.width - 1.2 * unit
-    sheet.text((right, _FIRST * unit), f"t = {time:.{digits}f} s", 1.45 * unit, anchor=(1, 0.5))
-    sheet.text((right, _SECOND * unit), "real time" if speed == 1 else pace, 1.1 * unit, _GREY, (1, 0.5), speed > 1)
+    right, pace = sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
+    for row, size, colour, said, aside in (
+        (_FIRST, 1.45, INK, words[0], f"t = {time:.{digits}f} s"),
+        (_SECOND, 1.1, _GREY, words[1], pace),
+    ):
+        bold = row == _FIRST
+        room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5), speed > 1 and not bold)
+        *_, end, _ = sheet.box((1.2 * unit, 0), said, size * unit, bold=bold)
+        fits = min(1.0, (room - 2 * unit) / end)
+        sheet.text((1.2 * unit, row * unit), said, max(fits, 0.5) * size * unit, colour, bold=bold)
+
+
+def note(
+    sheet: Sheet, motion: Trajectory, notes: Mapping[str, Sequence[tuple[float, float]]], time: float, top: int
+) -> None:
+    """Write the first of some notes that holds at a `time` [s] into the scene, whose upper edge is at a row `top`."""
+    body, load = _PARTS[looks.name(motion.scene)]
+    said = next((name for name, of in notes.items() if any(first <= time <= last for first, last in of)), None)
+    if said:
+        words, size = strip.NOTES[said][0].format(body=body, load=load, lift=1e3 * motion.lift.max()), 1.25 * sheet.unit
+        place = 1.9 * sheet.unit, top + NOTE / 2 * sheet.unit
+        left, upper, right, lower = sheet.box(place, words, size, bold=True)
+        corners = [[left, upper], [right, upper], [right, lower], [left, lower]]
+        edge = size / 2 * np.array([[-1, -0.4], [1, -0.4], [1, 0.4], [-1, 0.4]])
+        sheet.area(np.array(corners) + edge, _PLATE, alpha=0.92)
+        sheet.text(place, words, size, bold=True)
 
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
@@ -110,10 +138,8 @@ LONGEST = 1.6
 """Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
 _CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
 _RARE = 90.0  # percentage of times at which no force is larger than the longest arrow shows
-_LETTER = 1.35  # least height of a letter, in units of the sheet
+_LETTER, _LETTERS = 1.35, 2.0  # least and largest height of a letter, in units of the sheet
 _FAINT = 0.05  # least length of an arrow that is drawn
-_SLOW = 0.02
-"""Speed from which on a foot slips, over that of a fall from the radius: the contact of a can that rolls creeps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +156,7 @@ class Marks:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        marks = (self._skid, self._ghost, self._paths, self._forces, self._phi)
+        marks = (self._skid, self._gap, self._ghost, self._paths, self._normal, self._friction, self._phi)
         for draw in (each for each in marks if each.__name__[1:] in self.kinds):
             draw(pen, time, now)
         sheet.clip(None)
@@ -146,10 +172,17 @@ class Marks:
         until = np.searchsorted(self.fine, time, side="right")
         (u, _, roll, lift), radius = self.positions.T, self.trajectory.scene.can.radius
         slip = np.gradient(u - radius * roll, self.fine)
-        fall = math.sqrt(2 * (self.trajectory.scene.gravity or GRAVITY) * radius)
-        slips = (np.abs(slip) > _SLOW * fall) & (lift < _SLOW * radius)
+        slips = (np.abs(slip) > strip.slow(self.trajectory.scene)) & (lift < 0.02 * radius)
         foot = np.stack([np.where(slips, u / radius, np.nan), np.full(len(u), -WALL)], axis=1)[:until]
-        pen.line(foot, 0.12, _SKID)
+        pen.line(foot, 0.2, _SKID)
+
+    def _gap(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        place, height = now[0] / self.trajectory.scene.can.radius, now[3] / self.trajectory.scene.can.radius - WALL
+        if height > 0:
+            for level in (-WALL, height):
+                pen.line(np.array([[place, level], [place + 1.1, level]]), 0.02, INK)
+            pen.arrow(np.array([place + 0.9, -WALL]), np.array([place + 0.9, height]), _SKID)
+            pen.text(np.array([place + 1.8, height / 2]), f"{1e3 * now[3]:.0f} mm", INK)
 
     def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         until = np.searchsorted(self.fine, time, side="right")
@@ -161,16 +194,19 @@ class Marks:
         pen.line(centre, 0.035, _CENTRE, alpha=0.9)
         pen.disc(centre[-1], 0.07, _CENTRE)
 
-    def _forces(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+    def _normal(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
         foot = np.array([now[0] / self.trajectory.scene.can.radius, -WALL])
-        way = -1.0 if friction > 0 else 1.0
         if normal > _FAINT:
-            length = min(normal, LONGEST)
+            length, way = min(normal, LONGEST), -1.0 if friction > 0 else 1.0
             pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
             pen.text(foot - np.array([0.36 * way, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
+
+    def _friction(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        friction = float(np.interp(time, self.trajectory.time, self._lengths[1]))
+        foot = np.array([now[0] / self.trajectory.scene.can.radius, -WALL])
         if abs(friction) > _FAINT:
-            length = min(abs(friction), LONGEST)
+            length, way = min(abs(friction), LONGEST), -1.0 if friction > 0 else 1.0
             start = foot - np.array([0, 0.12])
             pen.arrow(start, start + np.array([way * length, 0]), _FRICTION)
             pen.text(foot + np.array([way * max(length, _CLEAR), -0.54]), "F", _FRICTION)
@@ -191,9 +227,9 @@ class Marks:
         angle, centre = math.radians(float(strip.wrapped(phi))), np.array([u / radius, 1 + lift / radius])
         start = (math.pi if angle >= 0 else 0.0) if filled else -math.pi / 2
         for direction in (start, start - angle):
-            pen.line(centre + np.array([[1.07], [1.5]]) * _towards(direction), 0.045, INK)
-        pen.line(centre + 1.32 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
-        pen.text(centre + 1.74 * _towards(start - angle / 2), "φ", INK)
+            pen.line(centre + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
+        pen.line(centre + 1.26 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
+        pen.text(centre + 1.62 * _towards(start - angle / 2), "φ", INK)
 
 
 def _towards(angle: float | np.ndarray) -> np.ndarray:
@@ -219,7 +255,7 @@ class _Pen:
     def places(self, points: np.ndarray) -> np.ndarray:
         """Return column and row on the sheet."""
         points = in_space(self.scene, RADIUS * points[..., 0], RADIUS * points[..., 1], self.plane)
-        return self.view.pixel(points) + np.array([0, self.top])
+        return self.view.pixel(points, self.top)
 
     def line(self, points: np.ndarray, width: float, colour, alpha: float = 1.0, dashes: Sequence[float] = ()) -> None:
         self.sheet.line(self.places(points), max(1.0, width * self.radius), colour, alpha=alpha, dashes=dashes)
@@ -231,7 +267,7 @@ class _Pen:
         self.sheet.disc(self.places(point), max(2.0, radius * self.radius), colour)
 
     def text(self, point: np.ndarray, words: str, colour: Colour) -> None:
-        size = max(_LETTER * self.sheet.height / UNITS, 0.46 * self.radius)
+        size = min(max(_LETTER, 0.4 * self.radius / self.sheet.unit), _LETTERS) * self.sheet.unit
         self.sheet.text(self.places(point), words, size, colour, (0.5, 0.5), halo=True)
 
 
@@ -248,12 +284,13 @@ class Board:
     scene: Scene
     front: float  # its coordinate y [m]
     under: float  # its height over the surface on which the can rolls, negative [m]
+    start: float = 0.0  # where the distances begin [m]
 
     @classmethod
-    def of(cls, scene: Scene, model: mujoco.MjModel) -> "Board":
+    def of(cls, scene: Scene, model: mujoco.MjModel, start: float = 0.0) -> "Board":
         """Return the edge of the board of a display model."""
         board = model.geom("board")
-        return cls(scene, front=float(board.pos[1] - board.size[1]), under=float(board.pos[2] - board.size[2]))
+        return cls(scene, float(board.pos[1] - board.size[1]), float(board.pos[2] - board.size[2]), start)
 
     def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
         """Return column and row of points of the edge, `along` the incline as drawn [m], shape (..., 2)."""
@@ -265,32 +302,28 @@ class Board:
         return float((column - first) / (second - first))
 
 
-def guides(sheet: Sheet, board: Board, view: View, top: int, unit: float) -> None:
-    """Draw gravity's arrow, the incline's angle and distances into a view whose upper edge is at a row of the sheet.
-
-    `unit` is the unit of length of the sheet [pixels].
-    """
-    width, height = view.pixels
+def guides(sheet: Sheet, board: Board, view: View, top: int) -> None:
+    """Draw gravity's arrow, the incline's angle and distances into a view whose upper edge is at a row of the sheet."""
+    (width, height), unit = view.pixels, sheet.unit
     sheet.clip((0, top, width, top + height))
-    shift = np.array([0.0, top])
     tail = np.array([3 * unit if board.scene.incline < 0 else width - 1.6 * unit, top + 1.0 * unit])
     sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
     sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
-    taken = [_draw_angle(sheet, board, view, shift, unit)] if board.scene.incline else []
-    _draw_distances(sheet, board, view, shift, unit, taken)
+    taken = [_draw_angle(sheet, board, view, top)] if board.scene.incline else []
+    _draw_distances(sheet, board, view, top, taken)
     sheet.clip(None)
 
 
-def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float) -> Box:
-    """Draw the angle of the incline under the board's lower end, and return the box of its lines."""
-    width, height = view.pixels
+def _draw_angle(sheet: Sheet, board: Board, view: View, top: int) -> Box:
+    """Draw the angle of the incline under the board, and return the box of its lines."""
+    (width, height), unit = view.pixels, sheet.unit
     uphill = -math.copysign(1.0, board.scene.incline)
     tilt, reach = abs(board.scene.incline), 9 * unit
     lowest = height - 2.6 * unit
-    corner = board.pixel(view, board.along(view, width - 2 * unit if uphill < 0 else 2 * unit))
+    corner = board.pixel(view, board.along(view, width * (0.5 - 0.1 * uphill)))
     if corner[1] > lowest:  # the board leaves the picture through its lower edge
         corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
-    corner = corner + shift
+    corner = corner + np.array([0, top])
     sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
     sheet.line(corner + 0.8 * reach * np.array([uphill, -1]) * _towards(np.linspace(0, tilt, 24)), 0.12 * unit)
     place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
@@ -299,20 +332,21 @@ def _draw_angle(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit:
     return left, float(corner[1] - reach * math.sin(tilt)), right, float(corner[1])
 
 
-def _draw_distances(sheet: Sheet, board: Board, view: View, shift: np.ndarray, unit: float, taken: list[Box]) -> None:
+def _draw_distances(sheet: Sheet, board: Board, view: View, top: int, taken: list[Box]) -> None:
     """Write distances down the incline below the board [m], with a tick at each, where there is room."""
-    width, height = view.pixels
-    ends = [board.along(view, column) / scale(board.scene) for column in (0, width)]
+    (width, height), unit = view.pixels, sheet.unit
+    ends = [board.along(view, column) / scale(board.scene) - board.start for column in (0, width)]
     least = (ends[1] - ends[0]) * _SPACING * unit / width
     power = 10.0 ** math.floor(math.log10(least))
     step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= least * (1 - 1e-9))
     numbers = step * np.arange(math.ceil(min(ends) / step), math.floor(max(ends) / step) + 1)
     down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
-    for number, place in zip(numbers, board.pixel(view, numbers * scale(board.scene)) + shift, strict=True):
+    places = board.pixel(view, (numbers + board.start) * scale(board.scene)) + np.array([0, top])
+    for number, place in zip(numbers, places, strict=True):
         words = f"{round(float(number) / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
         below = place + np.array([0, 0.8 * unit])
         box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
-        inside = box[0] > 0 and box[1] > shift[1] and box[2] < width and box[3] < shift[1] + height
+        inside = box[0] > 0 and box[1] > top and box[2] < width and box[3] < top + height
         if inside and not any(overlap(box, other) for other in sheet.boxes + taken):
             sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
             sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))

@@ -9,16 +9,14 @@ from functools import cached_property, partial
 import numpy as np
 from scipy.optimize import brentq
 
-from mjbeer.drawing.camera import View, in_space
+from mjbeer.drawing.camera import View, in_space, scale
 from mjbeer.drawing.film import RenderPlan
-from mjbeer.drawing.overlay import HEIGHT, STRIP, head
+from mjbeer.drawing.overlay import HEIGHT, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import INK, UNITS, Colour, Sheet
-from mjbeer.drawing.strip import QUANTITIES, Chart, Line, Strip, heading
+from mjbeer.drawing.sheet import INK, Colour, Sheet
 from mjbeer.drawing.words import in_degrees
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.exact import exact
 from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
@@ -50,22 +48,10 @@ class Runner:
         """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if it ends before."""
         if self.distance[-1] < length:
             return math.inf
-        return self._when(lambda time: self.positions(np.array([time]))[0, 0] - length)
-
-    def finish_of_theory(self, length: float) -> float:
-        """Return when exact theory has the can at a `length` [m] from the start [s]; infinite where `finish` is."""
-        if self.distance_of_theory(self.trajectory.time[-1]) < length:
-            return math.inf
-        return self._when(lambda time: self.distance_of_theory(time) - length)
-
-    def _when(self, ahead: Callable[[float], float]) -> float:
-        return float(brentq(ahead, 1e-3, self.trajectory.time[-1], xtol=1e-12))
-
-    def distance_of_theory(self, time: float) -> float:
-        """Return how far exact theory has the can from the start at a `time` [s], in metres."""
-        motion = self.trajectory
-        theory = exact(motion.scene, np.array([0.0, time]), motion.phi0, motion.phi_dot0)
-        return float(theory.u[1] - theory.u[0])
+        moment = brentq(
+            lambda t: self.positions(np.array([t]))[0, 0] - length, 1e-3, self.trajectory.time[-1], xtol=1e-12
+        )
+        return float(moment)
 
     def positions(self, times: np.ndarray) -> np.ndarray:
         """Return u from the start [m], phi, roll [rad] and lift [m] at some times [s], shape (times, 4).
@@ -78,10 +64,10 @@ class Runner:
 
 @dataclass(frozen=True)
 class Race:
-    """A film of several cans of one size, let go together on one incline.
+    """A film of several cans of one size, let go together on one incline; each has its time by its name at the finish.
 
-    Without `strips` it is a race: it lasts until all have reached the finish, and each then has its time by its name.
-    With them, the cans are compared by charts below the picture, for as long as all of their motions last.
+    With `centres` it is no race: the cans' centres of mass are marked and joined, from one line on, for as long as all
+    motions last.
     """
 
     title: str
@@ -90,11 +76,11 @@ class Race:
     speed: float
     told: Callable[[], str]  # a function that says what is seen, in whole sentences, for the text beside the film
     still: float
-    after: float = 0.0
-    """How long the race goes on after the last can has finished, in seconds of a motion without hurry [s]."""
-    hurry: float = 1.0  # how many times faster time runs once all cans but the last have finished
+    after: float = 0.0  # how long it goes on after the last can that it waits for has finished [s]
+    missing: int = 0  # how many cans it does not wait for; the film then ends with the times that they will need
     facts: str = ""  # what holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title
-    strips: tuple[str, ...] = ()  # names of the quantities in the charts
+    caveat: str = ""  # what is not so in reality; it stands at the bottom of the scene
+    centres: bool = False
 
     @property
     def caption(self) -> str:
@@ -108,14 +94,11 @@ class Race:
           ParameterError: if a can of a race does not finish.
         """
         runners = self.runners()
-        if self.strips:
-            end, later = min(float(runner.trajectory.time[-1]) for runner in runners), (math.inf, self.speed)
+        if self.centres:
+            end = min(float(runner.trajectory.time[-1]) for runner in runners)
         else:
-            finishes = self.finishes(runners)
-            end = finishes[-1] + self.after * self.hurry
-            later = (finishes[-2] + self.after, self.speed * self.hurry) if self.hurry != 1 else (math.inf, self.speed)
-
-        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, later), later)
+            end = self.finishes(runners)[-1 - self.missing] + self.after
+        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, end))
 
     def finishes(self, runners: Sequence[Runner]) -> list[float]:
         """Return the times [s] at which the cans finish, in increasing order.
@@ -132,46 +115,42 @@ class Race:
         return sorted(runner.finish(self.length) for runner in runners)
 
     def _pictures(
-        self, runners: Sequence[Runner], later: tuple[float, float], times: np.ndarray, width: int, height: int
+        self, runners: Sequence[Runner], end: float, times: np.ndarray, width: int, height: int
     ) -> Generator[np.ndarray]:
-        sheet, unit, scenes = Sheet(width, height), height / UNITS, [runner.trajectory.scene for runner in runners]
-        top, below = round(HEIGHT * unit), round(STRIP * unit) if self.strips else 0
+        sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
+        top, size = round(HEIGHT * sheet.unit), scale(scenes[0])
         display = Display.of(scenes, _APART)
-        scenery = Scenery(scenes[0], display.model, (0.0,) if self.strips else (0.0, self.length))
+        scenery = Scenery(scenes[0], display.model, (0.0,) if self.centres else (0.0, self.length))
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_BEFORE * self.length, self.length)]
         outlines = [display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
         points = np.concatenate(outlines)
         eye = points.mean(axis=0) + _FAR * self.length * _EYE
-        view = View.towards(eye, points, (sheet.width, sheet.height - top - below), _MARGIN)
-        strip = Strip(self._charts(runners), sheet.width, below) if below else None
-        facts = [f"{self.length:g} m"] * (not below) + [f"incline {in_degrees(scenes[0].incline)}"]
+        view = View.towards(eye, points, (sheet.width, sheet.height - top), _MARGIN)
+        facts = [f"{self.length:g} m"] * (not self.centres) + [f"incline {in_degrees(scenes[0].incline)}"]
         words = self.title, ", ".join(facts + [self.facts] * bool(self.facts))
-        results = {} if below else self._results(runners)
+        results = {} if self.centres else self._results(runners)
+        starts = [runner.trajectory.u[0] * self.centres for runner in runners]  # in a race all start at one line
         with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
             for time in times:
                 sheet.boxes.clear()
                 now = np.concatenate([runner.positions(np.array([time])) for runner in runners])
+                now[:, 0] += starts
                 painter.paint(sheet, view, now, top)
-                head(sheet, words, time, later[1] if time >= later[0] else self.speed, unit)
-                for runner, lane in zip(runners, display.lanes, strict=True):
-                    finish, said = results.get(runner.name, (math.inf, ""))
-                    if time < finish:
-                        said = f"now sped up {later[1]:.3g} times" if time >= later[0] else ""
-                    column, row = view.pixel(in_space(scenes[0], -1.6 * RADIUS, 0.0, lane))
-                    _plate(sheet, runner, said, column, row + top)
-                if strip is not None:
-                    strip.draw(sheet, time, top + view.pixels[1])
+                head(sheet, words, time, self.speed)
+                for runner, lane, u in zip(runners, display.lanes, now[:, 0] * size, strict=True):
+                    finish, result = results.get(runner.name, (math.inf, ""))
+                    arrived = time >= finish or (end < finish < math.inf and time >= end - self.after)
+                    said = (result if time >= finish else f"needs {finish:.2f} s", True, INK)
+                    said = said if arrived else (runner.note, False, INK)
+                    # It travels with the can, and stays at the finish.
+                    along = min(u, self.length) - 1.5 * RADIUS
+                    column, row = view.pixel(in_space(scenes[0], along, 0.0, lane), top)
+                    draw_plate(sheet, [(runner.name, True, runner.colour), said][: 1 + bool(said[0])], column, row)
+                if self.centres:
+                    _join(sheet, view.pixel(np.array([display.centre(*of) for of in enumerate(now)]), top))
+                sheet.text((1.2 * sheet.unit, height - 1.5 * sheet.unit), self.caveat, 1.1 * sheet.unit, halo=True)
                 yield sheet.picture()
-
-    def _charts(self, runners: Sequence[Runner]) -> list[Chart]:
-        """Return the charts of the quantities, with a line for each can."""
-        charts = []
-        for title, values, limits in (QUANTITIES[name] for name in self.strips):
-            motions = [(runner, runner.trajectory, runner.trajectory.scene) for runner in runners]
-            lines = [Line(runner.name, run.time, values(scene, run), runner.colour) for runner, run, scene in motions]
-            charts.append(Chart(heading(title, motions[0][2]), lines, **limits))
-        return charts
 
     def _results(self, runners: Sequence[Runner]) -> dict[str, tuple[float, str]]:
         """Return when each can finishes [s], and what its plate then says, by the cans' names."""
@@ -180,21 +159,30 @@ class Race:
         for runner in runners:
             place = finishes.index(finish := runner.finish(self.length))
             ordinal = ("1st", "2nd", "3rd")[place] if place < 3 else f"{place + 1}th"
-            theory = runner.finish_of_theory(self.length)
-            results[runner.name] = finish, f"{ordinal}: {finish:.2f} s, theory {theory:.2f} s"
+            results[runner.name] = finish, f"{ordinal}: {finish:.2f} s"
         return results
 
 
-def _plate(sheet: Sheet, runner: Runner, said: str, right: float, middle: float) -> None:
-    """Draw a plate with a can's name, its note and what else is said, at the plate's right edge's middle."""
-    unit = sheet.height / UNITS
-    lines: list[tuple[str, float, Colour, bool]] = [(runner.name, 1.2 * unit, runner.colour, True)]
-    lines += [(runner.note, 1.05 * unit, INK, False)] * bool(runner.note)
-    lines += [(said, 1.05 * unit, INK, True)] * bool(said)
-    boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in lines]
+def _join(sheet: Sheet, places: np.ndarray) -> None:
+    """Mark centres of mass, of which the first is the nearest, and join them."""
+    sheet.line(places, 0.2 * sheet.unit, INK, dashes=(3, 3))
+    for place in places:
+        sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))
+    sheet.text(places[0] + sheet.unit * np.array([1.0, 1.2]), "centre of mass", 1.1 * sheet.unit, halo=True)
+
+
+def draw_plate(sheet: Sheet, lines: Sequence[tuple[str, bool, Colour]], right: float, middle: float) -> None:
+    """Draw a plate with a name and what else is said, each with whether it is bold and its colour.
+
+    The middle of the plate's right edge is given.
+    """
+    unit, written = sheet.unit, []
+    for number, (words, bold, colour) in enumerate(lines):
+        written.append((words, (1.05 if number else 1.2) * unit, colour, bold))
+    boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in written]
     left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
     corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
     sheet.area(np.array(corners), (1.0, 1.0, 1.0), alpha=0.9)
-    for line, (words, size, colour, bold) in enumerate(lines):
+    for line, (words, size, colour, bold) in enumerate(written):
         row = middle + (line - (len(lines) - 1) / 2) * _LINE * unit
         sheet.text((left + 0.6 * unit, row), words, size, colour, bold=bold)

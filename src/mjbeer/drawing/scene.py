@@ -34,9 +34,12 @@ _RIM = 1.12  # radius of what is drawn of a can, in radii, with room for what st
 _NEAR_PLANE, _FAR_PLANE = 0.2, 20.0  # nearest and farthest that is drawn, in distances of what is looked at
 _STRIPE = math.pi / 2 * RADIUS
 """Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
-_SQUARE = 0.1
-"""Distance of the lines on the wall [m]: it repeats its texture, whose edge is a line, with x = 0 in its middle."""
+_SQUARE, _LINE = 0.1, 0.1 / 64
+"""Distance of the lines on the wall [m], with x = 0 in the middle between two, and their width."""
 _PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003  # colour of lines across the board, and half their width [m]
+_PALE, _DARK = np.array([0.94, 0.84, 0.69]), np.array([0.84, 0.71, 0.54])
+_WALL, _GRID = np.array([0.985, 0.99, 1.0]), np.array([0.84, 0.87, 0.92])
+"""Colours of the board's stripes, and of the wall and its lines, as in looks/world.xml."""
 _NEAR = np.array([0.0, -1.0, 0.0])  # unit vector towards the reader
 
 
@@ -68,6 +71,7 @@ class Display:
     data: mujoco.MjData
     scenes: Sequence[Scene]
     lanes: Sequence[float]  # where each can is across the board [m], away from the reader
+    changing: Sequence[int] = ()  # meshes that are other ones after each pose
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
@@ -87,23 +91,15 @@ class Display:
             for geom in spec.geoms:
                 of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
                 geom.group = number % _UNSEEN if of_can else _UNSEEN
-        board, *others = specs
-        for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
-            spec.option.tolerance = board.option.tolerance  # nothing is stepped here
-            board.body("incline").add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
-        planks, wall = board.geom("board"), board.geom("wall")
-        planks.pos += [0, lanes[-1] / 2, 0]
-        planks.size += [0, lanes[-1] / 2, 0]
-        wall.pos += [0, lanes[-1], 0]
-        model = compile_spec(board)
+        model = side_by_side(specs, lanes)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 
     def paint(self, labels: Sequence[Colour], loads: Sequence[Colour | None]) -> None:
         """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
         for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
-            self.model.mat(_prefix(number) + "label").rgba[:3] = label
+            self.model.mat(prefix(number) + "label").rgba[:3] = label
             for name, share in (("load", 0.0), ("foam", _PALER)):
-                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, _prefix(number) + name)
+                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, prefix(number) + name)
                 if load is not None and geom >= 0:
                     self.model.mat_rgba[self.model.geom_matid[geom], :3] = np.array(load) * (1 - share) + share
 
@@ -113,7 +109,7 @@ class Display:
         for number, (scene, (u, phi, roll, lift)) in enumerate(zip(self.scenes, positions, strict=True)):
             values = {"slide": u * scale(scene), "lift": lift * scale(scene), "roll": roll, "swing": phi - roll}
             for name, value in values.items():
-                if (joint := _prefix(number) + name) in joints:
+                if (joint := prefix(number) + name) in joints:
                     self.data.joint(joint).qpos[:] = value
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
@@ -132,9 +128,31 @@ class Display:
         ring = centre + circle(_RIM * RADIUS)
         return np.stack([np.insert(ring, 1, y, axis=1) for y in (near, near + self._length(number))])
 
+    def centre(self, number: int, position: np.ndarray) -> np.ndarray:
+        """Return where the near end of a can has the centre of mass of its load [m], for its u, phi, roll and lift."""
+        scene, (u, phi, _, lift) = self.scenes[number], position
+        along, height = u - scene.load.offset * math.sin(phi), lift - scene.load.offset * math.cos(phi)
+        size = scale(scene)
+        return in_space(scene, along * size, RADIUS + height * size, self.front(number))
 
-def _prefix(number: int) -> str:
+
+def prefix(number: int) -> str:
+    """Return with what the names begin that belong to a lane."""
     return f"{number}-" if number else ""
+
+
+def side_by_side(specs: Sequence[mujoco.MjSpec], lanes: Sequence[float]) -> mujoco.MjModel:
+    """Return a model with the board of the first of some specifications, and the cans of all of them in lanes."""
+    first, *others = specs
+    parent = first.body("incline") or first.worldbody
+    for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+        spec.option.tolerance = first.option.tolerance  # nothing is stepped here
+        parent.add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), prefix(number), "")
+    board, wall = first.geom("board"), first.geom("wall")
+    board.pos += [0, lanes[-1] / 2, 0]
+    board.size += [0, lanes[-1] / 2, 0]
+    wall.pos += [0, lanes[-1], 0]
+    return compile_spec(first)
 
 
 def _resize(scene: Scene) -> Scene:
@@ -165,8 +183,7 @@ class Scenery:
         sheet.clip(None)
 
     def _wall(self, sheet: Sheet, view: View, top: int) -> None:
-        shift = np.array([0, top])
-        y, texture = float(self.model.geom("wall").pos[1]), self._texture("grid")
+        y = float(self.model.geom("wall").pos[1])
         corners = view.corners(y)
         low, high = corners.min(axis=0), corners.max(axis=0)
         ranges = np.floor(np.stack([low, high], axis=1) / _SQUARE + 0.5)
@@ -174,12 +191,12 @@ class Scenery:
         plumb = np.stack([np.stack([x, np.full_like(x, end)], axis=-1) for end in (low[1], high[1])], axis=1)
         level = np.stack([np.stack([np.full_like(z, end), z], axis=-1) for end in (low[0], high[0])], axis=1)
         lines = np.insert(np.concatenate([plumb, level]), 1, y, axis=-1)
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)) + shift, self._lit(texture[64, 64], _NEAR, view))
-        width = 2 * _SQUARE / len(texture) * view.scale(np.insert(low, 1, y))
-        sheet.line(_apart(view.pixel(lines) + shift), width, self._lit(texture[0, 0], _NEAR, view))
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1), top), self._lit(_WALL, _NEAR, view))
+        width = _LINE * view.scale(np.insert(low, 1, y))
+        sheet.line(_separated(view.pixel(lines, top)), width, self._lit(_GRID, _NEAR, view))
 
     def _board(self, sheet: Sheet, view: View, top: int) -> None:
-        board, texture, shift = self.model.geom("board"), self._texture("planks"), np.array([0, top])
+        board = self.model.geom("board")
         (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
         seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(self.scene, 1.0, 0.0)
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
@@ -192,30 +209,37 @@ class Scenery:
                 """Return the places of the parts of this face that begin somewhere down the incline."""
                 ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
                 points = [in_space(self.scene, along, z, y) for along, (y, z) in ends]
-                return _apart(view.pixel(np.stack(points, axis=1)) + shift)
+                return _separated(view.pixel(np.stack(points, axis=1), top))
 
             if (view.eye - in_space(self.scene, 0.0, one[1], one[0])) @ normal <= 0:
                 continue
-            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(texture[16, 16], normal, view))
-            sheet.area(bands(dark, _STRIPE), self._lit(texture[16, 48], normal, view))
+            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(_PALE, normal, view))
+            sheet.area(bands(dark, _STRIPE), self._lit(_DARK, normal, view))
             if len(self.lines) and normal is up:
-                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(255 * _PAINT, normal, view))
+                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(_PAINT, normal, view))
 
-    def _texture(self, name: str) -> np.ndarray:
-        """Return the texture of a name, shape (height, width, 3)."""
-        texture = self.model.tex(name)
-        shape = int(texture.height[0]), int(texture.width[0]), int(texture.nchannel[0])
-        return self.model.tex_data[int(texture.adr[0]) :][: math.prod(shape)].reshape(shape)
+    def shade(self, sheet: Sheet, view: View, outline: np.ndarray, top: int) -> None:
+        """Draw the shadow on the board of a can whose ends have an outline, as `Display.outline` gives it."""
+        along, up = in_space(self.scene, np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
+        light, board = self.model.light_dir[0], self.model.geom("board")
+        fallen = outline - np.multiply.outer((outline @ up - board.pos[2] - board.size[2]) / (light @ up), light)
+        near, far = ([ring[(ring @ along).argmin()], ring[(ring @ along).argmax()]] for ring in fallen)
+        corners = np.array([*near, *far[::-1]])
+        middle = corners.mean(axis=0)
+        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
+        for share in (0.8, 0.95):  # its edge is soft
+            sheet.area(view.pixel(middle + share * (corners - middle), top), (0.25, 0.15, 0.05), alpha=0.16)
+        sheet.clip(None)
 
     def _lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> tuple[float, float, float]:
         """Return the colour of a face that is turned to a `normal`, lit by the sun and from the eye."""
         head, sun = self.model.vis.headlight, self.model.light_diffuse[0] * max(0.0, -normal @ self.model.light_dir[0])
         light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
-        red, green, blue = np.minimum(colour / 255 * light, 1.0).tolist()
+        red, green, blue = np.minimum(colour * light, 1.0).tolist()
         return red, green, blue
 
 
-def _apart(shapes: np.ndarray) -> np.ndarray:
+def _separated(shapes: np.ndarray) -> np.ndarray:
     """Return places of several lines or polygons of shape (n, k, 2) as one path, with gaps (NaN)."""
     return np.concatenate([shapes, np.full_like(shapes[:, :1], np.nan)], axis=1).reshape(-1, 2)
 
@@ -255,6 +279,11 @@ class Painter:
         else:
             sheet.put(self._empty, 0, top)
         self._display.pose(positions)
+        self._gl.make_current()
+        for mesh in self._display.changing:
+            mujoco.mjr_uploadMesh(self._display.model, self._context, mesh)
+        for number, position in enumerate(positions):
+            self._scenery.shade(sheet, view, self._display.outline(number, position), top)
         for number, position in reversed(list(enumerate(positions))):  # the nearest at last
             left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
             if right > left and lower > upper:

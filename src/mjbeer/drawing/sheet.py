@@ -21,7 +21,8 @@ Colour = str | tuple[float, float, float]
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom [pixels]."""
 
-UNITS = 36  # height of a picture in units
+_UNITS, _SMALL = (36, 33), 800
+"""Height of a picture in units, and of one up to so many pixels wide, which has larger letters and a single chart."""
 _LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
 INK = "#1f2933"
 """Colour of texts and of lines that explain."""
@@ -51,7 +52,9 @@ class Sheet:
         self._pixels = np.asarray(self._renderer.buffer_rgba())
         self._pixels[:] = 255
         self._flip = Affine2D().scale(1, -1).translate(0, height)
-        self.width, self.height = width, height
+        self.width, self.height, self.small = width, height, width <= _SMALL
+        self.unit = height / _UNITS[self.small]
+        """The unit of length of letters and margins [pixels]."""
         self.boxes: list[Box] = []
         """The boxes of all texts since this list was last emptied."""
         self._clip: Box | None = None

@@ -22,6 +22,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 _MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
 _THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
+_MARKED = "#fff1b8"  # colour of the spans of time that are marked
 _STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.right": False,
@@ -43,8 +44,6 @@ class Line:
     values: np.ndarray  # values at these times
     colour: tuple[float, float, float] | None = None
     """Its colour; None for theory's line, which is seen from the beginning."""
-    possible: float = math.inf
-    """Time [s] from which the line is dotted, because the motion is possible only if the incline can pull."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,17 +69,16 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
         title, values, limits = QUANTITIES[name]
         lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
         if theory is not None:
-            lines.append(Line("theory", theory.time, values(theory.scene, theory), possible=theory.rolls_until()))
+            rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
+            lines.append(Line("theory", theory.time[rolls], values(theory.scene, theory)[rolls]))
         if name == "normal" and trajectory.rolling == "contact":
             title += f", mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
-        drawn.append(Chart(heading(title, trajectory.scene), lines, **limits))
+        if (peak := lines[0].values.max()) > limits.get("high", math.inf):
+            title += f", up to {peak:.0f}"
+        if not trajectory.scene.incline:
+            title = title.replace("down the incline", "along the ground")
+        drawn.append(Chart(title, lines, **limits))
     return drawn
-
-
-def heading(title: str, scene: Scene) -> str:
-    """Return a chart's title, which speaks of the ground where it is level."""
-    level = title.replace("down the incline", "along the ground").replace("the incline", "the ground")
-    return title if scene.incline else level
 
 
 def wrapped(angle: np.ndarray | float) -> np.ndarray:
@@ -140,7 +138,7 @@ def _slip(scene: Scene, motion: Coordinates) -> np.ndarray:
 Quantity = tuple[str, Callable[[Scene, Coordinates], np.ndarray], dict[str, Any]]
 QUANTITIES: dict[str, Quantity] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("distance down the incline, u [m]", lambda _, motion: motion.u, {}),
+    "u": ("distance down the incline [m]", lambda _, motion: motion.u - motion.u[0], {}),
     "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
     "ahead": (
         "ahead of even acceleration [mm]",
@@ -148,32 +146,80 @@ QUANTITIES: dict[str, Quantity] = {
         {},
     ),
     "normal": ("normal force, N [weights]", lambda *of: forces(*of)[0] / weight(of[0]), {"low": -1.0, "high": 4.0}),
-    "lift": ("height above the incline [mm]", lambda _, motion: 1e3 * motion.lift, {}),
+    "lift": ("height of flight [mm]", lambda _, motion: 1e3 * motion.lift, {}),
     "slip": ("slid instead of rolled [mm]", _slip, {}),
 }
 """What a chart can show, by name: its title, its values, shape (samples,), and the chart's limits."""
+
+NOTES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray]]] = {
+    "flies": (
+        "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
+        lambda scene, motion: motion.lift > 0.02 * scene.can.radius,
+    ),
+    "slips": (
+        "it slips: rolling needs more friction than μN",
+        lambda scene, motion: np.abs(motion.u_dot - scene.can.radius * motion.roll_dot) > slow(scene),
+    ),
+    "heavy": (
+        "the {load} below presses the {body} down",
+        lambda scene, motion: forces(scene, motion)[0] > 1.8 * weight(scene),
+    ),
+    "light": (
+        "the {load} pulls up: the {body} hardly presses",
+        lambda scene, motion: forces(scene, motion)[0] < 0.4 * weight(scene),
+    ),
+    "hesitates": (
+        "the {load} is uphill: the {body} hesitates",
+        lambda scene, motion: np.gradient(motion.u_dot, motion.time) < scene.acceleration() / 2,
+    ),
+}
+"""What a note says while a motion does something, and when it does, by name; the first that holds is shown."""
+_BRIEF = 50  # a pause shorter than the motion over this does not interrupt a note
+
+
+def slow(scene: Scene) -> float:
+    """Return the speed [m/s] up to which a foot does not slip: the contact of a can that rolls creeps."""
+    return 0.02 * math.sqrt(2 * (scene.gravity or GRAVITY) * scene.can.radius)
+
+
+def spans(motion: Trajectory, name: str) -> list[tuple[float, float]]:
+    """Return from when to when [s] a note holds."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], NOTES[name][1](motion.scene, motion), [False]])))
+    time, found = np.append(motion.time, motion.time[-1]), list[tuple[float, float]]()
+    for first, last in time[edges].reshape(-1, 2).tolist():
+        begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / _BRIEF else first
+        found.append((begins, last))
+    return found
 
 
 class Strip:
     """Charts side by side. Lines with a colour are drawn up to now; theory's may be there from the beginning."""
 
-    def __init__(self, charts: Sequence[Chart], width: int, height: int) -> None:
-        self._charts, self._height, self._unit = charts, height, height / 10
-        unit = self._unit
-        with rc_context(_STYLE | {"font.size": 0.9 * unit, "axes.linewidth": 0.06 * unit}):
+    def __init__(
+        self, charts: Sequence[Chart], width: int, height: int, marked: Sequence[tuple[float, float]] = ()
+    ) -> None:
+        """Prepare to draw charts, in which some spans of time are `marked`; a single chart has larger letters."""
+        self._charts, self._height, self._unit, self._marked = charts, height, height / 10, marked
+        unit, single = self._unit, len(charts) == 1  # whose key is beside the title, and not below
+        self._letters = letters = (1.5 if single else 1.1) * unit
+        with rc_context(_STYLE | {"font.size": self._letters, "axes.linewidth": 0.06 * unit}):
             figure = Figure(figsize=(width / 72, height / 72), dpi=72)
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
-            sides = {"left": 4.5 * unit / width, "right": 1 - 2 * unit / width}
-            figure.subplots_adjust(**sides, top=0.84, bottom=0.27, wspace=10 * unit / (width / len(charts)))
+            sides = {"left": 4.5 * self._letters / width, "right": 1 - 2 * self._letters / width}
+            between = 6 * self._letters / (width / len(charts) - 6 * self._letters)
+            low = (0.6 * unit + (1.2 if single else 2.4) * self._letters) / height
+            figure.subplots_adjust(**sides, top=1 - 1.8 * self._letters / height, bottom=low, wspace=between)
             drawn = [line for pair in zip(panels, charts, strict=True) for line in self._draw(*pair)]
-            panels[0].set_xlabel("time [s]", labelpad=0.1 * unit, loc="left")
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()
                 named = dict(zip(names, handles, strict=True))
-                room = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.5, "columnspacing": 1.2}
-                corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0), "ncols": 4}
-                figure.legend(named.values(), named, **corner, **room)
+                room: dict[str, Any] = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.2, "columnspacing": 1.0}
+                corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0.0)}
+                if single:
+                    corner = {"loc": "upper right", "bbox_to_anchor": (1 - unit / width, 1 - 0.4 * letters / height)}
+                size: Any = {"fontsize": (0.75 if single else 0.9) * letters, "ncols": 4}
+                figure.legend(named.values(), named, **size, **(corner | room))
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
             for line in drawn:
@@ -185,18 +231,13 @@ class Strip:
         """Draw a chart but for the lines that are to be seen up to now only, and return those."""
         unit = self._unit
         for line in sorted(chart.lines, key=lambda line: line.colour is not None):
-            possible = line.time <= line.possible
-            style: dict[str, Any] = {
-                "color": line.colour or _THEORY,
-                "linewidth": (0.18 if line.colour else 0.5) * unit,
-                "animated": line.colour is not None,
-            }
-            panel.plot(line.time, unbroken(np.where(possible, line.values, np.nan)), **style, label=line.name)
-            if not possible.all():
-                style |= {"linestyle": ":", "linewidth": 0.25 * unit}
-                label = f"{line.name}, if it could not lift off"
-                panel.plot(line.time, unbroken(np.where(possible, np.nan, line.values)), **style, label=label)
-        panel.set_title(chart.title, fontsize=1.05 * unit, loc="left", pad=0.45 * unit)
+            style: dict[str, Any] = {"color": line.colour or _THEORY, "animated": line.colour is not None}
+            width = (0.18 if line.colour else 0.5) * unit
+            panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
+        for first, last in self._marked:
+            panel.axvspan(first, last, color=_MARKED, linewidth=0)
+        panel.set_title(chart.title, fontsize=self._letters, loc="left", pad=0.45 * unit)
+        panel.xaxis.set_major_formatter("{x:g} s")
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
         low, high = panel.get_ylim()
         room = max(0.0, chart.least - (high - low)) / 2

@@ -158,10 +158,10 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
         joint.damping[:], joint.dampingpoly[:] = each.damping[0], each.damping[1:]
     for each in spec.sites:
         model.site(f"{prefix}{each.name}").pos = each.pos
-    for name, (low, high) in drawn.items():
+    for name, (low, high, radius) in drawn.items():
         if mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}{name}") >= 0:
             geom = model.geom(f"{prefix}{name}")
-            geom.pos[2], geom.size[1] = (low + high) / 2, (high - low) / 2
+            geom.pos[2], geom.size[:2] = (low + high) / 2, (radius, (high - low) / 2)
     mujoco.mj_setConst(model, mujoco.MjData(model))  # which it takes as its workspace
     if reasons := _spoiling_options(model.opt, can):
         warnings.warn(f"the model's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)

@@ -108,23 +108,33 @@ def fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> Non
 def fit_to_standing(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
     """Fit what is drawn to a standing can, with the errors of `fit`.
 
-    The beer is a column in the body "liquid" under a disc that tilts with the body "slosh1".
+    The beer is a column in the body "liquid" under a cylinder that tilts with the body "slosh1".
     """
     top = (("geom", "beer_top"),) * (standing.modes > 0)
     _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *top))
     spec.frame("upright").pos = [0, 0, standing.can.length / 2]
-    for each, (low, high) in beer_column(standing).items():
+    for each, (low, high, radius) in beer_column(standing).items():
         spec.geom(each).pos = [0, 0, (low + high) / 2]
-        spec.geom(each).size = [standing.can.radius, (high - low) / 2, 0]
+        spec.geom(each).size = [radius, (high - low) / 2, 0]
 
 
-def beer_column(standing: Standing) -> dict[str, tuple[float, float]]:
-    """Return from where to where the geoms reach that draw the beer, along the axes of their bodies [m]."""
-    height = standing.height
+def beer_column(standing: Standing) -> dict[str, tuple[float, float, float]]:
+    """Return from where to where the geoms reach that draw the beer, along the axes of their bodies, and radii [m].
+
+    What tilts turns about its pivot, and so remains in the can if it is in a ball around it that is: its upper face is
+    narrower than the can. Where there is no such face, as in a nearly full can, the column is all that is seen.
+    """
+    height, radius, length = standing.height, standing.can.radius, standing.can.length
     if standing.modes == 0:
-        return {"beer": (0.0, height)}
-    thickness, pivot = min(0.1 * standing.can.radius, height / 4), standing.pivots(1)[0]
-    return {"beer": (0.0, height - thickness), "beer_top": (height - 2 * thickness - pivot, height - pivot)}
+        return {"beer": (0.0, height, radius)}
+    pivot, thickness = standing.pivots(1)[0], min(0.2 * radius, height / 4)
+    top = height - pivot
+    bottom, ball = min(-top, top - thickness), min(radius, pivot, length - pivot)
+    if ball <= max(top, -bottom):
+        dot = 1e-4 * radius
+        return {"beer": (0.0, height, radius), "beer_top": (-dot, dot, dot)}
+    wide = math.sqrt(ball**2 - max(top, -bottom) ** 2)
+    return {"beer": (0.0, height - thickness, radius), "beer_top": (bottom, top, wide)}
 
 
 def _fit_sizes(spec: mujoco.MjSpec, can: Can, folder: pathlib.Path, needed: Sequence[tuple[str, str]]) -> None:

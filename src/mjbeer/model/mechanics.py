@@ -18,11 +18,10 @@ from mjbeer.theory.scene import Scene
 Structure: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
 
-_SMALLEST = 1e-9
-"""Smallest mass [kg] and inertia [kg m^2] that is not scaled: MuJoCo's smallest value (mjMINVAL, 1e-15), a million
-times smaller, changes no sum noticeably."""
-_LARGEST = 1e3
-"""Largest mass [kg] that is not scaled: MuJoCo's smallest softness, 1e-15 /kg, is then 1e-12 of the inverse mass."""
+_UNSCALED = 1e-9, 1e3
+"""Smallest mass [kg] and inertia [kg m^2], and largest mass, that are not scaled. MuJoCo's smallest value (mjMINVAL,
+1e-15), a million times smaller, changes no sum noticeably; as its smallest softness, 1e-15 /kg, it is 1e-12 of the
+inverse of the largest."""
 _FORCES_SEEN = 2.0**60
 """Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
 [N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
@@ -30,11 +29,6 @@ _TOLERANCE = 1e-14
 """The solver's tolerance over the square of gravity: it ends once an iteration gains less than that, and what moves the
 load must be more. MuJoCo's own 1e-8 m^2/s^4 takes the weight of a light load for nothing. One more iteration of
 Newton's method brings all digits, and 1e-14 costs none in the four scenes; 1e-18 costs a third of the run time."""
-_LIGHTEST, _WEIGHTLESS = 1e-10, 1e-5
-"""The least share of the tolerance that a light load has, and the least gravity [m/s^2] it is reckoned with. At a
-tolerance of 0 the solver would spend all its iterations on rounding."""
-_STIFF_INTEGRATORS = ("RK4", "discrete", DOP853)
-"""The integrators that are stable with a time constant of half a timestep."""
 
 
 class Inertial(NamedTuple):
@@ -64,6 +58,8 @@ class Mechanics:
     """Constant force [N] or torque [N m] on the first joint, by the actuator "weight"."""
     chord: float = 0.0
     """Armature of the tendon "chord" [kg]."""
+    damped: bool = False
+    """Whether a torque brings can and load together."""
 
     @classmethod
     def of(cls, scene: Scene, setting: Setting, visuals: bool = False, timestep: float | None = None) -> "Mechanics":
@@ -75,8 +71,8 @@ class Mechanics:
             bodies, forces = _constrained(scene)
         else:
             bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
-        unit = mass_unit(scene)
-        if setting.rolling == "reduced" and setting.integrator == "discrete" and scene.damping_law and not visuals:
+        unit, damped = _mass_unit(scene.oscillator.base, bodies), bool(scene.damping_law)
+        if setting.rolling == "reduced" and setting.integrator == "discrete" and damped and not visuals:
             unit *= _FORCES_SEEN
         return cls(
             scene=scene,
@@ -86,6 +82,7 @@ class Mechanics:
             unit=unit,
             bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in bodies},
             **{name: unit * force for name, force in forces.items()},
+            damped=damped,
         )
 
     @property
@@ -96,14 +93,14 @@ class Mechanics:
     @property
     def acting(self) -> tuple[str, ...]:
         """Return the names of the tendons and the actuators that exert a force."""
-        damped = self.scene.damping_law and self.setting.rolling == "reduced"
+        damped = self.damped and self.setting.rolling == "reduced"  # else joints are
         acting = {"weight": self.force != 0, "chord": self.chord > 0, "damper": damped}
         return tuple(name for name, acts in acting.items() if acts)
 
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        return self.setting.folder, self.file, self.acting, self.scene.dissipates
+        return self.setting.folder, self.file, self.acting, self.damped or self.scene.drag > 0
 
     @cached_property
     def parameters(self) -> Parameters:
@@ -145,31 +142,27 @@ class Mechanics:
         if contact:
             found[rolling, "friction"] = setting.friction, setting.friction, 0.005, 1e-4, 1e-4
             found["geom can", "size"] = radius, scene.can.length / 2
-            # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia.
+            # What the weight of the load gains, over what that of all masses gains: a force squared over an inertia. At
+            # a tolerance of 0 the solver would spend all its iterations on rounding.
             light = scene.load.moment**2 / (scene.mass * float(scene.oscillator.inertia(math.pi / 2)))
-            share = min(1.0, max(light, _LIGHTEST))
-            found["option", "tolerance"] = (_TOLERANCE * share * max(g, _WEIGHTLESS) ** 2,)
+            found["option", "tolerance"] = (_TOLERANCE * min(1.0, max(light, 1e-10)) * max(g, 1e-5) ** 2,)
         else:
             found[rolling, "polycoef"] = 0, radius, 0, 0, 0
         return found
 
 
-def mass_unit(scene: Scene) -> float:
+def _mass_unit(base: float, bodies: list[tuple[str, Inertial]]) -> float:
     """Return the power of two by which all masses of a scene are multiplied: 1 unless they are tiny or huge.
 
     Only ratios of masses enter the motion, and a power of two causes no rounding. In a scene with both tiny and huge
-    masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them.
+    masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them. `base` is the least inertia of phi
+    [kg m^2].
     """
-    can, base = scene.can, scene.oscillator.base
-    if scene.attachment == "frozen":  # one body
-        values = scene.mass, _frozen_inertia(scene), base
-    else:
-        moved = _moved_to_point(scene)
-        load = _load_with(scene, moved)
-        values = can.mass - moved, can.inertia, load.mass, load.inertia, base
-    smallest = min(value for value in values if value > 1e-30 * max(values))  # what is less adds nothing to any sum
-    up = math.ceil(math.log2(_SMALLEST / smallest))
-    down = math.floor(math.log2(_LARGEST / scene.effective_mass))
+    values = base, *(value for _, (mass, _, inertia) in bodies for value in (mass, inertia))
+    largest = max(values)
+    smallest = min(value for value in values if value > 1e-30 * largest)  # what is less adds nothing to any sum
+    heaviest = max(mass for _, (mass, _, _) in bodies)
+    up, down = math.ceil(math.log2(_UNSCALED[0] / smallest)), math.floor(math.log2(_UNSCALED[1] / heaviest))
     return 2.0 ** max(up, min(0, down))
 
 
@@ -180,7 +173,7 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     x = h/tau), and is given 0.5. RK4 is stable up to 2.7 and is given 2, which is stable with DOP853 too; "discrete"
     has no limit. A `contact` opens and closes: with less than a timestep RK4 chatters.
     """
-    if integrator not in _STIFF_INTEGRATORS:
+    if integrator not in ("RK4", "discrete", DOP853):
         return 2 * timestep
     return timestep if contact else timestep / 2
 
@@ -211,7 +204,8 @@ def _frozen(scene: Scene) -> _Parts:
     oscillator, moment = scene.oscillator, scene.load.moment
     # Any mass with the moment m b is right: the scene's at its centre of mass (38), or, where that has more than half
     # of the inertia, a larger mass on a shorter arm that has exactly half.
-    mass, offset = scene.mass, scene.centre_of_mass
+    mass = scene.mass
+    offset = moment / mass
     if mass * offset**2 > oscillator.base / 2:
         mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
     body = Inertial(mass, offset, oscillator.base - mass * offset**2)

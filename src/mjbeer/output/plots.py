@@ -4,6 +4,7 @@ import io
 import math
 import pathlib
 import re
+import textwrap
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -56,8 +57,8 @@ STYLE: Any = {
 """Settings of matplotlib."""
 _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
-_EDGE = 0.1
-"""Distance of the title from the edge [inches]."""
+_EDGE = 0.1  # distance of the title from the edge [inches]
+_LETTERS = 8.3  # letters of the title in an inch; the subtitle's are narrower
 _TOOLTIPS = "tooltips "
 """Begins the name of a line in an SVG whose points have tooltips."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -94,7 +95,8 @@ def chart(
       OutputError: if a file cannot be written.
     """
     with mpl.rc_context(STYLE):
-        heads = [each for each in ((title, 0.32, _TITLE), (subtitle, 0.24, _SUBTITLE)) if each[0]]
+        heads = [(line, 0.32, _TITLE) for line in textwrap.wrap(title, round(_LETTERS * width))]
+        heads += [(line, 0.24, _SUBTITLE) for line in textwrap.wrap(subtitle, round(1.7 * _LETTERS * width))]
         if isinstance(path, Picture):
             height, heads = height - sum(line for _, line, _ in heads), []
         figure = FigureCanvasSVG(Figure(figsize=(width, height), dpi=72)).figure

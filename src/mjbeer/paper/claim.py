@@ -4,9 +4,10 @@ The terms of an equation stand on one side, so that they sum to zero where it ho
 gives numbers when a claim is measured, and symbols when its equation is derived.
 """
 
+import ast
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Self
 
@@ -17,12 +18,9 @@ from mjbeer.checks import Result
 if TYPE_CHECKING:
     from mjbeer.theory.scene import Scene
 
-Terms = tuple[Any, ...]
-"""The terms of an equation, which sum to zero where it holds, or of a quantity, which sum to it."""
+Terms = tuple[Any, ...]  # the terms of an equation, which sum to zero where it holds, or of a quantity, which sum to it
 
-CONFIRMED = "confirmed"
-CORRECTED = "confirmed after correction"
-LIMIT = "limit of validity"
+CONFIRMED, CORRECTED, LIMIT = "confirmed", "confirmed after correction", "limit of validity"
 MISPRINT, APPROXIMATION, CONSEQUENCE = "misprint", "approximation", "consequence"
 """Kinds of what is wrong: a slip; orders left out, of which the paper does not speak; what follows from a slip."""
 
@@ -31,18 +29,12 @@ MISPRINT, APPROXIMATION, CONSEQUENCE = "misprint", "approximation", "consequence
 class SceneConstants:
     """Constants of a scene: numbers, or symbols where an equation is derived."""
 
-    a: Any
-    """Radius of the can [m]."""
-    b: Any
-    """Distance of the load's centre of mass from the axis [m]."""
-    m: Any
-    """Mass of the load [kg]."""
-    inertia: Any
-    """Moment of inertia I_cm of the load about its centre of mass [kg m^2]."""
-    can_mass: Any
-    """Mass m_can of the can [kg]; M in appendix B."""
-    can_inertia: Any
-    """Moment of inertia I_can of the can about its axis [kg m^2]."""
+    a: Any  # radius of the can [m]
+    b: Any  # distance of the load's centre of mass from the axis [m]
+    m: Any  # mass of the load [kg]
+    inertia: Any  # moment of inertia I_cm of the load about its centre of mass [kg m^2]
+    can_mass: Any  # mass m_can of the can [kg]; M in appendix B
+    can_inertia: Any  # moment of inertia I_can of the can about its axis [kg m^2]
     g: Any
     alpha: Any
     sin_alpha: Any
@@ -50,7 +42,7 @@ class SceneConstants:
 
     @classmethod
     def of(cls, scene: "Scene", **motion: Any) -> Self:
-        """Return the letters of a scene; `Motion.of` takes the fields of the motion as keyword arguments."""
+        """Return the constants of a scene; `Motion.of` takes the fields of the motion as keyword arguments."""
         can, load = scene.can, scene.load
         masses = can.radius, load.offset, load.mass, load.inertia, can.mass, can.inertia
         incline = scene.incline, math.sin(scene.incline), math.cos(scene.incline)
@@ -74,7 +66,7 @@ class SceneConstants:
 
 @dataclass(frozen=True, eq=False)
 class Motion(SceneConstants):
-    """SceneConstants and a motion in the coordinates of Fig. 3, in SI units: each field has one entry a sample."""
+    """The constants of a scene and a motion in the coordinates of Fig. 3, in SI units, with one entry a sample."""
 
     s: Any
     s_dot: Any
@@ -89,30 +81,46 @@ class Motion(SceneConstants):
     cos_phi: Any
     sin_theta: Any
     cos_theta: Any
-    theta: Any = None
-    """Angle [rad] between gravity and the line from the axis to the load's centre of mass."""
+    theta: Any = None  # angle [rad] between gravity and the line from the axis to the load's centre of mass
     time: Any = None
-    across: Any = None
-    """How far the load's centre of mass is from the axis, away from the incline [m], and its two derivatives."""
+    across: Any = None  # how far the load's centre of mass is from the axis, away from the incline [m]
     across_dot: Any = None
     across_ddot: Any = None
-    height: Any = None
-    """Height [m] of the load's centre of mass above where the axis starts."""
-    kinetic: Any = None
-    """Kinetic energy of the whole [J]."""
-    potential: Any = None
-    """Potential energy of the whole [J], zero where the axis starts."""
-    friction: Any = None
-    """Force [N] of the incline on the can, uphill, where a constraint makes the can roll; otherwise 0."""
+    height: Any = None  # height [m] of the load's centre of mass above where the axis starts
+    kinetic: Any = None  # kinetic energy of the whole [J]
+    potential: Any = None  # potential energy of the whole [J], zero where the axis starts
+    friction: Any = None  # force [N] of the incline on the can, uphill, where a constraint makes it roll; otherwise 0
+
+
+def equation(text: str) -> Callable[[Any], Terms]:
+    """Return what gives the terms of an equation from a motion, whose fields it names: "u - s - b*sin_phi" has three.
+
+    What is in parentheses after a sign is one term.
+    """
+
+    def split(node: ast.expr) -> Generator[ast.expr]:
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+            yield from split(node.left)
+            yield node.right if isinstance(node.op, ast.Add) else ast.UnaryOp(ast.USub(), node.right)
+        else:
+            yield node
+
+    terms = [ast.fix_missing_locations(ast.Expression(each)) for each in split(ast.parse(text, mode="eval").body)]
+    codes = [compile(each, text, "eval") for each in terms]
+
+    def evaluate(motion: Any) -> Terms:
+        named = {name: getattr(motion, name) for code in codes for name in code.co_names}
+        return tuple(eval(code, named) for code in codes)
+
+    return evaluate
 
 
 @dataclass(frozen=True)
 class Witness:
-    """What a row is compared with."""
+    """What a claim is compared with, by its name, and what computes it: a motion, or numbers."""
 
     name: str
     see: Callable[[], Any]
-    """Computes what the terms are functions of: a motion, or numbers."""
 
 
 @dataclass(frozen=True)
@@ -124,19 +132,23 @@ class Bound:
 
 
 @dataclass(frozen=True)
+class Limit:
+    """Where a claim that holds only in a limit no longer does: the error that it must have there, and what is seen."""
+
+    expected_error: float
+    see: Callable[[], Any]
+
+
+@dataclass(frozen=True)
 class Misprint:
     """What the paper prints in place of what is right."""
 
-    expected_error: float
-    """Error that it must have."""
+    expected_error: float  # error that it must have
     terms: Callable[[Any], Terms]
-    about: str
-    """What the formula is of, as a heading."""
-    latex: str
-    r"""The formula, with `<printed|right>` where the two differ; `\\` begins a new line."""
+    about: str  # what the formula is of, as a heading
+    latex: str  # the formula, with `<printed|right>` where the two differ; `\\` begins a new line
     kind: str = MISPRINT
-    of: str = ""
-    """The equation that it is a consequence of."""
+    of: str = ""  # the equation that it is a consequence of
 
     @property
     def printed(self) -> str:
@@ -150,37 +162,21 @@ class Misprint:
 
 
 @dataclass(frozen=True)
-class Limit:
-    """Where a row that holds only in a limit no longer does."""
-
-    expected_error: float
-    """Error that it must have there."""
-    see: Callable[[], Any]
-    """Computes what the terms are functions of, beyond the limit."""
-
-
-@dataclass(frozen=True)
 class Claim:
     """An equation or statement of the paper that is measured."""
 
-    equation: str
-    """Its number, or the section, footnote or figure that it is in."""
-    quantity: str
-    """What is claimed of what."""
+    equation: str  # its number, or the section, footnote or figure that it is in
+    quantity: str  # what is claimed of what
     witness: Witness
     bound: Bound
-    terms: Callable[[Any], Terms]
-    """Terms of what is right, from what the witness saw."""
-    misprint: Misprint | None = None
-    """What is printed instead."""
-    limit: Limit | None = None
-    """Where it no longer holds."""
-    quote: str = ""
-    """The paper's own words, where the row rests on these."""
+    terms: Callable[[Any], Terms]  # terms of what is right, from what the witness saw
+    misprint: Misprint | None = None  # what is printed instead
+    limit: Limit | None = None  # where it no longer holds
+    quote: str = ""  # the paper's own words, where the claim rests on these
 
     @property
     def verdict(self) -> str:
-        """What a row that passes shows of the paper."""
+        """What a claim that passes shows of the paper."""
         return LIMIT if self.limit else CORRECTED if self.misprint else CONFIRMED
 
     @property

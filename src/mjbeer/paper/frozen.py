@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from mjbeer.model.build import build
 from mjbeer.model.setting import DOP853
-from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Terms, Witness
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Terms, Witness, equation
 from mjbeer.paper.witness import (
     CONTACT,
     DRIFT,
@@ -39,18 +39,8 @@ _CREEP = 1e-3
 """A can counts as slipping if it slips by more than this in a second, in radii; one that holds slips by 1e-7."""
 
 
-def eq_52(q: Motion, part: float = 1) -> Terms:
-    """Return the terms of eq. (52), of which footnote 8 has ab as half of what it is: `part` 1/2.
-
-    (3a^2/2 - 2ab cos phi) phi_ddot + a b sin phi phi_dot^2 = g (a sin(alpha) - b sin(alpha + phi)).
-    """
-    return (
-        3 * q.a**2 / 2 * q.phi_ddot,
-        -2 * q.a * q.b * q.cos_phi * q.phi_ddot,
-        part * q.a * q.b * q.sin_phi * q.phi_dot**2,
-        -q.g * q.a * q.sin_alpha,
-        q.g * q.b * q.sin_theta,
-    )
+_EQ_52 = "3*a**2/2*phi_ddot - 2*a*b*cos_phi*phi_ddot + {}a*b*sin_phi*phi_dot**2 - g*a*sin_alpha + g*b*sin_theta"
+"""Eq. (52), of which footnote 8 has ab as half of what it is."""
 
 
 def equilibrium_53(scene: Scene) -> float:
@@ -179,15 +169,15 @@ _SLIPS = Bound(1e-6, "the can slips a little in its soft contact")
 
 # fmt: off
 CLAIMS = (
-    Claim("(50)", "u = a phi", _TOUCHES, _SLIPS, lambda q: (q.u, -q.a * q.phi)),
-    Claim("(50)", "s = a phi - b sin(phi)", _TOUCHES, _SLIPS, lambda q: (q.s, -q.a * q.phi, q.b * q.sin_phi)),
-    Claim("(51)", "T", ROLL_DOWN, HELD, lambda q: (
-        3 * q.m * q.a**2 / 4 * q.phi_dot**2, -q.m * q.a * q.b * q.cos_phi * q.phi_dot**2, -q.kinetic)),
-    Claim("(51)", "V", ROLL_DOWN, EXACT,
-        lambda q: (-q.m * q.g * q.a * q.phi * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta, -q.potential)),
-    Claim("(52)", "equation of motion of phi", ROLL_DOWN, HELD, eq_52),
-    Claim("footnote 8", "the equation as typed in: 3(1) sin(x) (x')^2; printed 3(0.5)", FOOTNOTE_8, HELD, eq_52,
-        Misprint(0.32, lambda q: eq_52(q, 0.5),
+    Claim("(50)", "u = a phi", _TOUCHES, _SLIPS, equation("u - a*phi")),
+    Claim("(50)", "s = a phi - b sin(phi)", _TOUCHES, _SLIPS, equation("s - a*phi + b*sin_phi")),
+    Claim("(51)", "T", ROLL_DOWN, HELD,
+        equation("3*m*a**2/4*phi_dot**2 - m*a*b*cos_phi*phi_dot**2 - kinetic")),
+    Claim("(51)", "V", ROLL_DOWN, EXACT, equation("-m*g*a*phi*sin_alpha - m*g*b*cos_theta - potential")),
+    Claim("(52)", "equation of motion of phi", ROLL_DOWN, HELD, equation(_EQ_52.format(""))),
+    Claim("footnote 8", "the equation as typed in: 3(1) sin(x) (x')^2; printed 3(0.5)", FOOTNOTE_8, HELD,
+        equation(_EQ_52.format("")),
+        Misprint(0.32, equation(_EQ_52.format("0.5*")),
             "Frozen beer: the term ab sin φ φ̇² as typed in, with a = 3 cm and b = 1 cm", r"3(<0.5|1>)\sin(x)\,(x')^2"),
         quote="3(0.5) sin(x)(x')² …, which corresponds to a = 3 cm, b = 1 cm"),
     Claim("(53)", "angle at which nothing turns the can", Witness(EQUALITY, _rest), EXACT,
@@ -221,8 +211,8 @@ CLAIMS = (
         limit=Limit(0.0154, partial(_omega, 0.0)),
         quote="it does not roll, but executes oscillations with frequency approximately given by eq. (55)"),
     Claim("footnote 9", "b = 0: phi = g sin(alpha) t^2/(3a)",
-        Witness(EQUALITY, lambda: resting(balanced(0.5))), Bound(1e-7, DRIFT),
-        lambda q: (q.phi, -q.g * q.sin_alpha * q.time**2 / (3 * q.a)), quote="φ = g sin αt²/3a"),
+        Witness(EQUALITY, partial(resting, balanced(0.5))), Bound(1e-7, DRIFT),
+        equation("phi - g*sin_alpha*time**2/(3*a)"), quote="φ = g sin αt²/3a"),
     Claim("sec. A.3", "mean acceleration of a long roll-down (2/3) g sin(alpha): b = a/3; within, b = a/300",
         Witness(EQUALITY, partial(_mean_acceleration, 0.01)),
         Bound(1e-3, "the start, of whose waves 1e-4 is left between 8 s and 16 s"),

@@ -18,10 +18,8 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import hoop
 
-RATIO = 1 / 20
-"""M/m of the hoop that hops."""
-MU = 0.8
-"""Friction coefficient of the hoop that skids: the kinetic one in the paper's last figure."""
+RATIO = 1 / 20  # M/m of the hoop that hops
+MU = 0.8  # friction coefficient of the hoop that skids: the kinetic one in the paper's last figure
 
 
 def rate(ratio: float, phi: float | np.ndarray) -> Any:

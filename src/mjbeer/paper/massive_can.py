@@ -1,89 +1,42 @@
 """Section 3.1 of the paper, equations (39)-(49): a can with mass, partially filled.
 
-The functions take the can's effective mass K = m_can + I_can/a^2 [kg] as `k`, so that the wheel of appendix B, whose K
-is 2M, has the same.
+Where the wheel of appendix B, whose K is 2M, has the same equation, K is the name `rolling`.
 """
 
+from functools import partial
 from typing import Any
 
-from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Terms, Witness
-from mjbeer.paper.sliding import kinetic_11, potential_14, potential_17
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, SceneConstants, Witness, equation
+from mjbeer.paper.sliding import KINETIC_11, POTENTIAL_14, POTENTIAL_17
 from mjbeer.paper.witness import DRIFT, EQUALITY, EXACT, HELD, METAL, resting
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import sliding
 
-
-def can_39(q: Motion, k: Any, squared: Any) -> Terms:
-    """Return the terms of T_can [J] in s and phi, of which `squared` is the last: cos^2(phi), printed sin^2(phi)."""
-    return (
-        k / 2 * q.s_dot**2,
-        k * q.b * q.cos_phi * q.s_dot * q.phi_dot,
-        k / 2 * q.b**2 * squared * q.phi_dot**2,
-    )
-
-
-def potential_40(q: Motion) -> Terms:
-    """Return the terms of V_can [J] in s and phi."""
-    return -q.can_mass * q.g * q.s * q.sin_alpha, -q.can_mass * q.g * q.b * q.sin_phi * q.sin_alpha
-
-
-def speed_43(q: Motion) -> Terms:
-    """Return the terms of v_beer^2 [m^2/s^2] in u and theta."""
-    return q.u_dot**2, -2 * q.b * q.cos_phi * q.u_dot * q.phi_dot, q.b**2 * q.phi_dot**2
-
-
-def motion_46(q: Motion, k: Any) -> Terms:
-    """Return the terms of (m + K) u_ddot - m b (cos phi phi_ddot - sin phi phi_dot^2) = (m + m_can) g sin(alpha)."""
-    return (
-        (q.m + k) * q.u_ddot,
-        -q.m * q.b * q.cos_phi * q.phi_ddot,
-        q.m * q.b * q.sin_phi * q.phi_dot**2,
-        -(q.m + q.can_mass) * q.g * q.sin_alpha,
-    )
-
-
-def motion_47(q: Motion, turning: Any) -> Terms:
-    """Return the terms of I_axis theta_ddot - m b cos phi u_ddot = -m g b sin theta, with the first as `turning`."""
-    return turning, -q.m * q.b * q.cos_phi * q.u_ddot, q.m * q.g * q.b * q.sin_theta
-
-
-def motion_48(q: Motion, k: Any) -> Terms:
-    """Return the terms of (m + K) s_ddot + b K (cos phi phi_ddot - sin phi phi_dot^2) = (m + m_can) g sin(alpha)."""
-    return (
-        (q.m + k) * q.s_ddot,
-        k * q.b * q.cos_phi * q.phi_ddot,
-        -k * q.b * q.sin_phi * q.phi_dot**2,
-        -(q.m + q.can_mass) * q.g * q.sin_alpha,
-    )
-
-
-def motion_49(q: Motion, k: Any) -> Terms:
-    """Return the terms of eq. (49), corrected: eq. (16) with two additions.
-
-    K (b^2 cos^2 phi phi_ddot - b^2 sin phi cos phi phi_dot^2 + b cos phi s_ddot) is added on the left, and
-    m_can g b sin(alpha) cos phi on the right.
-    """
-    return (
-        *_swing(q),
-        k * q.b**2 * q.cos_phi**2 * q.phi_ddot,
-        -k * q.b**2 * q.sin_phi * q.cos_phi * q.phi_dot**2,
-        k * q.b * q.cos_phi * q.s_ddot,
-        -q.can_mass * q.g * q.b * q.sin_alpha * q.cos_phi,
-    )
-
-
-def printed_49(q: Motion, k: Any) -> Terms:
-    """Return the same as printed, with K (b^2 sin^2 phi phi_ddot + b cos phi s_ddot) added to eq. (16) on the left."""
-    return *_swing(q), k * q.b**2 * q.sin_phi**2 * q.phi_ddot, k * q.b * q.cos_phi * q.s_ddot
-
-
-def _swing(q: Motion) -> Terms:
-    return (
-        (q.inertia + q.m * q.b**2 * q.sin_phi**2) * q.phi_ddot,
-        q.m * q.b**2 * q.sin_phi * q.cos_phi * q.phi_dot**2,
-        q.m * q.g * q.b * q.cos_alpha * q.sin_phi,
-    )
+CAN_39 = "rolling/2*s_dot**2 + rolling*b*cos_phi*s_dot*phi_dot + rolling/2*b**2*{}_phi**2*phi_dot**2"
+"""T_can [J] in s and phi; its last term has the cosine, printed with the sine."""
+POTENTIAL_40 = "- can_mass*g*s*sin_alpha - can_mass*g*b*sin_phi*sin_alpha"  # V_can [J] in s and phi
+BEER_43 = "u_dot**2 - 2*b*cos_phi*u_dot*phi_dot + b**2*phi_dot**2"  # v_beer^2 [m^2/s^2] in u and theta
+TWICE_44 = "m/2*u_dot**2 - m*b*cos_phi*u_dot*phi_dot + m/2*b**2*phi_dot**2"  # m v_beer^2/2 [J]
+MOTION_46 = "(m + rolling)*u_ddot - m*b*cos_phi*phi_ddot + m*b*sin_phi*phi_dot**2 - (m + can_mass)*g*sin_alpha"
+MOTION_47 = "{}*{} - m*b*cos_phi*u_ddot + m*g*b*sin_theta"
+"""I_axis theta_ddot - m b cos(phi) u_ddot = -m g b sin(theta); a misprint has other factors in the first term."""
+MOTION_48 = (
+    "(m + rolling)*s_ddot + rolling*b*cos_phi*phi_ddot - rolling*b*sin_phi*phi_dot**2 - (m + can_mass)*g*sin_alpha"
+)
+_MOTION_16 = (
+    "(inertia + m*b**2*sin_phi**2)*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 + m*g*b*cos_alpha*sin_phi "
+    "+ rolling*b*cos_phi*s_ddot"
+)
+MOTION_49 = (
+    f"{_MOTION_16} + rolling*b**2*cos_phi**2*phi_ddot - rolling*b**2*sin_phi*cos_phi*phi_dot**2 "
+    "- can_mass*g*b*sin_alpha*cos_phi"
+)
+PRINTED_49 = f"{_MOTION_16} + rolling*b**2*sin_phi**2*phi_ddot"
+"""Eq. (16) with what the can adds to it, corrected and as printed."""
+_OF_THE_WHOLE = "rolling*u_dot**2/2 - kinetic"
+_OF_THE_CAN = "- can_mass*g*u*sin_alpha - potential"
+"""The can's kinetic energy, or its potential energy, less that of the whole."""
 
 
 def steady(c: SceneConstants, k: Any) -> Any:
@@ -91,13 +44,8 @@ def steady(c: SceneConstants, k: Any) -> Any:
     return c.g * c.sin_alpha * (c.m + c.can_mass) / (c.m + k)
 
 
-def _of_the_can(q: Motion) -> Any:
-    """Return the can's kinetic energy [J]: MuJoCo's of the whole less the beer's."""
-    return q.kinetic - sum(kinetic_11(q))
-
-
 def _rests(scene: Scene) -> Witness:
-    return Witness(EQUALITY, lambda: resting(scene))
+    return Witness(EQUALITY, partial(resting, scene))
 
 
 _FULL, _NEARLY_EMPTY = sliding(can=Can.sheet_metal()), sliding(fill=1e-4, can=Can.sheet_metal())
@@ -111,48 +59,43 @@ BRACKET_49 = (
 
 # fmt: off
 CLAIMS = (
-    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, lambda q: (q.phi, -q.theta, q.alpha),
-        Misprint(0.16, lambda q: (q.phi, -q.theta, -q.alpha), "The two angles of the beer",
+    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, equation("phi - theta + alpha"),
+        Misprint(0.16, equation("phi - theta - alpha"), "The two angles of the beer",
             r"\varphi=\theta\,<+|->\,\alpha"),
         quote="θ or φ = θ + α as the independent coordinates"),
-    Claim("(39)", "T_can in u", METAL, HELD, lambda q: (q.rolling * q.u_dot**2 / 2, -_of_the_can(q))),
+    Claim("(39)", "T_can in u", METAL, HELD, equation(f"rolling*u_dot**2/2 - (kinetic - ({KINETIC_11}))")),
     Claim("(39)", "T_can in s and phi: its last term has cos^2; printed sin^2", METAL, HELD,
-        lambda q: (*can_39(q, q.rolling, q.cos_phi**2), -_of_the_can(q)),
-        Misprint(0.060, lambda q: (*can_39(q, q.rolling, q.sin_phi**2), -_of_the_can(q)), "Kinetic energy of the can",
+        equation(f"{CAN_39.format('cos')} - (kinetic - ({KINETIC_11}))"),
+        Misprint(0.060, equation(f"{CAN_39.format('sin')} - (kinetic - ({KINETIC_11}))"), "Kinetic energy of the can",
             r"\frac12" + _CAN + r"\bigl(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi\\ "
             r"{}+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2\bigr)")),
-    Claim("(40)", "V_can in u", METAL, EXACT,
-        lambda q: (-q.can_mass * q.g * q.u * q.sin_alpha, *potential_14(q), -q.potential)),
-    Claim("(40)", "V_can in s and phi", METAL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
-    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, lambda q: (q.u, -q.b * q.sin_phi, -q.s)),
-    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, lambda q: (-q.b * q.cos_phi, -q.across)),
+    Claim("(40)", "V_can in u", METAL, EXACT, equation(POTENTIAL_14 + _OF_THE_CAN)),
+    Claim("(40)", "V_can in s and phi", METAL, EXACT, equation(POTENTIAL_40 + POTENTIAL_14 + "- potential")),
+    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, equation("u - b*sin_phi - s")),
+    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, equation("-b*cos_phi - across")),
     Claim("(42)", "x_dot = s_dot; printed s_dot^2 (in SI units)", METAL, EXACT,
-        lambda q: (q.s_dot, -q.u_dot, q.b * q.cos_phi * q.phi_dot),
-        Misprint(0.39, lambda q: (q.s_dot**2, -q.u_dot, q.b * q.cos_phi * q.phi_dot),
+        equation("s_dot - u_dot + b*cos_phi*phi_dot"),
+        Misprint(0.39, equation("s_dot**2 - u_dot + b*cos_phi*phi_dot"),
             "Velocity of the centre of mass along the incline", r"\dot x=<\dot s^2|\dot s>")),
-    Claim("(42)", "y_dot", METAL, EXACT, lambda q: (q.b * q.sin_phi * q.phi_dot, -q.across_dot)),
-    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT, lambda q: (*speed_43(q), -(q.s_dot**2 + q.across_dot**2))),
+    Claim("(42)", "y_dot", METAL, EXACT, equation("b*sin_phi*phi_dot - across_dot")),
+    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT, equation(BEER_43 + "- (s_dot**2 + across_dot**2)")),
     Claim("(43)", "v_beer^2 in s and phi", METAL, EXACT,
-        lambda q: (q.s_dot**2, q.b**2 * q.sin_phi**2 * q.phi_dot**2, -(q.s_dot**2 + q.across_dot**2))),
-    Claim("(44)", "T_beer in u and theta", METAL, HELD, lambda q: (
-        *(q.m / 2 * each for each in speed_43(q)), q.inertia * q.phi_dot**2 / 2,
-        q.rolling * q.u_dot**2 / 2, -q.kinetic)),
-    Claim("(44)", "T_beer in s and phi", METAL, HELD,
-        lambda q: (*kinetic_11(q), q.rolling * q.u_dot**2 / 2, -q.kinetic)),
-    Claim("(45)", "V_beer in u and theta", METAL, EXACT,
-        lambda q: (*potential_17(q), -q.can_mass * q.g * q.u * q.sin_alpha, -q.potential)),
-    Claim("(45)", "V_beer in s and phi", METAL, EXACT,
-        lambda q: (*potential_14(q), -q.can_mass * q.g * q.u * q.sin_alpha, -q.potential)),
-    Claim("(46)", "equation of motion of u", METAL, HELD, lambda q: motion_46(q, q.rolling)),
+        equation("s_dot**2 + b**2*sin_phi**2*phi_dot**2 - (s_dot**2 + across_dot**2)")),
+    Claim("(44)", "T_beer in u and theta", METAL, HELD,
+        equation(f"{TWICE_44} + inertia*phi_dot**2/2 + {_OF_THE_WHOLE}")),
+    Claim("(44)", "T_beer in s and phi", METAL, HELD, equation(f"{KINETIC_11} + {_OF_THE_WHOLE}")),
+    Claim("(45)", "V_beer in u and theta", METAL, EXACT, equation(POTENTIAL_17 + _OF_THE_CAN)),
+    Claim("(45)", "V_beer in s and phi", METAL, EXACT, equation(POTENTIAL_14 + _OF_THE_CAN)),
+    Claim("(46)", "equation of motion of u", METAL, HELD, equation(MOTION_46)),
     Claim("(47)", "equation of motion of theta: I_axis; printed m a^2 (for m a^2/2 of a half can)", METAL, HELD,
-        lambda q: motion_47(q, q.axial * q.phi_ddot),
-        Misprint(0.50, lambda q: motion_47(q, q.m * q.a**2 * q.phi_ddot), "Massive can: equation of motion of θ",
+        equation(MOTION_47.format("axial", "phi_ddot")),
+        Misprint(0.50, equation(MOTION_47.format("m*a**2", "phi_ddot")), "Massive can: equation of motion of θ",
             r"<ma^2|I_{\text{axis}}>\,\ddot\theta-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta"),
         quote="recalling that mb² + I_cm = ma²"),
-    Claim("(48)", "equation of motion of s", METAL, HELD, lambda q: motion_48(q, q.rolling)),
+    Claim("(48)", "equation of motion of s", METAL, HELD, equation(MOTION_48)),
     Claim("(49)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", METAL, HELD,
-        lambda q: motion_49(q, q.rolling),
-        Misprint(0.059, lambda q: printed_49(q, q.rolling), "Massive can: equation of motion of φ",
+        equation(MOTION_49),
+        Misprint(0.059, equation(PRINTED_49), "Massive can: equation of motion of φ",
             _LEFT_49 + _CAN + "(" + BRACKET_49 + r"<|{}+m_{\text{can}}gb\sin\alpha\,\cos\varphi>")),
     Claim("footnote 4", "acceleration of a can whose beer does not swing", _rests(_FULL), HELD,
         lambda q: (q.u_ddot, -steady(q, q.rolling)),
@@ -162,7 +105,7 @@ CLAIMS = (
         _rests(_HOOP), Bound(1e-7, DRIFT), lambda q: (q.u_ddot, -steady(q, 2 * q.can_mass)),
         limit=Limit(4.2e-3, _rests(_FULL).see), quote="≈ g sin α(m + m_can)/(m + 2m_can)"),
     Claim("sec. 3.1", "(g/2) sin(alpha) of a nearly empty can: beyond, of sheet metal; within, a hoop",
-        _rests(_HOOP), Bound(1e-4, "what beer is left (fill 1e-4)"), lambda q: (q.u_ddot, -q.g * q.sin_alpha / 2),
+        _rests(_HOOP), Bound(1e-4, "what beer is left (fill 1e-4)"), equation("u_ddot - g*sin_alpha/2"),
         limit=Limit(0.054, _rests(_NEARLY_EMPTY).see),
         quote="nearly the same as that of an empty can, with acceleration (g/2) sin α down the incline"),
     Claim("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _rests(_FULL), HELD,

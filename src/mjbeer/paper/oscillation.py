@@ -14,15 +14,12 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import INCLINE
 from mjbeer.theory.scenes import sliding
 
-FAST = 350.0
-"""phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop."""
+FAST = 350.0  # phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop
 SLOW = 45.0
 """The same of a load that just loops. It takes 39.4 rad/s to loop; above 47.4 rad/s the can would leave the incline."""
-_HESITATION = 0.01
-"""Amplitude [rad] of the swing in which the can's hesitation is measured."""
+_HESITATION = 0.01  # amplitude [rad] of the swing in which the can's hesitation is measured
 _PHASE = np.linspace(0, 2 * math.pi, 65)
-_TOP = 3.1
-"""Angle [rad] beside the top from which a load is let go that does not loop."""
+_TOP = 3.1  # angle [rad] beside the top from which a load is let go that does not loop
 
 
 def squares_25(waves: tuple[Any, Any], part: int) -> Terms:

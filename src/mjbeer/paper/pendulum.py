@@ -4,27 +4,32 @@ They are those of the massive can with I_can/a^2 = m_can = M and I_cm = 0, as th
 """
 
 import math
+from collections.abc import Callable
+from typing import Any
 
-from mjbeer.paper.claim import CONSEQUENCE, Bound, Claim, Limit, Misprint, Motion, Terms, Witness
+from mjbeer.paper.claim import CONSEQUENCE, Bound, Claim, Limit, Misprint, Terms, Witness, equation
 from mjbeer.paper.massive_can import (
     BRACKET_49,
-    can_39,
-    motion_46,
-    motion_47,
-    motion_48,
-    motion_49,
-    potential_40,
-    printed_49,
-    speed_43,
+    CAN_39,
+    MOTION_46,
+    MOTION_47,
+    MOTION_48,
+    MOTION_49,
+    POTENTIAL_40,
+    PRINTED_49,
+    TWICE_44,
 )
-from mjbeer.paper.sliding import potential_14
+from mjbeer.paper.sliding import POTENTIAL_14
 from mjbeer.paper.witness import EXACT, HELD, REDUCED, SMALL, WHEEL, frequency
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import pendulum
 
+_BOB_59 = "m*s_dot**2/2 + m*b**2*sin_phi**2*phi_dot**2/2"
 
-def _bob_59(q: Motion) -> Terms:
-    return q.m * q.s_dot**2 / 2, q.m * q.b**2 * q.sin_phi**2 * q.phi_dot**2 / 2
+
+def _of_the_wheel(text: str) -> Callable[[Any], Terms]:
+    """Return the equation of a can with K = 2M."""
+    return equation(text.replace("rolling", "2*can_mass"))
 
 
 def _bob(ratio: float, heavy: bool = False) -> tuple[Scene, float]:
@@ -55,31 +60,30 @@ _LIMITS = "can be analyzed simply only in the limits that m ≪ M or m ≫ M"
 # fmt: off
 CLAIMS = (
     Claim("(56)", "T in u and theta: the sign of u_dot theta_dot, and b^2 theta_dot^2", WHEEL, HELD,
-        lambda q: (q.can_mass * q.u_dot**2, *(q.m / 2 * each for each in speed_43(q)), -q.kinetic),
-        Misprint(0.70, lambda q: (
-            q.can_mass * q.u_dot**2, q.m / 2 * q.u_dot**2, q.m * q.b * q.cos_phi * q.u_dot * q.phi_dot, -q.kinetic),
+        equation(f"can_mass*u_dot**2 + {TWICE_44} - kinetic"),
+        Misprint(0.70, equation("can_mass*u_dot**2 + m/2*u_dot**2 + m*b*cos_phi*u_dot*phi_dot - kinetic"),
             "Pendulum in a wheel: kinetic energy",
             r"M\dot u^2+\frac m2\bigl[\dot u^2<{}+2b\cos(\theta-\alpha)\,\dot u\,\dot\theta|"
             r"{}-2b\cos(\theta-\alpha)\,\dot u\,\dot\theta+b^2\dot\theta^2>\bigr]")),
     Claim("(56)", "V in u and theta", WHEEL, EXACT,
-        lambda q: (-(q.can_mass + q.m) * q.g * q.u * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta, -q.potential)),
-    Claim("(57)", "equation of motion of u", WHEEL, HELD, lambda q: motion_46(q, 2 * q.can_mass)),
+        equation("-(can_mass + m)*g*u*sin_alpha - m*g*b*cos_theta - potential")),
+    Claim("(57)", "equation of motion of u", WHEEL, HELD, _of_the_wheel(MOTION_46)),
     Claim("(58)", "equation of motion of theta: theta_ddot; printed theta (in SI units)", WHEEL, HELD,
-        lambda q: motion_47(q, q.m * q.b**2 * q.phi_ddot),
-        Misprint(1.12, lambda q: motion_47(q, q.m * q.b**2 * q.theta), "Pendulum in a wheel: equation of motion of θ",
+        equation(MOTION_47.format("m*b**2", "phi_ddot")),
+        Misprint(1.12, equation(MOTION_47.format("m*b**2", "theta")), "Pendulum in a wheel: equation of motion of θ",
             r"mb^2<\theta|\ddot\theta>-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta")),
     Claim("(59)", "T in s and phi: cos^2; printed sin^2", WHEEL, HELD,
-        lambda q: (*can_39(q, 2 * q.can_mass, q.cos_phi**2), *_bob_59(q), -q.kinetic),
-        Misprint(0.28, lambda q: (*can_39(q, 2 * q.can_mass, q.sin_phi**2), *_bob_59(q), -q.kinetic),
+        _of_the_wheel(f"{CAN_39.format('cos')} + {_BOB_59} - kinetic"),
+        Misprint(0.28, _of_the_wheel(f"{CAN_39.format('sin')} + {_BOB_59} - kinetic"),
             "Pendulum in a wheel: kinetic energy of the wheel",
             r"M(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2)",
             CONSEQUENCE, "(39)"),
         quote=_AS_IN_3),
-    Claim("(59)", "V in s and phi", WHEEL, EXACT, lambda q: (*potential_40(q), *potential_14(q), -q.potential)),
-    Claim("(60)", "equation of motion of s", WHEEL, HELD, lambda q: motion_48(q, 2 * q.can_mass)),
+    Claim("(59)", "V in s and phi", WHEEL, EXACT, equation(POTENTIAL_40 + POTENTIAL_14 + "- potential")),
+    Claim("(60)", "equation of motion of s", WHEEL, HELD, _of_the_wheel(MOTION_48)),
     Claim("(61)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", WHEEL, HELD,
-        lambda q: motion_49(q, 2 * q.can_mass),
-        Misprint(1.09, lambda q: printed_49(q, 2 * q.can_mass), "Pendulum in a wheel: equation of motion of φ",
+        _of_the_wheel(MOTION_49),
+        Misprint(1.09, _of_the_wheel(PRINTED_49), "Pendulum in a wheel: equation of motion of φ",
             r"mb^2(\sin^2\!\varphi\,\ddot\varphi+\sin\varphi\,\cos\varphi\,\dot\varphi^2)\\ {}+2M(" + BRACKET_49
             + r"<|{}+Mgb\sin\alpha\,\cos\varphi>", CONSEQUENCE, "(49)"),
         quote=_AS_IN_3),

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Terms, Witness
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Witness, equation
 from mjbeer.paper.witness import (
     DRIFT,
     EQUALITY,
@@ -53,39 +53,15 @@ def eq_24(c: SceneConstants) -> Any:
     return 2 * c.b * c.g * c.cos_alpha / (c.a**2 - 2 * c.b**2)
 
 
-def kinetic_11(q: Motion) -> Terms:
-    """Return the terms of T [J]; they are those of the beer in any can, the second line of eq. (44)."""
-    return q.m * q.s_dot**2 / 2, q.m * q.b**2 * q.sin_phi**2 * q.phi_dot**2 / 2, q.inertia * q.phi_dot**2 / 2
-
-
-def potential_14(q: Motion) -> Terms:
-    """Return the terms of V = -m g (s sin(alpha) + b cos(alpha) cos(phi)) [J], which (45) has too."""
-    return -q.m * q.g * q.s * q.sin_alpha, -q.m * q.g * q.b * q.cos_alpha * q.cos_phi
-
-
-def potential_17(q: Motion) -> Terms:
-    """Return the terms of the same V [J] in u and theta, as in eqs. (17), (20) and (45)."""
-    return -q.m * q.g * q.u * q.sin_alpha, -q.m * q.g * q.b * q.cos_theta
-
-
-def eq_19(q: Motion, pull: float) -> Terms:
-    """Return the terms of (a^2/2) phi_ddot - b cos(phi) u_ddot = -`pull` b sin(alpha + phi); `pull` should be g."""
-    return q.a**2 / 2 * q.phi_ddot, -q.b * q.cos_phi * q.u_ddot, pull * q.b * q.sin_theta
-
-
-def _torque(q: Motion) -> float:
-    """Return the torque of gravity about C [N m], with the lever arm u - s of MuJoCo's positions."""
-    return -q.m * q.g * q.cos_alpha * (q.u - q.s)
-
-
-def _turns_about_c(q: Motion) -> Terms:
-    """Return the terms [m/s] of: the centre of mass moves across the incline at phi_dot (u - s)."""
-    return q.across_dot, -q.phi_dot * (q.u - q.s)
-
-
-def _turns_about_c_of_the_caption(q: Motion) -> Terms:
-    """Return the same, and the velocity along the incline that turning about a C lower by b tan(phi) sin(phi) adds."""
-    return *_turns_about_c(q), -q.phi_dot * q.b * q.sin_phi**2 / q.cos_phi
+KINETIC_11 = "m*s_dot**2/2 + m*b**2*sin_phi**2*phi_dot**2/2 + inertia*phi_dot**2/2"
+"""T [J] of the beer in any can, also the second line of eq. (44)."""
+POTENTIAL_14 = "- m*g*s*sin_alpha - m*g*b*cos_alpha*cos_phi"
+POTENTIAL_17 = "- m*g*u*sin_alpha - m*g*b*cos_theta"
+"""V [J] of the beer in s and phi, and in u and theta, which (20) and (45) have too."""
+_EQ_19 = "a**2/2*phi_ddot - b*cos_phi*u_ddot + {}*b*sin_theta"
+_TORQUE = "m*g*cos_alpha*(u - s)"
+"""Torque of gravity about C [N m], clockwise, with the lever arm of MuJoCo's positions."""
+_TURNS_ABOUT_C = "across_dot - phi_dot*(u - s)"  # the centre of mass moves across the incline at phi_dot (u - s) [m/s]
 
 
 @cache
@@ -104,54 +80,49 @@ _SMALL_SWING = Witness(REDUCED, lambda: frequency(sliding(), SMALL))
 # fmt: off
 CLAIMS = (
     Claim("(1)", "s(t) from rest", SWING, Bound(1e-12, "rounding of DOP853"),
-        lambda q: (q.s, -q.g * q.sin_alpha * q.time**2 / 2)),
+        equation("s - g*sin_alpha*time**2/2")),
     Claim("footnote 1",
         "no friction between can and incline: beyond, the metal can; within, one of a ten-thousandth of it",
         Witness(EQUALITY, _in_a_light_can), Bound(1e-4, "the can's share of the mass"),
-        lambda q: (q.m * q.g * q.sin_alpha, -q.friction, -q.m * q.g * q.sin_alpha),  # the error: a share of the weight
+        equation("m*g*sin_alpha - friction - m*g*sin_alpha"),  # the error: a share of the weight
         limit=Limit(0.25, metal),
         quote="in the limit of a massless can, the force of friction is zero, so we neglect friction"),
     *(Claim("footnote 2", f"a cylinder of inertia {k:g} m a^2 has g sin(alpha)/(1 + k)",
-        Witness(EQUALITY, lambda k=k: resting(balanced(k))), Bound(1e-7, DRIFT),
-        lambda q, k=k: (q.u_ddot, -q.g * q.sin_alpha / (1 + k)),
+        Witness(EQUALITY, partial(resting, balanced(k))), Bound(1e-7, DRIFT),
+        equation(f"u_ddot - g*sin_alpha/(1 + {k})"),
         quote="a uniform cylinder with moment of inertia I = kma² about its axis has acceleration g sin α/(1 + k)")
       for k in (1.0, 0.5)),
     Claim("Fig. 1", "at phi = 0 the surface stays parallel to the incline, and u = g sin(alpha) t^2/2",
-        Witness(REDUCED, lambda: resting(sliding(), "reduced")), EXACT,
-        lambda q: (q.u, -q.g * q.sin_alpha * q.time**2 / 2, q.phi),
+        Witness(REDUCED, partial(resting, sliding(), "reduced")), EXACT, equation("u - g*sin_alpha*time**2/2 + phi"),
         quote="slide down a frictionless incline of angle α without oscillation if its flat side is parallel to the "
         "incline"),
     Claim("footnote 6", "sliding beer can be at rest: beyond, at 10 degrees; within, on level ground",
-        Witness(REDUCED, partial(swing, incline=0.0)), EXACT, lambda q: (q.g, q.s_ddot, -q.g),
+        Witness(REDUCED, partial(swing, incline=0.0)), EXACT, equation("g + s_ddot - g"),
         limit=Limit(0.174, swing), quote="a stable equilibrium exists only for α = 0"),
-    Claim("(2)", "torque about the instantaneous centre", SWING, EXACT, lambda q: (
-        (q.inertia + q.m * q.b**2 * q.sin_phi**2) * q.phi_ddot,
-        q.m * q.b**2 * q.sin_phi * q.cos_phi * q.phi_dot**2,
-        -_torque(q))),
+    Claim("(2)", "torque about the instantaneous centre", SWING, EXACT, equation(
+        f"(inertia + m*b**2*sin_phi**2)*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 + {_TORQUE}")),
     Claim("Fig. 2",
         "C moves with the centre of mass along the incline; the caption puts it on a line along the surface",
-        WIDE, EXACT, _turns_about_c,
-        Misprint(0.93, _turns_about_c_of_the_caption,
+        WIDE, EXACT, equation(_TURNS_ABOUT_C),
+        # Turning about a C that is lower by b tan(phi) sin(phi) adds a velocity along the incline.
+        Misprint(0.93, equation(_TURNS_ABOUT_C + " - phi_dot*b*sin_phi**2/cos_phi"),
             "The line through the centre of mass on which the instantaneous centre C lies",
             r"<\text{along the flat surface of the beer}|\text{along the incline}>"),
         quote="the line parallel to the flat surface that passes through the center of mass"),
-    Claim("(3)", "I_C, exact form", SWING, EXACT, lambda q: (
-        q.inertia * q.phi_dot**2 / 2,
-        q.m * q.b**2 * q.sin_phi**2 * q.phi_dot**2 / 2,
-        q.m * q.s_dot**2 / 2 - q.kinetic)),
+    Claim("(3)", "I_C, exact form", SWING, EXACT, equation(
+        "inertia*phi_dot**2/2 + m*b**2*sin_phi**2*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)")),
     Claim("(3)", "I_C = I_cm: beyond, a swing of 1 rad; within, of 1e-3 rad",
         NARROW, Bound(1e-6, "the amplitude: (m b^2/I_cm) phi^2 = 6e-7"),
-        lambda q: (q.inertia * q.phi_dot**2 / 2, q.m * q.s_dot**2 / 2 - q.kinetic), limit=Limit(0.095, WIDE.see)),
-    Claim("(4)", "torque about C, exact form", SWING, EXACT,
-        lambda q: (-q.m * q.g * q.cos_alpha * q.b * q.sin_phi, -_torque(q))),
+        equation("inertia*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)"), limit=Limit(0.095, WIDE.see)),
+    Claim("(4)", "torque about C, exact form", SWING, EXACT, equation(f"-m*g*cos_alpha*b*sin_phi + {_TORQUE}")),
     Claim("(4)", "torque about C, linear form: its sign", NARROW, Bound(3e-7, "the amplitude: phi^2/6 = 1.7e-7"),
-        lambda q: (-q.m * q.b * q.g * q.cos_alpha * q.phi, -_torque(q)),
-        Misprint(2.0, lambda q: (q.m * q.b * q.g * q.cos_alpha * q.phi, -_torque(q)),
+        equation(f"-m*b*g*cos_alpha*phi + {_TORQUE}"),
+        Misprint(2.0, equation(f"m*b*g*cos_alpha*phi + {_TORQUE}"),
             "Torque about the instantaneous centre, for small angles",
             r"\tau_C\approx<+|->\,mbg\cos\alpha\,\varphi")),
     Claim("(5), (23)", "linear equation of motion: beyond, a swing of 1 rad; within, of 1e-3 rad",
         NARROW, Bound(1e-6, "the amplitude: (1/6 + m b^2/I_cm) phi^2 = 7e-7"),
-        lambda q: (q.inertia * q.phi_ddot, q.m * q.b * q.g * q.cos_alpha * q.phi), limit=Limit(0.40, WIDE.see)),
+        equation("inertia*phi_ddot + m*b*g*cos_alpha*phi"), limit=Limit(0.40, WIDE.see)),
     Claim("(6), (24)", "omega of small oscillations: beyond, a swing of 1 rad; within, of 1e-3 rad",
         _SMALL_SWING, Bound(3e-7, "the amplitude: 2e-7"),
         lambda omega: (np.sqrt([eq_6(_beer()), eq_24(_beer())]), -omega),
@@ -163,32 +134,26 @@ CLAIMS = (
             r"\omega^2=\frac{24\pi g\cos\alpha}{9\pi^2-32}<|\cdot\frac1a>")),
     Claim("(10)", "omega^2 = 1.33 g cos(alpha)/a", _SMALL_SWING, Bound(3.8e-3, "half a unit of the last digit"),
         lambda omega: (1.33 * _beer().g * _beer().cos_alpha / _beer().a, -(omega**2))),
-    Claim("(11)", "T", SWING, EXACT, lambda q: (*kinetic_11(q), -q.kinetic)),
-    Claim("(12)", "u = s + b sin(phi)", SWING, EXACT, lambda q: (q.u, -q.s, -q.b * q.sin_phi)),
-    Claim("(12), Fig. 3", "theta = alpha + phi", SWING, EXACT, lambda q: (q.theta, -q.phi, -q.alpha)),
-    Claim("(13)", "z in u and theta", SWING, EXACT, lambda q: (-q.u * q.sin_alpha, -q.b * q.cos_theta, -q.height)),
-    Claim("(13)", "z in s and phi", SWING, EXACT,
-        lambda q: (-q.s * q.sin_alpha, -q.b * q.cos_alpha * q.cos_phi, -q.height)),
-    Claim("(14)", "V, its first form: -mgz for +mgz", SWING, EXACT, lambda q: (*potential_14(q), -q.potential),
-        Misprint(1.92, lambda q: (*(-each for each in potential_14(q)), -q.potential),
+    Claim("(11)", "T", SWING, EXACT, equation(KINETIC_11 + " - kinetic")),
+    Claim("(12)", "u = s + b sin(phi)", SWING, EXACT, equation("u - s - b*sin_phi")),
+    Claim("(12), Fig. 3", "theta = alpha + phi", SWING, EXACT, equation("theta - phi - alpha")),
+    Claim("(13)", "z in u and theta", SWING, EXACT, equation("-u*sin_alpha - b*cos_theta - height")),
+    Claim("(13)", "z in s and phi", SWING, EXACT, equation("-s*sin_alpha - b*cos_alpha*cos_phi - height")),
+    Claim("(14)", "V, its first form: -mgz for +mgz", SWING, EXACT, equation(POTENTIAL_14 + " - potential"),
+        Misprint(1.92, equation("m*g*s*sin_alpha + m*g*b*cos_alpha*cos_phi - potential"),
             "Potential energy of the beer", "V=<-|+>mgz")),
-    Claim("(15)", "s_ddot", SWING, EXACT, lambda q: (q.s_ddot, -q.g * q.sin_alpha)),
-    Claim("(16)", "equation of motion of phi", SWING, EXACT, lambda q: (
-        q.m * q.b**2 * q.sin_phi**2 * q.phi_ddot,
-        q.inertia * q.phi_ddot,
-        q.m * q.b**2 * q.sin_phi * q.cos_phi * q.phi_dot**2,
-        q.m * q.b * q.g * q.cos_alpha * q.sin_phi)),
-    Claim("(17), (20)", "T", SWING, EXACT, lambda q: (
-        q.m / 2 * q.u_dot**2,
-        -q.m * q.b * q.cos_phi * q.u_dot * q.phi_dot,
-        q.m * q.a**2 / 4 * q.phi_dot**2,
-        -q.kinetic)),
-    Claim("(17), (20)", "V", SWING, EXACT, lambda q: (*potential_17(q), -q.potential)),
-    Claim("(18), (21)", "equation of motion of u", SWING, EXACT, lambda q: (
-        q.u_ddot, -q.b * q.cos_phi * q.phi_ddot, q.b * q.sin_phi * q.phi_dot**2, -q.g * q.sin_alpha)),
+    Claim("(15)", "s_ddot", SWING, EXACT, equation("s_ddot - g*sin_alpha")),
+    Claim("(16)", "equation of motion of phi", SWING, EXACT, equation(
+        "m*b**2*sin_phi**2*phi_ddot + inertia*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 "
+        "+ m*b*g*cos_alpha*sin_phi")),
+    Claim("(17), (20)", "T", SWING, EXACT, equation(
+        "m/2*u_dot**2 - m*b*cos_phi*u_dot*phi_dot + m*a**2/4*phi_dot**2 - kinetic")),
+    Claim("(17), (20)", "V", SWING, EXACT, equation(POTENTIAL_17 + " - potential")),
+    Claim("(18), (21)", "equation of motion of u", SWING, EXACT,
+        equation("u_ddot - b*cos_phi*phi_ddot + b*sin_phi*phi_dot**2 - g*sin_alpha")),
     Claim("(19), (22)", "equation of motion of phi or theta: its right side lacks g (in SI units)", SWING, EXACT,
-        lambda q: eq_19(q, q.g),
-        Misprint(0.61, lambda q: eq_19(q, 1.0), "Equation of motion of φ, and that of θ alike",
+        equation(_EQ_19.format("g")),
+        Misprint(0.61, equation(_EQ_19.format("1")), "Equation of motion of φ, and that of θ alike",
             r"\frac{a^2}{2}\ddot\varphi-b\cos\varphi\,\ddot u=-<|g>b\sin(\alpha+\varphi)")),
 )
 # fmt: on

@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from rich.console import Console
 
-from mjbeer.drawing import opengl, studio
-from mjbeer.drawing.film import Film, Take
+from mjbeer.drawing import jobs, opengl
+from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.jobs import FilmJob, PlotJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
-from mjbeer.drawing.studio import Filmed, Plotted
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
 from mjbeer.output.plots import chart
-from mjbeer.paper import plots_frozen, plots_sliding
-from mjbeer.paper.plots_sliding import SWING
-from mjbeer.theory.scenes import frozen, pendulum, sliding
+from mjbeer.paper import story_plots
+from mjbeer.paper.story_plots import SWING
+from mjbeer.theory.scenes import frozen, sliding
 
-SIZE = 960, 540, 25
+SIZE = 768, 432, 25
 """Width and height [pixels] and pictures per second of a film: a page shows it 768 pixels wide, or less."""
 
 
@@ -27,17 +27,12 @@ SIZE = 960, 540, 25
 class Story:
     """A scenario of the paper."""
 
-    name: str
-    """Name of its files, without an ending."""
+    name: str  # name of its files, without an ending
     title: str
-    subtitle: str
-    """Of which scene the plot is."""
-    caption: str
-    """What the plot and the film show."""
-    size: tuple[int, int, float, float]
-    """Rows and columns of the plot's panels, and its width and height [inches]."""
-    draw: Callable[[Sequence[Axes]], None]
-    """Draws into the panels."""
+    subtitle: str  # of which scene the plot is
+    caption: str  # what the plot and the film show
+    size: tuple[int, int, float, float]  # rows and columns of the plot's panels, and its width and height [inches]
+    draw: Callable[[Sequence[Axes]], None]  # draws into the panels
     film: Film | None = None
 
     def plot(self, path: pathlib.Path) -> None:
@@ -52,7 +47,7 @@ class Story:
 
 def _let_go() -> Sequence[Runner]:
     """Return two cans: in one the beer does not swing, in the other it does."""
-    still, swinging = (plots_sliding.let_go(degrees, 0.65) for degrees in (0.0, 60.0))
+    still, swinging = (story_plots.let_go(degrees, 0.65) for degrees in (0.0, 60.0))
     return [
         Runner("let go at φ = 60°", swinging, (0.75, 0.2, 0.1), note="swings"),
         Runner("let go at φ = 0°", still, (0.1, 0.35, 0.6), note="does not swing"),
@@ -67,16 +62,16 @@ STORIES = (
         "Beer that starts with its surface parallel to the incline keeps it so, and the can rolls down with "
         "exactly g sin α. Beer that is let go at 60° swings, and its can hesitates. The centre of mass of the "
         "beer moves down in the same way in both.",
-        (1, 3, 12, 4.6),
-        plots_sliding.draw_trivial,
+        (2, 1, 6, 6.2),
+        story_plots.draw_trivial,
         Race(
-            "Whether its beer swings or not, a can gets equally far",
+            "One beer swings, one does not: their centres of mass stay abreast",
             _let_go,
             length=0.36,
             speed=0.1,
             told=str,  # the story has a caption
             still=0.2,
-            strips=("phi", "u"),
+            centres=True,
         ),
     ),
     Story(
@@ -86,12 +81,14 @@ STORIES = (
         "The can hesitates once in every swing of the beer. Its distance less ½ g sin α t² is b sin φ, and "
         "swings with the beer. Eq. (25) as printed has b cos φ instead, which is a smaller ripple at twice "
         "the frequency. It is drawn without its constant, and from the same start.",
-        (1, 1, 7.5, 5),
-        plots_sliding.draw_hesitation,
-        Take(
-            plots_sliding.HESITATION,
+        (1, 1, 6, 4.4),
+        story_plots.draw_hesitation,
+        MotionFilm(
+            story_plots.HESITATION,
             speed=0.1,
-            look=Look("A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost")),
+            look=Look(
+                "A can hesitates in every swing of its beer", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
+            ),
         ),
     ),
     Story(
@@ -103,34 +100,18 @@ STORIES = (
         "second ripple, twice in a turn, which remains however fast the beer spins. Fast beer lifts its can "
         "off the incline: a free can stays on it up to 47 rad/s at the bottom. The corrected formula is of "
         "first order, and only near the truth when the beer is slow.",
-        (1, 2, 11, 5.2),
-        plots_sliding.draw_looping,
-        Take(
-            plots_sliding.LOOPING,
+        (2, 1, 6, 6.2),
+        story_plots.draw_looping,
+        MotionFilm(
+            story_plots.LOOPING,
             speed=0.1,
-            look=Look("Beer that loops in its can", ("phi", "normal"), ("phi", "forces")),
+            look=Look(
+                "Beer that loops in its can all but lifts it",
+                ("normal", "phi"),
+                ("phi", "normal"),
+                notes=("light", "heavy"),
+            ),
         ),
-    ),
-    Story(
-        "accelerations",
-        "The fuller the can, the faster it runs down, unless its beer is frozen",
-        "beer that does not swing; the same on every incline",
-        "The acceleration of a can whose beer does not swing, from nearly empty to full. It grows from that "
-        "of the empty can, which is half of g sin α for a hoop, to nearly g sin α. A can of frozen beer is "
-        "slower: a full one has two thirds of g sin α. The dashed line leaves out the jerks of frozen beer, "
-        "as if its mass were centred on the axis.",
-        (1, 1, 7.5, 5.4),
-        plots_sliding.draw_accelerations,
-    ),
-    Story(
-        "pendulum",
-        "A wheel with a pendulum: a wide swing, and how the bob's mass changes small ones",
-        in_words(pendulum(), {"load"}),
-        "A wheel with a pendulum. Left: a wide swing. Right: small swings, and their two limits. A light bob "
-        "swings as if its pivot accelerated at half of g sin α. Under a heavy bob the wheel swings instead, "
-        "the faster the heavier the bob. The report has a film of it among its scenes.",
-        (1, 2, 12, 5.4),
-        plots_sliding.draw_pendulum,
     ),
     Story(
         "rocking",
@@ -138,10 +119,10 @@ STORIES = (
         f"{in_words(frozen())}; let go at φ = 0",
         "A can with frozen beer is let go at φ = 0. It rocks about its equilibrium and does not roll off. "
         "Footnote 8's equation as printed has ½ a b in place of a b, and gives another swing.",
-        (2, 1, 7.5, 7),
-        plots_frozen.draw_rocking,
-        Take(
-            plots_frozen.ROCKING,
+        (2, 1, 6, 6.2),
+        story_plots.draw_rocking,
+        MotionFilm(
+            story_plots.ROCKING,
             speed=0.5,
             look=Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths")),
         ),
@@ -153,8 +134,8 @@ STORIES = (
         "The figure of A.3: the same can, let go with the beer on top. It rolls down in jerks, a little "
         "faster than a solid cylinder. From 0.834 s on the incline would have to pull the can for it to keep "
         "rolling. What comes after that is dotted.",
-        (2, 1, 7.5, 7),
-        plots_frozen.draw_roll_down,
+        (2, 1, 6, 6.2),
+        story_plots.draw_roll_down,
     ),
     Story(
         "slip-and-hop",
@@ -163,24 +144,21 @@ STORIES = (
         "The same can on an incline with μ = 1. Rolling needs more and more friction. At 0.72 s it needs more "
         "than there is, and the can slips by less than a millimetre. At 0.83 s the can begins to slip far, "
         "and then it hops, 7 mm high.",
-        (2, 1, 7.5, 7),
-        plots_frozen.draw_slip_and_hop,
-        Take(
-            plots_frozen.PARTING,
+        (2, 1, 6, 6.2),
+        story_plots.draw_slip_and_hop,
+        MotionFilm(
+            story_plots.PARTING,
             speed=0.04,
             still=0.9,
-            look=Look("Frozen beer rolls down, slips and hops", ("slip", "lift"), ("forces", "skid"), "close", "μ = 1"),
+            look=Look(
+                "Frozen beer rolls down, slips and hops",
+                ("lift", "slip"),
+                ("skid", "gap"),
+                "close",
+                "μ = 1; the first 0.68 s are left out",
+                ("flies", "slips"),
+            ),
         ),
-    ),
-    Story(
-        "period",
-        "The wider a swing, the slower, and how wide it can be",
-        f"half-full massless can with sliding and with frozen beer, {in_words(pendulum())}",
-        "The paper leaves open how long wide swings take. The period grows with the amplitude, and is "
-        "infinite at the end of the widest swing. On an incline the frozen can swings differently to either "
-        "side, and rolls off downhill.",
-        (1, 2, 12, 5.2),
-        plots_frozen.draw_period,
     ),
     Story(
         "lift-off",
@@ -189,22 +167,21 @@ STORIES = (
         "The angles at which a hoop that starts from rest lifts off and at which it skids, over its mass. "
         "Littlewood's 90° are right for a massless hoop. With any finite friction the hoop skids first. A "
         "hoop just too heavy to skid at 80° grips until after 90°: this is why one line has a gap.",
-        (1, 1, 7.5, 5.6),
-        plots_frozen.draw_lift_off,
+        (1, 1, 6, 5),
+        story_plots.draw_lift_off,
     ),
 )
 """All stories, in the paper's order."""
 
 
-def plots(folder: pathlib.Path) -> list[Plotted]:
-    """Return the plots of the stories, to be drawn into a folder."""
-    return [Plotted(story.plot, folder / story.name) for story in STORIES]
+def letters() -> str:
+    """Return the drawing of a can with the letters of the formulas, as SVG."""
+    return pathlib.Path(__file__).with_name("letters.svg").read_text(encoding="utf-8")
 
 
-def films(folder: pathlib.Path) -> list[Filmed]:
+def films(folder: pathlib.Path) -> list[FilmJob]:
     """Return the films of the stories, to be drawn into a folder."""
-    filmed = [(story.film, folder / f"{story.name}.mp4") for story in STORIES if story.film is not None]
-    return [Filmed(film, path, *SIZE) for film, path in filmed]
+    return [FilmJob(story.film, folder / f"{story.name}.mp4", *SIZE) for story in STORIES if story.film is not None]
 
 
 def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
@@ -222,9 +199,10 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     files.make_folder(folder)
     with files.atomic_write(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
-        letters = pathlib.Path(__file__).with_name("letters.svg")
-        files.write(folder / "letters.svg", letters.read_text(encoding="utf-8"))
-        studio.produce([*([] if missing else orders), *plots(folder)], console)
+        files.write(folder / "letters.svg", letters())
+        jobs.produce(
+            [*([] if missing else orders), *(PlotJob(story.plot, folder / story.name) for story in STORIES)], console
+        )
         lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]
         lines += [f"Films: {missing}", ""] if missing else []
         for story in STORIES:

@@ -9,9 +9,9 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.model.build import build
-from mjbeer.model.joints import joint_addresses
-from mjbeer.model.mechanics import mass_unit
-from mjbeer.model.setting import DOP853, ROLLINGS, Rolling
+from mjbeer.model.joints import joint_addresses, to_states
+from mjbeer.model.mechanics import Mechanics
+from mjbeer.model.setting import DOP853, ROLLINGS, Rolling, Setting
 from mjbeer.paper.claim import Bound, Motion, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
@@ -40,11 +40,12 @@ def measure_motion(run: Trajectory) -> Motion:
     s is read from the position of the load's centre of mass, and accelerations are those of mj_forward.
     """
     scene, timestep = run.scene, run.timestep or 1e-3
-    model = build(scene, require.choice("rolling", run.rolling, ROLLINGS), integrator=DOP853, timestep=timestep)
+    setting = Setting(require.choice("rolling", run.rolling, ROLLINGS), DOP853, timestep)
+    model, unit = build(scene, setting.rolling, integrator=DOP853, timestep=timestep), Mechanics.of(scene, setting).unit
     data = mujoco.MjData(model)
-    rows = [_evaluate(model, data, scene, run, i) for i in range(len(run.time))]
-    axis, load, turn, energy, force = (np.array(column) for column in zip(*rows, strict=True))
-    energy, force = energy / mass_unit(scene), force / mass_unit(scene)
+    samples = [_evaluate(model, data, scene, state) for state in to_states(model, run)]
+    axis, load, turn, energy, force = (np.array(column) for column in zip(*samples, strict=True))
+    energy, force = energy / unit, force / unit
     arm = load[:, 0] - axis[:, 0]
     across = load[:, :, 2] - axis[:, :, 2]
     down = model.opt.gravity / scene.gravity
@@ -70,21 +71,11 @@ def measure_motion(run: Trajectory) -> Motion:
     )
 
 
-def _evaluate(
-    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, run: Trajectory, i: int
-) -> tuple[np.ndarray, ...]:
-    """Return what MuJoCo computes at sample `i`: how the axis and the load's centre of mass move, the load's angular
+def _evaluate(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, state: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return what MuJoCo computes in a state: how the axis and the load's centre of mass move, the load's angular
     velocity and acceleration, the energies, and the constraint's force along the incline."""
-    values = {
-        "slide": (run.u[i], run.u_dot[i]),
-        "lift": (run.lift[i], run.lift_dot[i]),
-        "roll": (run.roll[i], run.roll_dot[i]),
-        "swing": (run.phi[i] - run.roll[i], run.phi_dot[i] - run.roll_dot[i]),
-        "phi": (run.phi[i], run.phi_dot[i]),
-    }
+    data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
     names = joint_addresses(model)
-    for name in names:
-        data.joint(name).qpos[0], data.joint(name).qvel[0] = values[name]
     mujoco.mj_forward(model, data)
     mujoco.mj_energyPos(model, data)
     mujoco.mj_energyVel(model, data)
@@ -167,8 +158,7 @@ def balanced(k: float) -> Scene:
 
 
 REDUCED, EQUALITY, CONTACT = "MuJoCo, reduced", "MuJoCo, equality", "MuJoCo, contact"
-SMALL = 1e-3
-"""Amplitude [rad] of a small swing."""
+SMALL = 1e-3  # amplitude [rad] of a small swing
 SWING = Witness(REDUCED, swing)
 WIDE, NARROW = (Witness(REDUCED, partial(swing, amplitude)) for amplitude in (1.0, SMALL))
 METAL, WHEEL = Witness(EQUALITY, metal), Witness(EQUALITY, wheel)
@@ -180,8 +170,7 @@ HELD = Bound(2e-8, DRIFT)
 
 TOP = math.pi - 0.05
 """Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in balance."""
-GRIP = 1e6
-"""Friction coefficient so large that nothing slips."""
+GRIP = 1e6  # friction coefficient so large that nothing slips
 
 
 def fall_from_top(scene: Scene, timestep: float, friction: float) -> Trajectory:
@@ -195,20 +184,16 @@ def fall_from_top(scene: Scene, timestep: float, friction: float) -> Trajectory:
 
 DECADE = (50.0, 100.0, 200.0, 400.0)
 """Rates phi_dot [rad/s] at phi = 0 of loads that loop; their mean rates span a decade, 35 to 354 rad/s."""
-_SAMPLES = 256
-"""Samples of one turn; ripples up to the 128th multiple of the rate can be measured."""
+_SAMPLES = 256  # samples of one turn; ripples up to the 128th multiple of the rate can be measured
 
 
 @dataclass(frozen=True)
 class Looping:
     """The ripples of a load that loops, over one turn."""
 
-    rate: float
-    """Mean rate Omega of phi [rad/s]."""
-    phi: np.ndarray
-    """Amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k."""
-    sway: np.ndarray
-    """Amplitudes [m] of sin(k Omega t) in u less its steady acceleration, at index k."""
+    rate: float  # mean rate Omega of phi [rad/s]
+    phi: np.ndarray  # amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k
+    sway: np.ndarray  # amplitudes [m] of sin(k Omega t) in u less its steady acceleration, at index k
 
 
 def loop(scene: Scene, phi_dot0: float) -> Looping:

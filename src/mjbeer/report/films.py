@@ -4,17 +4,17 @@ import math
 import pathlib
 from functools import partial
 
-from mjbeer.drawing.film import Take
+from mjbeer.drawing.film import MotionFilm
+from mjbeer.drawing.jobs import FilmJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
-from mjbeer.drawing.studio import Filmed
 from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
 
-FILMS: dict[str, Race | Take | Carry] = {
+FILMS: dict[str, Race | MotionFilm | Carry] = {
     "race": Race(
         "Which can wins?",
         races.of_beer,
@@ -31,36 +31,50 @@ FILMS: dict[str, Race | Take | Carry] = {
         speed=1 / 3,
         told=races.told_of_liquids,
         still=2.2,
-        after=0.2,
-        hurry=15,
+        after=0.4,
+        missing=1,
         facts="all cans ¾ full, let go with a level surface",
+        caveat="Each liquid is one lump here. Real water and oil are soon too fast to stay at the bottom.",
     ),
-    "sliding": Take(
+    "sliding": MotionFilm(
         partial(simulate, sliding(can=races.METAL), 1.2, math.radians(60), tolerance=1e-9),
         speed=0.25,
         caption="Half a can of beer, let go at φ = 60°. The beer slides in its can without friction and swings. The "
         "can goes to and fro about the dashed one, which accelerates evenly: it hesitates with every swing. The camera "
         "moves along evenly.",
         still=0.4,
-        look=Look("Half a can of beer that slides in it", ("phi", "ahead"), ("phi", "ghost")),
+        look=Look(
+            "Beer slides in its can, and the can hesitates", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
+        ),
     ),
-    "frozen": Take(
+    "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
         speed=0.2,
         caption="The beer is frozen to the can and let go with the beer on top: it rolls down ever faster, in jerks. "
         "The film ends just before the can would leave the incline.",
         still=0.55,
-        look=Look("Frozen beer, let go with the beer on top", ("u", "normal"), ("phi", "paths", "forces")),
+        look=Look(
+            "Frozen beer rolls down in jerks",
+            ("normal", "u"),
+            ("paths", "normal", "friction"),
+            notes=("heavy", "light"),
+        ),
     ),
-    "pendulum": Take(
+    "pendulum": MotionFilm(
         partial(simulate, pendulum(), 1.5, math.radians(60), tolerance=1e-9),
         speed=0.25,
-        caption="A hoop wheel with a pendulum on its axle, let go at φ = 60°. The wheel goes to and fro about the "
-        "dashed one, which accelerates evenly.",
+        caption="Does a wheel roll evenly with a pendulum on its axle? No: the wheel goes to and fro about the dashed "
+        "one, which accelerates evenly. Nothing but their weight drives wheel and bob down the incline together, so "
+        "that the wheel hesitates whenever its bob is uphill, and runs ahead whenever it is downhill.",
         still=0.4,
-        look=Look("A pendulum on the axle of a wheel", ("phi", "ahead"), ("phi", "ghost")),
+        look=Look(
+            "A pendulum in a wheel: does the wheel roll evenly?",
+            ("u_dot", "ahead"),
+            ("phi", "ghost"),
+            notes=("hesitates",),
+        ),
     ),
-    "hoop": Take(
+    "hoop": MotionFilm(
         partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),
         speed=0.1,
         caption="A light hoop with a heavy bar on its rim, pushed at 16 rad/s with the bar on top, on level ground. "
@@ -68,13 +82,17 @@ FILMS: dict[str, Race | Take | Carry] = {
         "times a second. Each landing is a blow; N is the mean over 10 ms. When the bar comes up, the hoop hops a "
         "radius high.",
         still=0.24,
-        look=Look("A hoop with a heavy bar on its rim, pushed at 16 rad/s", ("normal", "lift"), ("paths", "forces")),
+        look=Look(
+            "Why does a hoop fly? The bar on its rim lifts it",
+            ("lift", "normal"),
+            ("paths", "normal"),
+            notes=("flies", "heavy", "light"),
+        ),
     ),
     "carry": Carry(),
 }
 """The films by the names of their files."""
-RACES = ("race", "liquids")
-"""The films that the page shows first, each alone."""
+RACES = ("race", "liquids")  # the films that the page shows first
 COMMANDS = {
     "sliding": "mjbeer render sliding --can metal --phi0 60 --duration 1.2 --tolerance 1e-9 --speed 0.25",
     "frozen": "mjbeer render frozen --phi0 180 --duration 0.82 --tolerance 1e-9 --speed 0.2",
@@ -83,11 +101,11 @@ COMMANDS = {
     "--speed 0.1",
 }
 """The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
-_SMALL, _WIDE = (640, 360, 25), (1152, 648, 25)
-"""Width and height [pixels] and pictures per second in a quick report, and of a race, which has the page's width."""
+_SMALL = 640, 360, 25  # width and height [pixels] and pictures per second in a quick report
 
 
-def orders(folder: pathlib.Path, quick: bool) -> list[Filmed]:
-    """Return the films of the scenes, to be drawn into a folder."""
-    sizes = {name: _SMALL if quick else _WIDE if name in RACES else stories.SIZE for name in FILMS}
-    return [Filmed(film, folder / f"{name}.mp4", *sizes[name]) for name, film in FILMS.items()]
+def film_jobs(folder: pathlib.Path, quick: bool) -> list[FilmJob]:
+    """Return the films of the scenes and, unless it must be quick, of the stories, to be drawn into a folder."""
+    size = _SMALL if quick else stories.SIZE
+    drawn = [FilmJob(film, folder / f"{name}.mp4", *size) for name, film in FILMS.items()]
+    return drawn if quick else drawn + stories.films(folder)

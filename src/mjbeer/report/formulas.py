@@ -13,7 +13,6 @@ _REPLACED = {
     "<mi>cos</mi>": '<mi class="function">cos</mi>',
     '<mspace width="negativethinmathspace" />': "",  # a name of MathML 2, which browsers no longer know
 }
-_SIGNS, _OPENING = ("=", "≈", "+", "\N{MINUS SIGN}"), ("", "(", "[")
 _GREEK = ("alpha", "beta", "delta", "epsilon", "theta", "mu", "pi", "phi", "omega", "Omega")
 _NAME = re.compile(rf"(?<![A-Za-z])({'|'.join(_GREEK)})(?![A-Za-z])")
 _RATE = re.compile(r"(?<![A-Za-z])(\w)_(d?)dot")
@@ -27,7 +26,10 @@ def mathml(latex: str) -> Markup:
 
     `\textcolor{differs}{...}` becomes an element of the class "differs".
     """
-    return Markup("").join(_line(line) for line in re.split(r"\\\\\s", latex))
+    text = "".join(convert(line, display="block") for line in re.split(r"\\\\\s", latex))
+    for old, new in _REPLACED.items():
+        text = text.replace(old, new)
+    return Markup(text)
 
 
 def letters(text: str) -> str:
@@ -35,36 +37,3 @@ def letters(text: str) -> str:
     text = _NAME.sub(lambda name: html.unescape(f"&{name[1]};"), text)
     text = _RATE.sub(lambda rate: rate[1] + _DOTS[rate[2]], text)
     return _POWER.sub(lambda power: power[1].translate(_RAISED), text).replace("_0", "₀")
-
-
-def _line(latex: str) -> Markup:
-    """Return a line as MathML that may be broken before the signs =, ≈, + and − between two terms.
-
-    Browsers do not break an element; so each term, with its sign, is an element of its own.
-    """
-    text = convert(latex, display="block")
-    for old, new in _REPLACED.items():
-        text = text.replace(old, new)
-    begin, end = text.index("<mrow>") + len("<mrow>"), text.rindex("</mrow>")
-    terms, before = [""], ""
-    for part in _parts(text[begin:end]):
-        read = html.unescape(re.sub("<[^>]*>", "", part)).strip()
-        starts = part.startswith(("<mo>", "<mstyle")) and read[:1] in _SIGNS and before not in _SIGNS + _OPENING
-        if starts:
-            terms.append("")
-        # At its beginning a sign would stand close to what follows, as that of a number does.
-        terms[-1] += part.replace("<mo>", '<mo form="infix">', 1) if starts else part
-        before = read[-1:] or before
-    elements = "\N{ZERO WIDTH SPACE}".join(f"{text[:begin]}{term}</mrow></math>" for term in terms)
-    return Markup(f'<span class="line">{elements}</span>')
-
-
-def _parts(mathml: str) -> list[str]:
-    """Return the elements at the top of a row."""
-    parts, level = [""], 0
-    for piece in re.findall("<[^>]*>|[^<]+", mathml):
-        parts[-1] += piece
-        level += 0 if piece.endswith("/>") or piece[0] != "<" else (-1 if piece.startswith("</") else 1)
-        if not level:
-            parts.append("")
-    return parts[:-1]

@@ -10,7 +10,6 @@ from mjbeer.drawing.race import Runner
 from mjbeer.drawing.words import in_degrees
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
-from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import Name, liquid_in
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import frozen, sliding
@@ -80,29 +79,24 @@ def of_liquids() -> Sequence[Runner]:
     ]
 
 
-def by_theory(scene: Scene) -> Runner:
-    """Return a can of the race of liquids that moves as exact theory says."""
-    return Runner("theory", exact(scene, np.array([0.0, _END]), -_STEEPER), (0.0, 0.0, 0.0))
-
-
 @cache
 def told_of_liquids() -> str:
-    """Return what is seen in the race of liquids, with the numbers of exact theory."""
-    honey = with_liquid("honey")
-    scenes = {"water": with_liquid("water"), "oil": with_liquid("olive oil"), "ice": with_ice(), "honey": honey}
-    times = {name: by_theory(scene).finish_of_theory(LENGTH) for name, scene in scenes.items()}
+    """Return what is seen in the race of liquids, with its numbers."""
+    cans = {can.name: can for can in of_liquids()}
+    times = {name: can.finish(LENGTH) for name, can in cans.items()}
     carried = liquid_in("honey", _STEEPER, _FILL, METAL).carried
-    way, speed = by_theory(honey).distance_of_theory(times["ice"]), honey.terminal_speed()
+    honey = cans["honey"]
+    way, speed = honey.positions(np.array([times["ice"]]))[0, 0], honey.trajectory.scene.terminal_speed()
     return (
         "Predict first, then look. Four equal cans, three quarters full of water, olive oil, honey and ice, are let go "
         f"together on an incline of {in_degrees(_STEEPER)}, each with its surface level. They differ in how hard the "
         "load rubs against the can: water hardly does, and ice not at all, since it turns with the can. Water wins "
-        f"after {times['water']:.2f} s, and oil follows after {times['oil']:.2f} s. The ice hesitates with its load "
-        f"nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The honey "
-        f"is last: when the ice arrives it has come {100 * way:.0f} cm, and it needs {times['honey']:.2f} s. It is "
-        "between water and ice, yet slower than both. It neither slides freely nor turns with its can, and as it rubs "
-        f"it takes all that the incline gives: it creeps with {100 * speed:.1f} cm/s. Each liquid is one lump here, "
-        "and the times are this model's. Real water and oil are soon so fast that they need not stay at the bottom, "
-        f"and of real honey the wall carries up to {100 * carried:.0f} % round with it. With half or twice the "
+        f"after {times['water']:.2f} s, and oil follows after {times['olive oil']:.2f} s. The ice hesitates with its "
+        f"load nearly on top, rolls over, and finishes after {times['ice']:.2f} s, since it turns with its can. The "
+        f"honey is last: when the ice arrives it has come {100 * way:.0f} cm, and it needs {times['honey']:.2f} s. It "
+        "is between water and ice, yet slower than both. It neither slides freely nor turns with its can, and as it "
+        f"rubs it takes all that the incline gives: it creeps with {100 * speed:.1f} cm/s. Each liquid is one lump "
+        "here, and the times are this model's. Real water and oil are soon so fast that they need not stay at the "
+        f"bottom, and of real honey the wall carries up to {100 * carried:.0f} % round with it. With half or twice the "
         "viscosity honey is last as well."
     )

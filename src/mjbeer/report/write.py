@@ -1,16 +1,14 @@
-"""The report: one page with the checks, a film of each scene and the paper's stories."""
+"""The report: one page with the checks, a film of each scene and the paper's stories; more maps lie beside it."""
 
 import pathlib
 import tempfile
-from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 
 from rich.console import Console
 
-from mjbeer.drawing import opengl, studio
+from mjbeer.drawing import jobs, opengl
 from mjbeer.output import files
-from mjbeer.paper import stories
 from mjbeer.report import films, page
 from mjbeer.studies.validation.validate import Validation, validate
 
@@ -28,20 +26,15 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
     files.make_folder(folder)
     with files.atomic_write(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
         (folder / "index.html").unlink(missing_ok=True)
-        path = pathlib.Path(work)
-        drawn = films.orders(path, quick)
-        told = [] if quick else stories.films(path)
-        not_drawn = opengl.missing([each.path.stem for each in drawn + told]) if opengl.problem() else ""
-        drawn, told = ([], []) if not_drawn else (drawn, told)
-        plots = [*page.plots(path), *(replace(plot, in_memory=True) for plot in stories.plots(path))]
+        filmed = films.film_jobs(pathlib.Path(work), quick)
+        not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
+        filmed = [] if not_drawn else filmed
         # The checks take longest, and compile what the films run; plots are quick.
-        checks = SimpleNamespace(path=path / "checks", write=partial(validate, None))
-        orders = [checks, *drawn, *told, *plots]
-        validation, *made = studio.produce(orders, console)
-        still = {order.path: poster for order, poster in zip(drawn + told, made, strict=False)}
-        scenes, filmed = (
-            {each.path.stem: (each.path.read_bytes(), still[each.path]) for each in of} for of in (drawn, told)
-        )
-        pictures = {plot.name: plot for plot in made[len(drawn + told) :]}
-        index.write_text(page.html(validation, scenes, pictures, filmed, quick, not_drawn), encoding="utf-8")
+        checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
+        drawn = [checks, *filmed, *page.plot_jobs(folder)]
+        validation, *made = jobs.produce(drawn, console)
+        stills, plots = made[: len(filmed)], made[len(filmed) :]
+        shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
+        pictures = {plot.name: plot for plot in plots if plot}
+        index.write_text(page.html(validation, shown, pictures, quick, not_drawn), encoding="utf-8")
     return validation, not_drawn

@@ -1,13 +1,12 @@
 """A scene set up to be stepped, a simulated motion with the record of all its steps, and its error by a second run."""
 
 import math
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-import mujoco
 import numpy as np
 
 from mjbeer import require
@@ -18,7 +17,7 @@ from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics, Structure
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import DOP853, OWN, Setting
-from mjbeer.simulation.stepping import Recorder, Solution, Stepper
+from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.record import ERROR, Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import Scene
@@ -30,11 +29,8 @@ if TYPE_CHECKING:
 _GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
 """The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
 whole number, so that no rate of rotation has the same phase at the ends of both parts."""
-_pool: dict[Structure, list[tuple[ReusableModel, "Dynamics | None"]]] = {}
-"""Models that nobody uses, at most as many of a kind as there were threads, and how mjbeer's own integrators evaluate
-them if they have."""
-_Solve = Callable[[np.ndarray, np.ndarray, float | None], Solution]
-"""`Simulator.solve`, by mjbeer's own integrators."""
+_pool: dict[Structure, list["Simulator"]] = {}
+"""Simulators that nobody uses, at most as many of a structure as there were threads."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
@@ -52,64 +48,57 @@ _MAX_TURN_PER_STEP = 2.0
 same at every step of pi, and a rotation looks even. The stages of DOP853 are at too many phases for that."""
 
 
-class Simulator:
+class Simulator(ReusableModel):
     """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
 
     If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
-    integrators, so that an even and an uneven run have no timestep by which both could be wrong alike. The model may be
-    `made` already, with the scene's numbers, and so may its `dynamics`.
+    integrators, so that an even and an uneven run have no timestep by which both could be wrong alike.
 
     Raises:
       UnsupportedError: if MuJoCo cannot have such a model.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        setting: Setting,
-        uneven: bool = False,
-        made: ReusableModel | None = None,
-        dynamics: "Dynamics | None" = None,
-    ) -> None:
-        made, self.dynamics = made or ReusableModel(_numbers(scene, setting, uneven)), dynamics
-        self.scene, self.setting, self.model = scene, setting, made.model
-        self._method: Stepper | _Solve
-        if setting.tolerance is None and setting.integrator not in OWN:
-            self.model.opt.timestep = setting.timestep
-            self._method = Stepper(self.model, (_GOLDEN_SECTION, 1 - _GOLDEN_SECTION) if uneven else (), made.data)
-        else:
-            from mjbeer.integrators.dynamics import Dynamics  # only here, as in `_own`
+    scene: Scene
+    setting: Setting
+    _dynamics: "Dynamics | None" = None  # of a model that one of mjbeer's own integrators has stepped
 
-            self.dynamics = dynamics or Dynamics(self.model, made.data)
-            timestep = setting.timestep * (_GOLDEN_SECTION if uneven else 1)
-            self._method = _own(self.model, scene, setting, timestep, self.dynamics)
+    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
+        self._uneven = uneven
+        super().__init__(_mechanics(scene, setting, uneven))
+
+    def write(self, mechanics: Mechanics) -> None:
+        super().write(mechanics)
+        self.scene, self.setting = mechanics.scene, mechanics.setting
+        if self._dynamics is not None:
+            self._dynamics.begin()
 
     @classmethod
     @contextmanager
     def from_pool(cls, scene: Scene, setting: Setting) -> Generator["Simulator"]:
-        """Yield a set-up for the block, after which another call may write its scene into the same model.
+        """Yield a simulator for the block, after which another call may write its scene into the same model.
 
         All that was done in it before is gone: a motion has the same bits as in a new one.
         """
-        numbers = _numbers(scene, setting, uneven=False)
-        idle = _pool.setdefault(numbers.structure, [])
+        mechanics = _mechanics(scene, setting)
+        idle = _pool.setdefault(mechanics.structure, [])
         try:
-            made, dynamics = idle.pop()  # at once, so that no two threads get it
+            simulator = idle.pop()  # at once, so that no two threads get it
         except IndexError:
-            made, dynamics = ReusableModel(numbers), None
+            simulator = cls(scene, setting)
         else:
-            made.write(numbers)
-        if dynamics is not None:
-            dynamics.begin()
-        prepared = cls(scene, setting, made=made, dynamics=dynamics)
+            simulator.write(mechanics)
         try:
-            yield prepared
+            yield simulator
         finally:
-            idle.append((made, prepared.dynamics or dynamics))
+            idle.append(simulator)
 
-    def start(self, phi0: float, phi_dot0: float) -> np.ndarray:
+    def initial_state(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
-        return initial_state(self.model, self.scene, phi0=phi0, phi_dot0=phi_dot0)
+        return initial_state(self.model, self.scene, phi0, phi_dot0)
+
+    def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
+        """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
+        return to_coordinates(self.model, self.scene, states, times)
 
     def solve(self, start: np.ndarray, times: np.ndarray, friction: float | None = None) -> Solution:
         """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.
@@ -120,46 +109,38 @@ class Simulator:
           DivergenceError: if the motion stops being finite.
           ToleranceError: if the tolerance is not reached.
         """
-        method = self._method
-        if not isinstance(method, Stepper):
-            return method(start, times, friction)
-        recorder = None if friction is None else Recorder(self.model, self.scene, friction)
-        states = method.run(start, np.rint(times / self.setting.timestep).astype(np.int64), recorder)
-        return Solution(states, record=recorder.record if recorder else None)
+        scene, setting, model = self.scene, self.setting, self.model
+        integrator, timestep, tolerance = setting.integrator, setting.timestep, setting.tolerance
+        recorder: Any = None
+        if tolerance is None and integrator not in OWN:
+            recorder = None if friction is None else Recorder(model, scene, friction)
+            parts = (_GOLDEN_SECTION * timestep, (1 - _GOLDEN_SECTION) * timestep) if self._uneven else (timestep,)
+            steps = np.rint(times / timestep).astype(np.int64)
+            states = states_after(model, self.data, start, steps, parts, recorder)
+            return Solution(states, recorder.record if recorder else None, None, integrator)
+        # Imported only here: numba, which compiles them, takes longer to import than all else together.
+        from mjbeer.integrators.dop853 import Dop853
+        from mjbeer.integrators.dynamics import Dynamics
+        from mjbeer.integrators.gauss_jackson import GaussJackson
+        from mjbeer.simulation.smooth_recorder import SmoothRecorder
+        from mjbeer.simulation.tolerance import ToleranceLoop, even_at_most
 
-    def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
-        """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
-        return to_coordinates(self.model, self.scene, states=states, times=times)
-
-
-def _own(model: mujoco.MjModel, scene: Scene, setting: Setting, timestep: float, dynamics: "Dynamics") -> _Solve:
-    """Return how mjbeer's own integrators solve a model to a tolerance, or with a `timestep` [s]."""
-    # Imported only here: numba, which compiles them, takes longer to import than all else together.
-    from mjbeer.integrators.dop853 import Dop853
-    from mjbeer.integrators.gauss_jackson import GaussJackson
-    from mjbeer.simulation.smooth_recorder import SmoothRecorder
-    from mjbeer.simulation.tolerance import ToleranceLoop, even_at_most
-
-    if (tolerance := setting.tolerance) is not None:
-        solver = ToleranceLoop(model, scene, dynamics)
-        return lambda start, times, friction: solver.run(
-            start, times, tolerance, math.inf if friction is None else friction
-        )
-
-    def solve(start: np.ndarray, times: np.ndarray, friction: float | None) -> Solution:
-        recorder: Recorder | SmoothRecorder | None = None
-        if setting.integrator == DOP853:
+        dynamics = self._dynamics = self._dynamics or Dynamics(model, self.data)
+        if tolerance is not None:
+            loop = ToleranceLoop(model, scene, dynamics)
+            return loop.run(start, times, tolerance, math.inf if friction is None else friction)
+        if self._uneven:
+            timestep *= _GOLDEN_SECTION
+        if integrator == DOP853:
             recorder = None if friction is None else Recorder(model, scene, friction, within=True)
             states = Dop853(model, dynamics).run(start, times, timestep, observer=recorder)
         else:
             recorder = None if friction is None else SmoothRecorder(scene, friction)
             states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
-        return Solution(states, record=recorder.record if recorder else None)
-
-    return solve
+        return Solution(states, recorder.record if recorder else None, None, integrator)
 
 
-def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Mechanics:
+def _mechanics(scene: Scene, setting: Setting, uneven: bool = False) -> Mechanics:
     """Return what is to be written into the model of a scene.
 
     A rigid equality that is integrated to a tolerance only has to correct the slip that rounding causes. It is tuned to
@@ -167,7 +148,7 @@ def _numbers(scene: Scene, setting: Setting, uneven: bool) -> Mechanics:
     """
     timestep = setting.timestep * (_GOLDEN_SECTION if uneven else 1)
     if setting.tolerance is not None and setting.rolling == "equality" and scene.gravity > 0:
-        timestep = float(np.sqrt(scene.can.radius / scene.gravity)) / 2
+        timestep = math.sqrt(scene.can.radius / scene.gravity) / 2
     return Mechanics.of(scene, setting, timestep=timestep)
 
 
@@ -180,8 +161,12 @@ class Run(Trajectory):
 
     setting: Setting
     """How the can was made to roll and how it was stepped."""
-    solution: Solution
-    """The record of all steps and, with a tolerance, the estimated error and the integrator that was chosen."""
+    record: Record
+    """The extremes of the motion over all its steps, on which its warnings rest."""
+    chosen: str
+    """The name of the integrator; with a tolerance it is "GaussJackson" or "DOP853"."""
+    error: float | None
+    """The error that was estimated on the way to a tolerance [rad]; None without one."""
     checkpoints: Coordinates
     """The motion at its samples and, without a tolerance, at timesteps spread over the whole run, where the uneven run
     is compared with it."""
@@ -196,19 +181,13 @@ class Run(Trajectory):
 
     @property
     def integrator(self) -> str:
-        """Return the name of the integrator; with a tolerance it is "GaussJackson" or "DOP853"."""
-        return self.solution.integrator or self.setting.integrator
+        """Return the name of the integrator."""
+        return self.chosen
 
     @property
     def timestep(self) -> float | None:
         """Return the fixed timestep of the integrator [s]; None with a tolerance."""
         return self.setting.timestep if self.setting.tolerance is None else None
-
-    @property
-    def record(self) -> Record:
-        """Return the extremes of the motion over all its steps, on which its warnings rest."""
-        assert self.solution.record is not None
-        return self.solution.record
 
     def rolls_until(self, friction: float = np.inf) -> float:
         """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.
@@ -219,10 +198,11 @@ class Run(Trajectory):
         friction = require.friction(friction)
         if friction == self.record.friction:
             return self.record.rolling_ends_at
-        prepared = Simulator(self.scene, self.setting)
-        solution = prepared.solve(prepared.start(self.phi0, self.phi_dot0), self.checkpoints.time, friction)
-        assert solution.record is not None
-        return solution.record.rolling_ends_at
+        simulator = Simulator(self.scene, self.setting)
+        start = simulator.initial_state(self.phi0, self.phi_dot0)
+        record = simulator.solve(start, self.checkpoints.time, friction).record
+        assert record is not None
+        return record.rolling_ends_at
 
     @cached_property
     def error_estimate(self) -> float:
@@ -231,11 +211,11 @@ class Run(Trajectory):
         It rests on the largest distance from a second run. With a tolerance that was made already. Otherwise the first
         access makes the uneven run, which takes twice as long as this one; the error is infinite if it diverges.
         """
-        return self._second[0] if self.solution.error is None else self.solution.error
+        return self._uneven[0] if self.error is None else self.error
 
     @cached_property
-    def _second(self) -> tuple[float, float]:
-        return second(self)
+    def _uneven(self) -> tuple[float, float]:
+        return compare_uneven(self)
 
     @cached_property
     def failed_checks(self) -> tuple[str, ...]:
@@ -260,7 +240,7 @@ class Run(Trajectory):
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
-        if self.solution.error is None and (lost := self._second[1]) > ERROR:
+        if self.error is None and (lost := self._uneven[1]) > ERROR:
             return (
                 *self.failed_checks,
                 "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
@@ -277,30 +257,28 @@ class Run(Trajectory):
         return (*self.failed_checks, found)
 
 
-def second(run: Run) -> tuple[float, float]:
-    """Return the error of phi and u/a [rad] that a second run shows, and that which rounding in MuJoCo's sums implies.
+def compare_uneven(run: Run) -> tuple[float, float]:
+    """Return the error of phi and u/a [rad] that an uneven run shows, and that which rounding in MuJoCo's sums implies.
 
-    Both are relative beyond 1 rad; the first is infinite if the second run diverges. This has uneven timesteps and
-    begins a little aside. Constraints that are tuned to the timestep are harder in it, so that its distance from the
-    first run includes the effect of their softness; that of the starts includes the effect of rounding, and of the
-    depth at which a can in contact starts.
+    Both are relative beyond 1 rad; the first is infinite if the uneven run diverges. This begins a little aside.
+    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
+    effect of their softness; that of the starts includes the effect of rounding, and of the depth at which a can in
+    contact starts.
     """
     scene, setting, motion = run.scene, run.setting, run.checkpoints
-    prepared = Simulator(scene, setting, uneven=True)
-    lost = check.rounding_error(
-        prepared.model, scene, motion, run.record, exact_constraint=setting.rolling != "contact"
-    )
-    aside = max(_START_OFFSET, min(lost, 1.0))  # what has lost a radian is not trusted, whatever the second run does
-    begin = prepared.start(run.phi0 + aside, run.phi_dot0)
-    if setting.rolling == "contact":
-        begin[joint_addresses(prepared.model)["lift"]] *= _DEPTH
+    simulator, soft = Simulator(scene, setting, uneven=True), setting.rolling == "contact"
+    lost = check.rounding_error(simulator.model, scene, motion, run.record, exact_constraint=not soft)
+    start_offset = max(_START_OFFSET, min(lost, 1.0))  # an error of 1 rad fails anyway
+    start = simulator.initial_state(run.phi0 + start_offset, run.phi_dot0)
+    if soft:
+        start[joint_addresses(simulator.model)["lift"]] *= _DEPTH
     try:
-        states = prepared.solve(begin, motion.time).states
+        states = simulator.solve(start, motion.time).states
     except DivergenceError:
         return math.inf, lost
-    start = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
-    uneven = prepared.coordinates(states, motion.time)
-    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, start), lost
+    begin = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
+    uneven = simulator.coordinates(states, motion.time)
+    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, begin), lost
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
@@ -308,20 +286,23 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
     along, samples = times, slice(None)
     if setting.tolerance is None:
         last = max(1, int(times[-1] / setting.timestep))
-        spread = setting.timestep * np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64)
-        along = np.sort(np.concatenate([times, spread[spread <= times[-1]]]))
+        checkpoints = setting.timestep * np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64)
+        along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
         along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
         if len(along) > len(times):
             samples = np.searchsorted(along, times)
-    with quiet(), Simulator.from_pool(scene, setting) as prepared:
-        solution = prepared.solve(prepared.start(phi0, phi_dot0), along, friction=math.inf)
-        motion = prepared.coordinates(solution.states, along)
+    with quiet(), Simulator.from_pool(scene, setting) as simulator:
+        solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
+        motion = simulator.coordinates(solution.states, along)
+    assert solution.record is not None
     return Run(
         **{name: array[samples] for name, array in vars(motion).items()},
         scene=scene,
         phi0=phi0,
         phi_dot0=phi_dot0,
         setting=setting,
-        solution=solution,
+        record=solution.record,
+        chosen=solution.integrator,
+        error=solution.error,
         checkpoints=motion,
     )

@@ -15,8 +15,8 @@ from mjbeer.model import check
 from mjbeer.model.joints import joint_addresses, to_coordinates
 from mjbeer.model.mujoco_library import LARGEST
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON
+from mjbeer.simulation.fixed_step import Recorder, Solution
 from mjbeer.simulation.smooth_recorder import SmoothRecorder
-from mjbeer.simulation.stepping import Recorder, Solution
 from mjbeer.theory.equations import relaxation_rate
 from mjbeer.theory.scene import Scene
 

@@ -74,8 +74,7 @@ class Can:
         density = require.positive("sheet density", density, "kg/m^3")
         sheet = math.pi * radius * thickness * density
         mass, inertia = 2 * sheet * (length + radius), sheet * radius**2 * (2 * length + radius)
-        with require.naming_given(radius=radius, length=length, thickness=thickness, density=density):
-            return cls(radius, length, mass, inertia)
+        return cls(radius, length, mass, inertia)
 
     @classmethod
     def hoop(cls, radius: float = RADIUS, length: float = LENGTH, mass: float = 0.05) -> "Can":

@@ -15,7 +15,6 @@ to 1. (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, IV.5
 Where w or roll_dot passes zero, its absolute value has a corner: a step that would pass one is taken again up to there.
 """
 
-import functools
 import itertools
 import math
 from collections.abc import Callable
@@ -24,9 +23,9 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.equations import accelerations
 from mjbeer.theory.motion import EPS, ROUNDINGS, UNCERTAIN, Start
-from mjbeer.theory.oscillator import reduced, root
+from mjbeer.theory.oscillator import reduced
 from mjbeer.theory.scene import Scene
 
 _STAGES = 24
@@ -34,63 +33,48 @@ _STAGES = 24
 _WORK = 6_000
 """Most corrections of Newton's method in all steps, those included that are taken again, a tenth of a millisecond each:
 a can of beer that swings by 1 rad takes them in 40 s."""
-_FIRST = _WORK // 8
-"""Corrections after which it is first looked at how far the motion has come."""
-_ITERATIONS = 12
-"""Most corrections of Newton's method in a step."""
-_QUADRATIC = 1e-9
-"""Relative size of a correction after which one more leaves only rounding, as each squares the error."""
-_TAIL = 1e-14
-"""Size of the terms of a step's polynomials that may be missing, relative to the rates."""
-_GROWTH = 10.0
-"""Largest ratio of a step to the one before."""
-_BESIDE = 1e-6
-"""Share of a step that a corner may be from its ends. The torque beside the corner is the square of that, or less."""
-_CANCELLED = 256 * EPS
-"""Size up to which w or phi_dot + w is rounding, relative to the largest |phi_dot| + |w| of a step: the sum has an eps,
-and the polynomial through the stages, whose sums each processor has in another order, up to 72 in trials."""
-
-
-_RADAU = np.array([0.0] * (_STAGES - 1) + [-1.0, 1.0])
-_ROUGH = np.sort(legendre.legroots(_RADAU).real)
-_POINTS = _ROUGH - legendre.legval(_ROUGH, _RADAU) / legendre.legval(_ROUGH, legendre.legder(_RADAU))
-_POINTS[-1] = 1.0
-"""The Radau points, the roots of P_s - P_(s-1)."""
-_INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_POINTS, _STAGES - 1)), lbnd=-1) / 2
-"""The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
-_MATRIX = legendre.legvander(_POINTS, _STAGES) @ _INTEGRALS
-"""That integral at the stages, a_ij of the method."""
-_NODES = np.append(-1.0, _POINTS)
-_TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
-"""The coefficients P_0 to P_s of the polynomial through values at the start and the stages."""
-_EYE = np.eye(2 * _STAGES)
 
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def _equations(scene: Scene) -> Rates:
+def _radau_points() -> np.ndarray:
+    """Return the roots of P_s - P_(s-1), the last of which is 1."""
+    polynomial = np.array([0.0] * (_STAGES - 1) + [-1.0, 1.0])
+    rough = np.sort(legendre.legroots(polynomial).real)
+    points = rough - legendre.legval(rough, polynomial) / legendre.legval(rough, legendre.legder(polynomial))
+    return np.append(points[:-1], 1.0)
+
+
+_NODES = np.append(-1.0, _radau_points())
+"""The start and the stages of a step."""
+_INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_NODES[1:], _STAGES - 1)), lbnd=-1) / 2
+"""The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
+_MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _INTEGRALS
+"""That integral at the stages, a_ij of the method."""
+_TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
+"""The coefficients P_0 to P_s of the polynomial through values at the start and the stages."""
+
+
+def _rates_of(scene: Scene) -> Rates:
     """Return a function of phi, phi_dot and w, arrays of one shape.
 
     Its values are phi_ddot and w_dot [rad/s^2], of shape (2, ...), and their derivatives by those three, (2, 3, ...).
     """
-    radius, oscillator, mass = scene.can.radius, scene.oscillator, scene.effective_mass
-    unit = mass * radius**2
-    push, beta = scene.downhill_weight / mass / radius, scene.load.moment / mass / radius
-    base, depth, bottom = oscillator.base / unit, oscillator.depth / unit, oscillator.bottom
-    law, air = Damping(*(each / unit for each in scene.damping_law.coefficients)), scene.drag * radius / mass
+    oscillator, law, radius, mass = scene.oscillator, scene.damping_law, scene.can.radius, scene.effective_mass
+    unit, beta, air = mass * radius**2, scene.load.moment / mass / radius, scene.drag * radius / mass
 
     def rates(phi: np.ndarray, phi_dot: np.ndarray, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        torque, steep, roll_dot = law.torque(slip), law.derivative(slip), phi_dot + slip
-        drag, steep_drag = air * roll_dot * np.abs(roll_dot), 2 * air * np.abs(roll_dot)
-        arm, lean, square, turned = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot, phi - bottom
-        inertia, open_arm = base + lean * lean, 1 - arm
-        phi_ddot = (-depth * np.sin(turned) - lean * arm * square + open_arm * torque - arm * drag) / inertia
-        slip_dot = push - lean * square - torque - drag - open_arm * phi_ddot
-        by_phi = -depth * np.cos(turned) - (arm * arm - lean * lean) * square + lean * (torque + drag)
-        steeps = by_phi - 2 * lean * arm * phi_ddot, -2 * lean * arm * phi_dot - arm * steep_drag
-        swing = np.array([*steeps, open_arm * steep - arm * steep_drag]) / inertia
-        slide = np.array([-arm * square - lean * phi_ddot, -2 * lean * phi_dot - steep_drag, -steep - steep_drag])
-        return np.array([phi_ddot, slip_dot]), np.array([swing, slide - open_arm * swing])
+        roll_dot = phi_dot + slip
+        u_ddot, phi_ddot = accelerations(scene, phi, phi_dot, radius * roll_dot, slip)
+        arm, lean, square = beta * np.cos(phi), beta * np.sin(phi), phi_dot * phi_dot
+        d_torque, d_drag, open_arm = law.derivative(slip) / unit, 2 * air * np.abs(roll_dot), 1 - arm
+        braking = law.torque(slip) / unit + d_drag * roll_dot / 2
+        by_phi = -oscillator.depth / unit * np.cos(phi - oscillator.bottom) - (arm * arm - lean * lean) * square
+        by_phi += lean * braking - 2 * lean * arm * phi_ddot
+        swing = np.array([by_phi, -2 * lean * arm * phi_dot - arm * d_drag, open_arm * d_torque - arm * d_drag])
+        swing /= oscillator.inertia(phi) / unit
+        slide = np.array([-arm * square - lean * phi_ddot, -2 * lean * phi_dot - d_drag, -d_torque - d_drag])
+        return np.array([phi_ddot, u_ddot / radius - phi_ddot]), np.array([swing, slide - open_arm * swing])
 
     return rates
 
@@ -110,9 +94,9 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
     pace = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
     start = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
     kinks = np.array([[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)).reshape(-1, 2)
-    followed = _follow(_equations(scene), time[order], start, pace, kinks)
-    turned, rolled, phi_dot, slip = followed[:, np.argsort(order)]
-    return phi0 + turned, phi_dot, u0 + radius * rolled, radius * (phi_dot + slip)
+    followed = _follow(_rates_of(scene), time[order], start, pace, kinks)
+    delta_phi, delta_roll, phi_dot, slip = followed[:, np.argsort(order)]
+    return phi0 + delta_phi, phi_dot, u0 + radius * delta_roll, radius * (phi_dot + slip)
 
 
 def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kinks: np.ndarray) -> np.ndarray:
@@ -121,15 +105,15 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
     The `state` is phi, phi_dot and w at time 0, `pace` is that of a swing [rad/s], and `kinks` are the sums of phi_dot
     and w, of shape (sums, 2), whose absolute values count.
     """
-    now, latest, turned, farthest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
+    now, latest, delta, farthest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
     done = int(np.searchsorted(time, 0.0, "right"))
     samples = np.repeat(np.array([[0.0, 0.0, *state[1:]]]).T, len(time), axis=1)
     # What rounding of start and scene does to phi, phi_dot, w and roll: an angle of 0 stands for that of the incline.
     sensitivity = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
-    values, slopes = rates(*state)
-    fastest = abs(slopes[1, 2]) + abs(slopes[0, 1]) + abs(state[1]) + pace + math.sqrt(np.abs(values).sum())
+    values, jacobian = rates(*state)
+    fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1]) + pace + math.sqrt(np.abs(values).sum())
     length = 1 / fastest if fastest > 0 else latest  # short beside every time that the motion has
-    work, look, before = 0, _FIRST, 0.0
+    work, look, before = 0, _WORK // 8, 0.0
     while now < latest:
         if work >= look:
             _require_end(work, before, now, latest)
@@ -152,7 +136,7 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
             continue
         series = _TO_SERIES @ nodes
         sizes = (np.abs(series[:-1]) / np.maximum(scale, np.abs(stages).max(axis=1))).max(axis=1)
-        needed = 1 + int(np.max(np.flatnonzero(sizes > _TAIL), initial=0))
+        needed = 1 + int(np.max(np.flatnonzero(sizes > 1e-14), initial=0))
         if needed == _STAGES:
             length /= 2
             continue
@@ -161,20 +145,20 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
         if until > done:
             x = 2 * (time[done:until] - now) / length - 1
             samples[:, done:until] = (legendre.legvander(x, _STAGES) @ np.hstack([angles, series])).T
-            samples[:2, done:until] += turned[:, np.newaxis]
+            samples[:2, done:until] += delta[:, np.newaxis]
         sensitivity[[0, 3]] += length * _MATRIX[-1] @ np.array([changes[0], changes.sum(axis=0)]).T
         ends = angles.sum(axis=0)
-        turned, state = turned + ends, np.array([reduced(state[0] + ends[0]), *stages[:, -1]])
+        delta, state = delta + ends, np.array([reduced(state[0] + ends[0]), *stages[:, -1]])
         sensitivity[1:3] = changes[:, -1]
         sensitivity[:3] += np.copysign(ROUNDINGS * np.abs(state), sensitivity[:3])
-        farthest = np.maximum(farthest, np.abs(turned))
+        farthest = np.maximum(farthest, np.abs(delta))
         effect = float((np.abs(sensitivity[[0, 3]]) / farthest).max())
         if not effect <= UNCERTAIN:
             raise ToleranceError(
                 f"phi is not known later than at {then:.6g} s: rounding of start and scene changes it by {effect:.2g} "
                 f"rad (relative beyond 1 rad), where at most {UNCERTAIN:g} is allowed"
             )
-        now, done, length = then, until, length * min(_GROWTH, 0.95 * _STAGES / needed)
+        now, done, length = then, until, length * min(10.0, 0.95 * _STAGES / needed)
     return samples
 
 
@@ -203,25 +187,21 @@ def _corner(nodes: np.ndarray, kinks: np.ndarray) -> float | None:
 
     The `nodes` are phi_dot and w at the start and the stages, of shape (stages + 1, 2).
     """
-    sums, found = nodes @ kinks.T, []
-    floor = _CANCELLED * np.abs(nodes).sum(axis=1).max()
-    signs = np.where(np.abs(sums) > floor, np.sign(sums), 0.0)
-    for which in np.flatnonzero(signs.min(axis=0) * signs.max(axis=0) < 0):
-        (signed,) = np.nonzero(signs[:, which])
-        series = (_TO_SERIES @ sums[:, which]).tolist()
-        for low, high in itertools.pairwise(signed):
-            if signs[low, which] != signs[high, which]:
-                rising = functools.partial(_value, series, float(signs[high, which]))
-                found.append((1 + root(rising, float(_NODES[low]), float(_NODES[high]))) / 2)
-    return min((share for share in found if _BESIDE < share < 1 - _BESIDE), default=None)
-
-
-def _value(series: list[float], sign: float, x: float) -> float:
-    """Return a sum of Legendre polynomials times `sign`, by Clenshaw's recurrence: NumPy's takes 20 times as long."""
-    one = two = 0.0
-    for k in range(len(series) - 1, 0, -1):
-        one, two = series[k] + (2 * k + 1) / (k + 1) * x * one - (k + 1) / (k + 2) * two, one
-    return sign * (series[0] + x * one - two / 2)
+    sums, shares = nodes @ kinks.T, []
+    # A sum has an eps of phi_dot and w, and the polynomial through the stages, whose sums each processor has in another
+    # order, up to 72 in trials.
+    signs = np.where(np.abs(sums) > 256 * EPS * np.abs(nodes).sum(axis=1).max(), np.sign(sums), 0.0)
+    for sign, series in zip(signs.T, (_TO_SERIES @ sums).T, strict=True):
+        for low, high in itertools.pairwise(np.flatnonzero(sign)):
+            if sign[low] != sign[high]:
+                ends = _NODES[low], _NODES[high]
+                for _ in range(4):  # to a millionth of them
+                    x = np.linspace(*ends, 33)
+                    passed = max(1, int(np.argmax(sign[high] * legendre.legval(x, series) > 0)))
+                    ends = x[passed - 1], x[passed]
+                shares.append((1 + float(ends[1])) / 2)
+    # A corner that near an end may stay: the torque beside it is the square of that, or less.
+    return min((share for share in shares if 1e-6 < share < 1 - 1e-6), default=None)
 
 
 def _newton(
@@ -234,23 +214,23 @@ def _newton(
     """
     s, reach, begin, last = _STAGES, length * _MATRIX, state[1:, np.newaxis], math.inf
     stages, matrix, sides = np.repeat(begin, s, axis=1), np.empty((2 * s, 2 * s)), np.empty((2, s, 2))
-    for used in range(1, _ITERATIONS + 1):
-        values, slopes = rates(state[0] + reach @ stages[0], *stages)
-        through_phi = (reach * slopes[:, :1]) @ reach
-        matrix[:s, :s] = reach * slopes[0, 1] + through_phi[0]
-        matrix[:s, s:] = reach * slopes[0, 2]
-        matrix[s:, :s] = reach * slopes[1, 1] + through_phi[1]
-        matrix[s:, s:] = reach * slopes[1, 2]
+    for used in range(1, 13):
+        values, jacobian = rates(state[0] + reach @ stages[0], *stages)
+        through_phi = (reach * jacobian[:, :1]) @ reach
+        matrix[:s, :s] = reach * jacobian[0, 1] + through_phi[0]
+        matrix[:s, s:] = reach * jacobian[0, 2]
+        matrix[s:, :s] = reach * jacobian[1, 1] + through_phi[1]
+        matrix[s:, s:] = reach * jacobian[1, 2]
         sides[..., 0] = begin + values @ reach.T - stages
-        sides[..., 1] = sensitivity[0] * slopes[:, 0] @ reach.T + sensitivity[1:3, np.newaxis]
+        sides[..., 1] = sensitivity[0] * jacobian[:, 0] @ reach.T + sensitivity[1:3, np.newaxis]
         try:
-            solved = np.linalg.solve(_EYE - matrix, sides.reshape(2 * s, 2)).reshape(2, s, 2)
+            solved = np.linalg.solve(np.eye(2 * s) - matrix, sides.reshape(2 * s, 2)).reshape(2, s, 2)
         except np.linalg.LinAlgError:
             return used, None
         change, changes = solved[..., 0], solved[..., 1]
         stages = stages + change
         size = float((np.abs(change).max(axis=1) / np.maximum(scale, np.abs(stages).max(axis=1))).max())
-        if last < _QUADRATIC:
+        if last < 1e-9:  # each correction squares the error, and the last one left rounding
             return used, (stages, changes)
         if not size < 1e6:
             return used, None

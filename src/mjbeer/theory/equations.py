@@ -61,23 +61,29 @@ class Forces:
 
 
 def accelerations(
-    scene: Scene, phi: np.ndarray | float, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
+    scene: Scene,
+    phi: np.ndarray | float,
+    phi_dot: np.ndarray | float,
+    u_dot: np.ndarray | float,
+    slip: np.ndarray | float | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return u_ddot [m/s^2] and phi_ddot [rad/s^2] of rolling without slipping.
 
     The state is `phi` [rad], `phi_dot` [rad/s] and `u_dot` [m/s], of which the last matters to damping and drag alone.
+    Give the `slip` rate u_dot/a - phi_dot [rad/s] where it has more digits than the difference.
     """
-    moment, cos = scene.load.moment, np.cos(phi)
-    phi_ddot, along = scene.oscillator.acceleration(phi, phi_dot), 0.0
     if scene.attachment == "frozen":
+        phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
         return scene.can.radius * phi_ddot, phi_ddot
+    mass, swing, along, torque = scene.effective_mass, scene.load.moment * np.cos(phi), scene.downhill_weight, 0.0
     if scene.dissipates:
         # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
         # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
-        torque, along = dissipative_forces(scene, phi_dot, u_dot)
-        phi_ddot = phi_ddot + (torque + moment * cos / scene.effective_mass * along) / scene.oscillator.inertia(phi)
-    swung = moment * (cos * phi_ddot - np.sin(phi) * phi_dot**2)
-    return (scene.downhill_weight + swung + along) / scene.effective_mass, phi_ddot  # eq. (46)
+        torque = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot) if slip is None else slip)
+        braking = torque / scene.can.radius + scene.drag * u_dot * np.abs(u_dot)
+        along, torque = along - braking, torque - swing / mass * braking
+    phi_ddot = scene.oscillator.acceleration(phi, phi_dot, torque)
+    return (along + swing * phi_ddot - scene.load.moment * np.sin(phi) * phi_dot**2) / mass, phi_ddot  # eq. (46)
 
 
 def axis_motion(
@@ -91,18 +97,10 @@ def axis_motion(
     if scene.attachment == "frozen":
         return scene.can.radius * phi, scene.can.radius * phi_dot
     phi0, phi_dot0, u0, u_dot0 = start
-    arm, pull = scene.load.moment / scene.effective_mass, scene.downhill_weight / scene.effective_mass
+    arm, steady = scene.load.moment / scene.effective_mass, scene.downhill_weight / scene.effective_mass
     place, speed = u0 - arm * math.sin(phi0), u_dot0 - arm * math.cos(phi0) * phi_dot0
-    u = arm * np.sin(phi) + (place + speed * time + pull * time**2 / 2)
-    return u, arm * np.cos(phi) * phi_dot + (speed + pull * time)
-
-
-def dissipative_forces(
-    scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float
-) -> tuple[np.ndarray | float, np.ndarray | float]:
-    """Return the torque on the load [N m], and the force down the incline on the axis [N], of damping and drag."""
-    torque = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot))
-    return torque, -torque / scene.can.radius - scene.drag * u_dot * np.abs(u_dot)
+    u = arm * np.sin(phi) + (place + speed * time + steady * time**2 / 2)
+    return u, arm * np.cos(phi) * phi_dot + (speed + steady * time)
 
 
 def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:

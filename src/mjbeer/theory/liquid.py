@@ -32,7 +32,7 @@ from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.load import segment
 from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
-from mjbeer.theory.scenes import named, sliding
+from mjbeer.theory.scenes import remembers_call, sliding
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
 NAMES: tuple[Name, ...] = get_args(Name)
@@ -116,7 +116,7 @@ class Liquid:
         )
 
 
-@named
+@remembers_call
 def liquid(
     name: str = "water",
     incline: float = INCLINE,
@@ -141,8 +141,7 @@ def liquid(
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
     """
     used = liquid_in(name, incline, fill, can, density, viscosity, gravity)
-    with require.naming_given(viscosity=used.viscosity):
-        scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
+    scene = sliding(incline, fill, can, used.density, gravity, used.damping, drag)
     try:
         speed = scene.terminal_speed()
     except NoEquilibriumError:  # none on so steep an incline

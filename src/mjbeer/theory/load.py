@@ -71,8 +71,7 @@ class Load:
         fill = _checked_fill(fill)
         shape = segment(fill)
         mass = density * length * radius**2 * shape.area
-        with require.naming_given(radius=radius, length=length, fill=fill, density=density):
-            return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
+        return cls(mass, offset=radius * shape.offset, inertia=mass * radius**2 * shape.inertia, fill=fill)
 
     @classmethod
     def point(cls, mass: float, offset: float) -> "Load":

@@ -100,7 +100,7 @@ class Start:
         if oscillator.ramp == 0 and phi_dot < 0:
             sign, potential = -1, Potential(0.0, oscillator.depth, -oscillator.bottom)
         # The kinetic energy is that at phi itself: where J has a narrow minimum, rounding of the angle would change it.
-        kinetic = float(oscillator.inertia(phi)) * phi_dot**2 / 2
+        kinetic = float(oscillator.kinetic_energy(phi, phi_dot))
         return cls(oscillator, potential, sign, *potential.distances(sign * phi), sign * phi_dot, kinetic)
 
     @cached_property

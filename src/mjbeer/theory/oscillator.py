@@ -150,6 +150,10 @@ class Oscillator:
         """Return J [kg m^2] at `phi` [rad]."""
         return self.base + self.chord * np.sin(phi / 2) ** 2 + self.coupling * np.sin(phi) ** 2
 
+    def kinetic_energy(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
+        """Return J phi_dot^2 / 2 [J], the kinetic energy of the swing."""
+        return self.inertia(phi) * np.square(phi_dot) / 2
+
     def drop(self, phi: np.ndarray | float, start: np.ndarray | float) -> np.ndarray:
         """Return V(start) - V(phi) [J] without the cancellation of the plain difference."""
         delta_phi = phi - start
@@ -166,11 +170,16 @@ class Oscillator:
         by_weight = self.depth / drive if drive > 0 else (math.inf if self.depth > 0 else 0.0)
         return (self.chord + self.coupling) / (2 * self.base) + by_weight
 
-    def acceleration(self, phi: np.ndarray | float, phi_dot: np.ndarray | float) -> np.ndarray:
-        """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can."""
-        inertia_slope = self.chord * np.sin(phi) / 2 + self.coupling * np.sin(2 * phi)
-        torque = self.ramp - self.depth * np.sin(phi - self.bottom)
-        return (torque - inertia_slope * phi_dot**2 / 2) / self.inertia(phi)
+    def acceleration(
+        self, phi: np.ndarray | float, phi_dot: np.ndarray | float, torque: np.ndarray | float = 0.0
+    ) -> np.ndarray:
+        """Return phi_ddot [rad/s^2] from the equation of motion, which is (16) or (52) for a massless can.
+
+        A `torque` [N m] acts beside those of inertia and weight.
+        """
+        d_inertia = self.chord / 2 * np.sin(phi) + self.coupling * np.sin(2 * phi)
+        weight = self.ramp - self.depth * np.sin(phi - self.bottom)
+        return (weight + torque - d_inertia * phi_dot**2 / 2) / self.inertia(phi)
 
     def equilibrium(self) -> float:
         """Return the angle of stable equilibrium [rad], where |ramp| <= depth: eq. (53) for a frozen load.

@@ -13,38 +13,16 @@ from numpy.polynomial import chebyshev
 
 from mjbeer.exceptions import ToleranceError
 
-_DEGREE = 24
-# The angle of cos(k (2j + 1) pi / 2n) is reduced in integers: rounding it would show in every series.
-_ODD, _CIRCLE = 2 * np.arange(_DEGREE + 1) + 1, 4 * (_DEGREE + 1)
-_COSINES = np.cos(2 * np.pi * (np.outer(_ODD, np.arange(_DEGREE + 1)) % _CIRCLE) / _CIRCLE)
-_NODES = _COSINES[:, 1]
-_TO_SERIES = 2 / (_DEGREE + 1) * _COSINES
-_TO_SERIES[:, 0] /= 2
-_TO_INTEGRAL = np.stack([np.append(chebyshev.chebint(row, lbnd=-1), 0)[: _DEGREE + 2] for row in np.eye(_DEGREE + 1)])
-_WEIGHTS = _TO_SERIES @ _TO_INTEGRAL.sum(axis=1)
-_POINTS = np.array([-1.0, *_NODES[::-1], 1.0])
-_TO_TIMES = _TO_SERIES @ _TO_INTEGRAL @ chebyshev.chebvander(_POINTS, _DEGREE + 1).T
-
-_RESOLVED = 3e-15
-"""Largest last coefficient of a resolved series, relative to its largest: a few roundings."""
-_NOISE = 16 * float(np.finfo(float).eps)
-"""Relative noise of dt/dpsi in a panel as wide as psi is large. The rounding of psi changes dt/dpsi by as many times
-that as the panel is narrower, for panels are as wide as dt/dpsi takes to change by itself."""
-_FALLING = 0.1
-"""Noise shows as small coefficients that have stopped falling: the last ones exceed this times those before."""
-_MOST_PANELS = 5000
-"""Most panels of one path: an ordinary one takes 10, and one that hardly passes a barrier 100."""
-_MOST_STEPS = 60
-"""Most steps of Newton's method: it takes 2 or 3, and if only bisection helps, 53 use up the digits of a double."""
-_QUADRATIC = 1e-10
-"""A step of Newton's method this small, in half-widths of a panel, leaves an error of its square, below rounding."""
+_NODES = chebyshev.chebpts1(25)
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODES, 24)).T
+_TO_INTEGRAL = chebyshev.chebint(np.eye(25), lbnd=-1).T
 
 
 class TravelTime:
     """The time t(psi) along a path from its beginning, and its inverse psi(t)."""
 
     def __init__(self, rate: Callable[[np.ndarray], np.ndarray], *edges: float) -> None:
-        """Set up the clock of a path with dt/dpsi = `rate` [s] from the first to the last of the `edges`.
+        """Set up a path with dt/dpsi = `rate` [s] from the first to the last of the `edges`.
 
         For psi of shape (panels, nodes) `rate` returns (panels, nodes), or (passages, panels, nodes) if the path is
         passed so often in a row, each time with another rate, of which the first one is the roughest.
@@ -60,8 +38,8 @@ class TravelTime:
             halves = (ends - lows) / 2
             middles, rates = lows + halves, rate(lows[:, None] + halves[:, None] * (1 + _NODES))
             rates = rates.reshape(-1, *rates.shape[-2:])
-            tried += len(lows)
-            if tried > _MOST_PANELS or not np.isfinite(rates).all() or not ((lows < middles) & (middles < ends)).all():
+            tried += len(lows)  # an ordinary path takes 10 panels, and one that hardly passes a barrier 100
+            if tried > 5000 or not np.isfinite(rates).all() or not ((lows < middles) & (middles < ends)).all():
                 raise ToleranceError(
                     "the time along this motion is beyond doubles: sizes, masses, gravity or speeds are of too many "
                     "different orders of magnitude"
@@ -75,37 +53,35 @@ class TravelTime:
         )
         order = np.argsort(starts)
         self._size, passages = len(order), len(rates)
-        self._rates = rates[:, order].reshape(-1, len(_NODES))
+        self._series = rates[:, order].reshape(-1, len(_NODES)) @ _TO_SERIES
         self._lows, self._halves = np.tile(starts[order], passages), np.tile(halves[order], passages)
-        self._times = np.concatenate([[0.0], np.cumsum(self._rates @ _WEIGHTS * self._halves)])
+        self._times = np.concatenate([[0.0], np.cumsum(self._series @ _TO_INTEGRAL.sum(axis=1) * self._halves)])
         self.duration = float(self._times[-1])  # of all passages together [s]
-        lows, halves = self._lows[:, None], self._halves[:, None]
-        self._known_times = (self._times[:-1, None] + halves * (self._rates @ _TO_TIMES)).ravel()
-        self._known_phases = (lows + halves * (1 + _POINTS)).ravel()
 
     def time(self, psi: float, passage: int = 0) -> float:
         """Return the time [s] at which the motion is at `psi` in a `passage`, of which the first one is 0."""
         panel = max(0, int(np.searchsorted(self._lows[: self._size], psi, side="right")) - 1) + passage * self._size
         half = self._halves[panel]
         x = (psi - self._lows[panel]) / half - 1
-        return float(self._times[panel] + half * chebyshev.chebval(x, self._rates[panel] @ _TO_SERIES @ _TO_INTEGRAL))
+        return float(self._times[panel] + half * chebyshev.chebval(x, self._series[panel] @ _TO_INTEGRAL))
 
     def phase(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return psi at the times `time` [s], and in which passage that is; beyond both ends the motion stays there."""
-        panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._rates) - 1)
-        low, half = self._lows[panel], self._halves[panel]
-        guess = (np.interp(time, self._known_times, self._known_phases) - low) / half - 1
-        series = self._rates[panel] @ _TO_SERIES
-        return low + half * _invert(series, (time - self._times[panel]) / half, guess), panel // self._size
+        panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._series) - 1)
+        half, elapsed = self._halves[panel], time - self._times[panel]
+        guess = 2 * elapsed / (self._times[panel + 1] - self._times[panel]) - 1
+        return self._lows[panel] + half * _invert(self._series[panel], elapsed / half, guess), panel // self._size
 
 
 def _resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
     """Return which of the panels reproduce `rates` by a series, as far as the rounding of psi lets them."""
     coefficients = np.abs(rates @ _TO_SERIES)
     size, tail = coefficients.max(axis=1), coefficients[:, -3:].max(axis=1)
-    stalled = tail >= _FALLING * coefficients[:, -12:-3].max(axis=1)
-    noise = _NOISE * (1 + (np.abs(lows) + halves) / halves)
-    return (tail <= _RESOLVED * size) | (stalled & (tail <= noise * size))
+    # Noise shows as small coefficients that have stopped falling. Rounding of psi changes dt/dpsi by some eps as often
+    # as the panel is narrower than psi, for panels are as wide as dt/dpsi takes to change by itself.
+    stalled = tail >= 0.1 * coefficients[:, -12:-3].max(axis=1)
+    noise = 16 * np.finfo(float).eps * (1 + (np.abs(lows) + halves) / halves)
+    return (tail <= 3e-15 * size) | (stalled & (tail <= noise * size))
 
 
 def _invert(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
@@ -116,12 +92,13 @@ def _invert(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.nda
     values, integral = series.T, (series @ _TO_INTEGRAL).T
     low, high = -np.ones_like(target), np.ones_like(target)
     x = np.clip(guess, -1, 1)
-    for _ in range(_MOST_STEPS):
+    for _ in range(60):  # if only bisection helps, 53 use up the digits of a double
         excess = chebyshev.chebval(x, integral, tensor=False) - target
         low, high = np.where(excess <= 0, x, low), np.where(excess >= 0, x, high)
         newton = x - excess / chebyshev.chebval(x, values, tensor=False)
-        # Newton's method leaves the bracket by rounding, or where dt/dpsi is steep: bisect there.
-        converged = np.abs(newton - x) <= _QUADRATIC
+        # Newton's method leaves the bracket by rounding, or where dt/dpsi is steep: bisect there. A step of 1e-10
+        # leaves an error of its square.
+        converged = np.abs(newton - x) <= 1e-10
         x = np.where(converged | ((newton >= low) & (newton <= high)), newton, (low + high) / 2)
         if converged.all():
             break

@@ -1,10 +1,9 @@
 """The scene: can, load, incline, gravity, and how the load is attached and damped."""
 
-import dataclasses
 import inspect
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -25,10 +24,6 @@ INCLINE = math.radians(10)  # [rad], as in the paper's footnote 8
 DURATION = 2.0  # [s]
 PHI0 = math.radians(60)  # at the start [rad]
 GRAVITY = 9.81  # [m/s^2]; the paper's footnote 8 has 9.8
-_LEAST_OFFSET = 1e-14
-"""Smallest offset of a load that is not balanced, over the radius: less than with a billionth of the height empty."""
-_LEAST_RATE = 1e-12
-"""Smallest rate of damping that is not 0 [1/s]: a slower decay cannot be observed."""
 
 load_drawing: list[Callable[[], Any]] = []
 """Returns the module that draws scenes and motions. Set by `mjbeer/__init__`; avoids importing drawing here."""
@@ -59,9 +54,7 @@ class Scene:
     torque does not grow in proportion."""
     drag: float = 0.0
     """Force of the air on the axis over the square of its speed, C_d rho A / 2 [kg/m]; for a sliding load only."""
-    made_by: tuple[Callable[..., "Scene"], tuple[Any, ...], dict[str, Any]] | None = field(
-        default=None, init=False, compare=False
-    )
+    made_by: tuple[Callable[..., "Scene"], dict[str, Any]] | None = field(default=None, init=False, compare=False)
     """The function that made the scene, as `mjbeer.sliding`, and the arguments that it was given; None if none did."""
 
     def __post_init__(self) -> None:
@@ -85,40 +78,33 @@ class Scene:
                 f"got damping={require.format_value(self.damping)} and drag={require.format_value(self.drag)}"
             )
         a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e6 may round up
-        require.within("load offset", load.offset, _LEAST_OFFSET * a, a, "m", zero=True)
-        ratio = can.mass / load.mass
-        require.within("mass of the can over that of the load", ratio, 1 / most, most, zero=True)
+        # A can is not balanced by less of a gap than a billionth of its height.
+        require.within("load offset", load.offset, 1e-14 * a, a, "m", zero=True)
+        require.within("mass of the can over that of the load", can.mass / load.mass, 1 / most, most, zero=True)
         require.within("load inertia", load.inertia, 0, most * load.mass * a**2, "kg m^2")
         if not self.oscillator.base > float(self.oscillator.inertia(math.pi / 2)) / (2 * require.RATIO):
             raise ParameterError(
-                "next to nothing resists rotation at phi = 0: a point load needs an offset and a can with mass "
-                f"(attachment {self.attachment!r}, load inertia {load.inertia!r} kg m^2, load offset "
-                f"{load.offset!r} m, can mass {can.mass!r} kg)"
+                "next to nothing resists rotation at phi = 0: a point load needs an offset and a can with mass, got "
+                f"{load!r} and {can!r}"
             )
         if self.dissipates:  # how fast damping and drag brake where the load resists least, phi = pi, at 1 rad/s
-            mass, limits = self.effective_mass, (_LEAST_RATE, require.DAMPING_RATE)
-            resists = float(self.frozen.inertia(math.pi)) / (a**2 * mass * self.oscillator.base)
-            with require.naming_given(damping=self.damping, drag=self.drag):
-                rate = float(self.damping_law.derivative(1.0)) * resists
-                require.within("rate of damping", rate, *limits, "1/s", zero=True)
-                require.within("rate of drag", 2 * self.drag * a / mass, *limits, "1/s", zero=True)
+            limits = 1e-12, 1e9  # a slower decay cannot be observed
+            resists = float(self.frozen.inertia(math.pi)) / (a**2 * self.effective_mass * self.oscillator.base)
+            rate = float(self.damping_law.derivative(1.0)) * resists
+            require.within("rate of damping", rate, *limits, "1/s", zero=True)
+            require.within("rate of drag", 2 * self.drag * a / self.effective_mass, *limits, "1/s", zero=True)
 
     def _made(self) -> tuple[Callable[..., "Scene"], dict[str, Any]]:
-        """Return what makes the scene, and with which arguments."""
-        if self.made_by is None:
-            return type(self), {each.name: getattr(self, each.name) for each in dataclasses.fields(self) if each.init}
-        make, arguments, others = self.made_by
-        return make, inspect.signature(make).bind(*arguments, **others).arguments
+        """Return the function that makes the scene, and its arguments."""
+        return self.made_by or (type(self), {each.name: getattr(self, each.name) for each in fields(self) if each.init})
 
     def __repr__(self) -> str:
-        """Return the call that makes the scene, without what it would have anyway."""
+        """Return the call that makes the scene, without arguments that it has by default."""
         make, given = self._made()
         usual = inspect.signature(make).parameters
-        plain = {
-            name: each.item() if isinstance(each, np.generic | np.ndarray) else each for name, each in given.items()
-        }
-        told = (f"{name}={value!r}" for name, value in plain.items() if value != usual[name].default)
-        return f"{getattr(make, '__name__', '')}({', '.join(told)})"
+        plain = {name: each.item() if isinstance(each, np.generic) else each for name, each in given.items()}
+        arguments = (f"{name}={value!r}" for name, value in plain.items() if value != usual[name].default)
+        return f"{getattr(make, '__name__', '')}({', '.join(arguments)})"
 
     def _repr_html_(self) -> str:
         """Return a table for a notebook."""
@@ -130,13 +116,13 @@ class Scene:
         `sliding().replace(fill=0.4)` is `sliding(fill=0.4)`: the load is made anew, and so is a liquid's damping.
         """
         make, given = self._made()
-        own, fields = inspect.signature(make).parameters, inspect.signature(type(self)).parameters
+        own = inspect.signature(make).parameters
         for name in changes:
-            require.choice("what is replaced in a scene", name, [*own, *fields])
-        again = {name: value for name, value in changes.items() if name in own}
+            require.choice("name of a change to a scene", name, [*own, *inspect.signature(type(self)).parameters])
+        arguments = {name: value for name, value in changes.items() if name in own}
         others = {name: value for name, value in changes.items() if name not in own}
-        scene = make(**given | again) if again else self
-        return dataclasses.replace(scene, **others) if others else scene
+        scene = make(**given | arguments) if arguments else self
+        return replace(scene, **others) if others else scene
 
     @cached_property
     def damping_law(self) -> Damping:
@@ -152,25 +138,25 @@ class Scene:
 
     @cached_property
     def frozen(self) -> Oscillator:
-        """Return what `oscillator` is with a frozen load: its J is J_f, against which can and load turn as one."""
+        """Return the oscillator of a frozen load: its J is J_f, against which can and load turn as one."""
         return Oscillator.frozen(self.can, self.load, self.incline, self.gravity)
 
-    @property
+    @cached_property
     def dissipates(self) -> bool:
         """Return whether damping or drag takes energy from the motion."""
         return bool(self.damping_law) or self.drag > 0
 
-    @property
+    @cached_property
     def mass(self) -> float:
         """Return the mass of can and load together, m_t [kg]."""
         return self.can.mass + self.load.mass
 
-    @property
+    @cached_property
     def effective_mass(self) -> float:
         """Return the mass against a force along the incline when the can rolls, M = m + m_can + I_can/a^2 [kg]."""
         return self.load.mass + self.can.effective_mass
 
-    @property
+    @cached_property
     def downhill_weight(self) -> float:
         """Return the weight along the incline, m_t g sin(alpha) [N]."""
         return self.mass * self.gravity * math.sin(self.incline)
@@ -183,7 +169,7 @@ class Scene:
     def start(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
         """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
 
-        A sliding load starts with s = 0 and s_dot = 0 (eq. 12), a frozen one without slip from u = a phi (eq. 50).
+        A sliding load starts with s = 0 and s_dot = 0 (eq. 12), a frozen one with u = a phi (eq. 50).
         """
         phi0, phi_dot0 = require.start(phi0, phi_dot0)
         if self.attachment == "frozen":
@@ -201,8 +187,7 @@ class Scene:
         if abs(self.oscillator.ramp) > self.oscillator.depth > 0:
             raise NoEquilibriumError(
                 f"no equilibrium at an incline of {math.degrees(self.incline):.4g} degrees: a frozen load holds the "
-                f"can only up to {math.degrees(self.largest_incline()):.1f} degrees, where sin(alpha) = m b / "
-                "((m + m_can) a)"
+                f"can only up to {math.degrees(self.largest_incline()):.1f} degrees"
             )
         return self.oscillator.equilibrium()
 
@@ -261,10 +246,7 @@ class Scene:
         m g b sin(alpha + phi) = T(w). Without drag T is m_t g a sin(alpha), whatever the law.
         """
         if not self.dissipates:
-            raise DissipationError(
-                "no steady rolling: damping and drag are 0, so that nothing brakes the can, which rolls ever faster or "
-                "swings on"
-            )
+            raise DissipationError("no steady rolling: damping and drag are 0, and nothing else brakes the can")
         self.oscillator.equilibrium()  # whether anything restores the load
         radius, weight = self.can.radius, self.load.moment * self.gravity
         torque, (linear, quadratic, cubic) = self.downhill_weight * radius, self.damping_law.coefficients
@@ -273,8 +255,8 @@ class Scene:
             torque = float(self.damping_law.torque(slip))
         if abs(torque) > weight:
             raise NoEquilibriumError(
-                f"no steady rolling at an incline of {math.degrees(self.incline):.4g} degrees: the load, which the "
-                f"damping drags along, can hold the can only up to {math.degrees(self.largest_incline()):.1f} degrees"
+                f"no steady rolling at an incline of {math.degrees(self.incline):.4g} degrees: the load can hold the "
+                f"can only up to {math.degrees(self.largest_incline()):.1f} degrees"
             )
         return slip, torque, math.sqrt(weight - abs(torque)) * math.sqrt(weight + abs(torque))
 
@@ -319,10 +301,9 @@ class Scene:
         return np.sort_complex(roots)
 
     def slip_rate(self) -> float:
-        """Return the mean slip rate of can and load, D = m_t g a sin(alpha)/c [rad/s], of any motion that is steady.
+        """Return the mean slip rate of can and load [rad/s] with linear damping: m_t g a sin(alpha)/c, in any motion.
 
-        The load may stand still, or loop; then the variance of the slip rate is D times the load's mean rate. It needs
-        linear damping without drag.
+        The motion must be steady, be it that the load stands still or loops; its rate varies, and so does the slip's.
         """
         linear, *others = self.damping_law.coefficients
         if not linear > 0 or any(others) or self.drag > 0:
@@ -333,11 +314,11 @@ class Scene:
         return self.downhill_weight * self.can.radius / linear
 
     def acceleration(self) -> float:
-        """Return the acceleration of the axis down the incline [m/s^2] when it is steady: footnote 4, or eq. (1).
+        """Return the steady acceleration of the axis down the incline [m/s^2]: footnote 4, or eq. (1).
 
-        A frozen load has none; returned is that of a balanced load with the same inertia about the axis (A.3), than
-        which the unbalanced one rolls down faster in the long run, by the factor mean(J) / mean(sqrt(J))^2. With
-        damping or drag it is 0, but for a balanced load without drag, which ends as a frozen one.
+        For a frozen load it is that of a balanced one with the same inertia about the axis (A.3): in the long run the
+        unbalanced one rolls down faster, by the factor mean(J) / mean(sqrt(J))^2. With damping or drag it is 0, but for
+        a balanced load without drag, which ends as a frozen one.
         """
         if self.dissipates and (self.load.offset > 0 or self.drag > 0):
             return 0.0

@@ -1,6 +1,7 @@
 """The scenes of the paper, as functions that make them."""
 
 import functools
+import inspect
 from collections.abc import Callable
 from typing import ParamSpec
 
@@ -13,19 +14,19 @@ from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
 Parameters = ParamSpec("Parameters")
 
 
-def named(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
-    """Return a function that makes a scene, and has it remember by which arguments."""
+def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:
+    """Return the function with scenes that remember it and its arguments."""
 
     @functools.wraps(make)
     def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.set_fields(scene, made_by=(made, arguments, others))
+        require.set_fields(scene, made_by=(made, inspect.signature(make).bind(*arguments, **others).arguments))
         return scene
 
     return made
 
 
-@named
+@remembers_call
 def sliding(
     incline: float = INCLINE,
     fill: float = 0.5,
@@ -47,7 +48,7 @@ def sliding(
     return Scene(can, load, incline, "sliding", gravity, damping, drag)
 
 
-@named
+@remembers_call
 def frozen(
     incline: float = INCLINE, fill: float = 0.5, can: Can | None = None, density: float = BEER, gravity: float = GRAVITY
 ) -> Scene:
@@ -65,7 +66,7 @@ def _of_beer(can: Can | None, fill: float, density: float) -> tuple[Can, Load]:
     return can, Load.segment(can.radius, can.length, fill=fill, density=density)
 
 
-@named
+@remembers_call
 def pendulum(
     incline: float = INCLINE,
     wheel_mass: float = 0.2,
@@ -86,7 +87,7 @@ def pendulum(
     return Scene(Can.hoop(radius, length, wheel_mass), Load.point(load_mass, offset), incline, "sliding", gravity)
 
 
-@named
+@remembers_call
 def hoop(
     incline: float = 0.0,
     hoop_mass: float = 0.01,

@@ -17,12 +17,6 @@ from mjbeer.theory.liquid import run_warning
 from mjbeer.theory.record import Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import Scene, load_drawing
 
-_LEAST_SWING = 1e-10
-"""Smallest swing whose frequency is measured [rad], relative beyond 1 rad: a million times the rounding of phi."""
-_FOLLOWED = 0.05
-"""Largest difference between the angle from one sample to the next and that from their rates and accelerations, over
-the range of phi. Four samples a period of a small swing have 0.007, three have 0.03, two have 0.2."""
-
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Trajectory(Coordinates):
@@ -132,9 +126,9 @@ class Trajectory(Coordinates):
     @cached_property
     def liquid_warnings(self) -> tuple[str, ...]:
         """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
-        record, turn = self.record, 2 * math.pi * self.scene.can.radius
-        about = run_warning(self.scene, record.largest_slip_rate, record.no_lump_at, record.largest_distance / turn)
-        return (about,) if about else ()
+        record, turn = self.record, math.tau * self.scene.can.radius
+        warning = run_warning(self.scene, record.largest_slip_rate, record.no_lump_at, record.largest_distance / turn)
+        return (warning,) if warning else ()
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -157,41 +151,30 @@ class Trajectory(Coordinates):
         Raises:
           NoEquilibriumError: if the load has no equilibrium to swing about.
           NoLibrationError: if the damping lets it creep back without a swing.
-          MjbeerError: if the motion hardly swings, if its samples are further apart than about a third of a period, or
-            if there are fewer than three turning points among them, which bound a whole period.
+          MjbeerError: if the motion turns less than three times, hardly swings, or has samples too far apart.
         """
         scene, oscillator = self.scene, self.scene.oscillator
-        # After the last sample that swings phi_dot is rounding, whose changes of sign are no turning points.
-        least = _LEAST_SWING * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
+        # A million times the rounding of phi: in what is slower, phi_dot changes its sign by chance.
+        least = 1e-10 * scene.frequency() * max(1.0, float(np.abs(self.phi).max()))
         swing = select_samples(self, slice(int(np.max(np.flatnonzero(np.abs(self.phi_dot) > least), initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
-        change = accelerations(scene, phi, rate, swing.u_dot)[1]
-        turns = _zeros(time, rate, change)
+        phi_ddot = accelerations(scene, phi, rate, swing.u_dot)[1]
+        turns = _zeros(time, rate, phi_ddot)
         if len(turns) < 3:
-            raise MjbeerError(
-                f"no frequency: the motion turns {len(turns)} times in {self.time[-1]:.6g} s, 3 are needed"
-            )
+            raise MjbeerError(f"no frequency: the load turns {len(turns)} times in {self.time[-1]:.6g} s, 3 are needed")
         if not scene.dissipates:
             rest = scene.equilibrium()
-            rest += 2 * math.pi * round((self.phi0 - rest) / (2 * math.pi))
-            energy = float(oscillator.inertia(self.phi0)) * self.phi_dot0**2 / 2 + float(
-                oscillator.drop(rest, self.phi0)
-            )
-            kinetic = float((oscillator.inertia(phi) * rate**2).max()) / 2
-            if kinetic > 2 * energy:
-                raise MjbeerError(
-                    f"no frequency: the load starts with {energy:.2g} J above its equilibrium, a swing that is hidden "
-                    f"by what else moves the load, up to {kinetic:.2g} J"
-                )
+            rest += math.tau * round((self.phi0 - rest) / math.tau)
+            energy = oscillator.kinetic_energy(self.phi0, self.phi_dot0) + oscillator.drop(rest, self.phi0)
+            if oscillator.kinetic_energy(phi, rate).max() > 2 * energy:
+                raise MjbeerError("no frequency: the load starts so near its rest that rounding or a contact moves it")
+        # Four samples a period of a small swing differ by 0.007 of the range of phi, three by 0.03, two by 0.2.
         step = np.diff(time)
-        turned = step * (rate[:-1] + rate[1:]) / 2 - step**2 * np.diff(change) / 12
-        if not np.abs(turned - np.diff(phi)).max() <= _FOLLOWED * np.ptp(phi):
-            raise MjbeerError(
-                f"no frequency: the samples, up to {step.max():.3g} s apart, do not follow the swing; at least three a "
-                "period are needed"
-            )
+        followed = step * (rate[:-1] + rate[1:]) / 2 - step**2 * np.diff(phi_ddot) / 12
+        if not np.abs(followed - np.diff(phi)).max() <= 0.05 * np.ptp(phi):
+            raise MjbeerError("no frequency: the samples are too far apart; at least three a period are needed")
         periods = (len(turns) - 1) // 2  # only whole periods, as the two halves of a swing differ on an incline
-        return float(2 * np.pi * periods / (turns[2 * periods] - turns[0]))
+        return float(math.tau * periods / (turns[2 * periods] - turns[0]))
 
     def plot(self, *names: str, theory: bool = False) -> Any:
         """Plot quantities, as "phi", "u" and "energy", in a new figure, and return the matplotlib axes of each.
@@ -213,15 +196,9 @@ class Trajectory(Coordinates):
         load_drawing[0]().video(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
-        """Return the motion as a pandas DataFrame: a row for each sample, columns with their units.
+        """Return the motion as a pandas DataFrame: a row for each sample, columns with their units."""
+        import pandas as pd
 
-        Raises:
-          MjbeerError: if pandas is not installed.
-        """
-        try:
-            import pandas as pd
-        except ImportError as error:
-            raise MjbeerError("to_dataframe needs pandas: pip install pandas") from error
         return pd.DataFrame(_columns(self))
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:

@@ -19,8 +19,8 @@ from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
 from mjbeer.output.terminal import progress_bar
+from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
-from mjbeer.simulation.stepping import Stepper
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Motion
@@ -143,10 +143,11 @@ def _set_up(case: Case, point: Point) -> Rung:
     if point.model in USUAL:
         model = usual_model(point.model, scene)
         begin = initial_state(model, scene, case.phi0, 0.0)
-        solve = partial(Stepper(model).run, begin, np.rint(times / value).astype(np.int64))
+        steps = np.rint(times / value).astype(np.int64)
+        solve = partial(states_after, model, mujoco.MjData(model), begin, steps)
     else:
-        prepared = Simulator(scene, point.curve.setting(value))
-        model, begin = prepared.model, prepared.start(case.phi0, 0.0)
+        simulator = Simulator(scene, point.curve.setting(value))
+        model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
         if point.method == DOP853:
             own = Dop853(model)
             solve = partial(own.run, begin, times, value)
@@ -154,7 +155,7 @@ def _set_up(case: Case, point: Point) -> Rung:
             own = GaussJackson(model)
             solve = partial(own.run, begin, times, value, even_at_most(scene))
         else:
-            solve = lambda: prepared.solve(begin, times).states  # noqa: E731
+            solve = lambda: simulator.solve(begin, times).states  # noqa: E731
 
     def motion(states: np.ndarray) -> Motion:
         found, count = to_coordinates(model, scene, states, times), own.evaluations if own else None

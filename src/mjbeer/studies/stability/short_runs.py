@@ -8,6 +8,7 @@ with the same small swing and are judged by the same rule.
 import math
 from dataclasses import dataclass
 
+import mujoco
 import numpy as np
 
 from mjbeer.exceptions import DivergenceError
@@ -15,7 +16,7 @@ from mjbeer.integrators.dop853 import Dop853
 from mjbeer.model.build import build, specify
 from mjbeer.model.joints import joint_addresses
 from mjbeer.model.setting import DOP853, Integrator
-from mjbeer.simulation.stepping import Stepper
+from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
 from mjbeer.theory.can import Can
@@ -86,7 +87,7 @@ class Swings:
             if self._integrator == DOP853:
                 states = Dop853(self._model).run(self._start, samples * timestep, timestep)
             else:
-                states = Stepper(self._model).run(self._start, samples)
+                states = states_after(self._model, mujoco.MjData(self._model), self._start, samples)
         except DivergenceError:
             return EXPLODED
         return self._judge(states, timestep)

@@ -221,10 +221,10 @@ def _drift(scene: Scene, integrator: Integrator, steps: int, swings: int = 1000)
     period, window = scene.period(1.0), np.arange(steps)
     counts = np.unique(np.rint(np.geomspace(1, swings, 1 + round(8 * math.log10(swings)))).astype(int))
     samples = np.unique(np.concatenate([window, *(steps * count + window for count in counts)]))
-    prepared = Simulator(scene, Setting(integrator=integrator, timestep=period / steps))
+    simulator = Simulator(scene, Setting(integrator=integrator, timestep=period / steps))
     times = period / steps * samples
-    start = prepared.start(scene.equilibrium() + 1.0, 0.0)
-    motion, form = prepared.coordinates(prepared.solve(start, times).states, times), scene.oscillator
+    start = simulator.initial_state(scene.equilibrium() + 1.0, 0.0)
+    motion, form = simulator.coordinates(simulator.solve(start, times).states, times), scene.oscillator
     kinetic = form.inertia(motion.phi) * motion.phi_dot**2 / 2
     energy = (kinetic - form.drop(motion.phi, float(motion.phi[0]))) / form.drop(scene.equilibrium(), motion.phi[0])
     of_swings = np.array([energy[place : place + steps] for place in np.searchsorted(samples, steps * counts)])

@@ -24,7 +24,7 @@ from mjbeer.output.terminal import progress_bar
 
 
 @dataclass(frozen=True)
-class Filmed:
+class FilmJob:
     """A film to be written."""
 
     film: Film
@@ -41,14 +41,14 @@ class Filmed:
 
         def keep(picture: np.ndarray) -> None:
             if next(number) == nearest:
-                Image.fromarray(picture).save(file, "WEBP", quality=80)
+                Image.fromarray(picture).save(file, "WEBP", quality=70)
 
-        video.write(plan, self.path, self.width, self.height, self.fps, keep)
+        video.write(plan, self.path, self.width, self.height, self.fps, keep, video.SMALL_RATE)
         return file.getvalue()
 
 
 @dataclass(frozen=True)
-class Plotted:
+class PlotJob:
     """A plot to be drawn."""
 
     draw: Callable[[Any], None]  # writes the plot to a path, with .svg appended, or into a `Picture`
@@ -71,7 +71,7 @@ def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
       RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
       OutputError: if a file cannot be written.
     """
-    with _swept(orders), progress_bar(console, len(orders)) as begin, processes.pool(len(orders)) as executor:
+    with _cleaned_up(orders), progress_bar(console, len(orders)) as begin, processes.pool(len(orders)) as executor:
         futures = {executor.submit(_done, order): order for order in orders}
         for future in as_completed(futures):
             try:
@@ -93,7 +93,7 @@ def _done(order: Any) -> Any:
 
 
 @contextlib.contextmanager
-def _swept(orders: Sequence[Any]) -> Generator[None]:
+def _cleaned_up(orders: Sequence[Any]) -> Generator[None]:
     """Remove the hidden files at the end that a process leaves which is ended while it writes."""
     try:
         yield

@@ -1,4 +1,4 @@
-"""Plots of loads that are frozen to their cans, appendix A of the paper: rocking, rolling down, and hopping."""
+"""The plots of the paper's stories, and the motions that they and the films show."""
 
 import math
 from collections.abc import Sequence
@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
-from mjbeer.drawing.words import in_degrees
 from mjbeer.model.setting import DOP853
 from mjbeer.output.plots import (
     COLOURS,
@@ -23,23 +22,85 @@ from mjbeer.output.plots import (
     note,
     ticks,
 )
-from mjbeer.paper import hopping
+from mjbeer.paper import hopping, oscillation
+from mjbeer.paper.claim import SceneConstants
 from mjbeer.paper.hopping import MU
-from mjbeer.paper.witness import GRIP, fall_from_top
+from mjbeer.paper.oscillation import SLOW
+from mjbeer.paper.witness import GRIP, fall_from_top, loop
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import INCLINE, Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene
+from mjbeer.theory.scenes import frozen, hoop, sliding
 from mjbeer.theory.trajectory import Trajectory
 
-FRICTION = 1.0
-"""Friction coefficient of the incline from which the can lifts off."""
+SWING = math.radians(60)  # amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down
+FRICTION = 1.0  # friction coefficient of the incline from which the can lifts off
+HESITATION = partial(simulate, sliding(), 0.8, SWING, integrator=DOP853, times=np.linspace(0, 0.8, 401))
+LOOPING = partial(simulate, sliding(), 0.5, 0.0, SLOW, integrator=DOP853)
+"""The motion of a film: beer loops so slowly here that its can stays on the incline."""
 ROCKING = partial(simulate, frozen(), 2.0, 0.0, integrator=DOP853)
 LIFT_OFF = partial(simulate, frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=FRICTION)
 PARTING = partial(LIFT_OFF, times=np.linspace(0.68, 1.0, 1601))
-"""The motions of films."""
 _JUMP = 3.0
 """Change of an angle [degrees] from one point to the next, beyond which a line breaks off: elsewhere it is below 1."""
+_TIME, _TILT = "time t [s]", "φ, the angle of the beer's surface to the incline"
+
+
+def let_go(degrees: float, duration: float = 1.0) -> Trajectory:
+    """Return the motion of beer let go at an angle to the incline, for a `duration` [s]."""
+    return simulate(sliding(), duration, math.radians(degrees), integrator=DOP853, timestep=1e-3)
+
+
+def draw_trivial(panels: Sequence[Axes]) -> None:
+    """Draw φ, and how far u and s are ahead of an even acceleration, of beer let go along the incline and at 60°."""
+    angle, ahead = panels
+    for degrees, colour, width in ((0, COLOURS[4], 4.0), (60, COLOURS[0], 1.5)):
+        run = let_go(degrees)
+        even = run.scene.acceleration() * run.time**2 / 2
+        centre = run.u - run.scene.load.offset * np.sin(run.phi)
+        angle.plot(run.time, np.degrees(run.phi), color=colour, linewidth=width, label=f"can let go at φ = {degrees}°")
+        ahead.plot(run.time, 1e3 * (run.u - even), color=colour, linewidth=width)
+        ahead.plot(run.time, 1e3 * (centre - even), "k--", label="the beer's centre of mass, in both cans")
+    label(angle, "", "φ [°]", _TILT)
+    label(ahead, _TIME, "u − ½ g sin α t² [mm]", "How far it is ahead of an even acceleration")
+    name_below((angle, ahead), 2)
+
+
+def draw_hesitation(panels: Sequence[Axes]) -> None:
+    """Draw how far a can is ahead of one that accelerates evenly, and eq. (25) as printed."""
+    run = HESITATION()
+    scene, times, b = run.scene, run.time, run.scene.load.offset
+    even = scene.acceleration() * times**2 / 2
+    # The paper's swing begins at phi = 0, this one at its end: a quarter of a swing later, cos(2 omega t) is -1.
+    printed = b * (-(SWING**2) / 4 - SWING**2 * np.cos(2 * scene.frequency() * times) / 2)
+    (axes,) = panels
+    axes.plot(times, 1e3 * (exact(scene, times, SWING).u - even), label="exact theory: b sin φ", **THEORY)
+    axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
+    axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice in a swing", **PRINTED)
+    axes.axhline(0, **REFERENCE)
+    label(axes, _TIME, "u − ½ g sin α t² [mm]", "Lead of the can over one that accelerates evenly")
+    name_below([axes], 1)
+
+
+def draw_looping(panels: Sequence[Axes]) -> None:
+    """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
+    scene = sliding()
+    c = SceneConstants.of(scene)
+    phase = np.linspace(0, 2 * math.pi, 201)
+    x = np.degrees(phase)
+    for axes, start, about in zip(panels, (SLOW, 400.0), ("Slowly", "Fast, in a can held down"), strict=True):
+        turn = loop(scene, start)
+        phi = sum(turn.phi[k] * np.sin(k * phase) for k in range(1, 40))
+        once = oscillation.corrected_28(c, turn.rate) * np.sin(phase)
+        corrected = np.degrees(once + c.spread / 4 * np.sin(2 * phase))
+        printed = np.degrees(oscillation.epsilon_28(c, turn.rate) * np.sin(phase))
+        axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **PRINTED)
+        axes.plot(x[::5], corrected[::5], "k.", label="and a second, twice in a turn: corrected")
+        axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
+        label(axes, "", "beer ahead, φ − Ωt [°]", f"{about}: Ω = {turn.rate:.0f} rad/s in the mean")
+        axes.set_xticks(range(0, 361, 90))
+    panels[-1].set_xlabel("even turning, Ωt [°]")
+    name_below(panels, 1)
 
 
 def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
@@ -68,9 +129,9 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
     angle.axhline(math.degrees(scene.equilibrium()), label="equilibrium, eq. (53)", **REFERENCE)
     error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
     error.plot(times, np.degrees(printed - truth), **PRINTED)
-    label(angle, "", "φ, beer's surface to the incline [°]", "The swing")
-    label(error, "time t [s]", "φ less that of theory [°]", "How far each is from exact theory")
-    name_below([angle], 4)
+    label(angle, "", "φ [°]", _TILT)
+    label(error, _TIME, "φ less that of theory [°]", "How far each is from exact theory")
+    name_below([angle], 2)
 
 
 def draw_roll_down(panels: Sequence[Axes]) -> None:
@@ -84,21 +145,17 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
     angle.plot(times, np.degrees(even), "--", label="solid cylinder: g sin α t² / 3a", color=GREY, linewidth=1.2)
     printed = footnote_8_as_printed(scene, times, math.pi) - math.pi
     angle.plot(times[rolls], np.degrees(printed[rolls]), label="footnote 8 as printed", **PRINTED)
-    for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, _in_weights(run))):
+    weights = run.forces.normal / (scene.mass * scene.gravity)
+    for axes, values in ((angle, np.degrees(run.phi - math.pi)), (normal, weights)):
         axes.plot(times[rolls], values[rolls], label="MuJoCo, can that rolls", **SIMULATED)
-        axes.plot(times[pulled], values[pulled], label="the same, if the incline could pull the can", **UNPHYSICAL)
+        axes.plot(times[pulled], values[pulled], label="if the incline could pull it", **UNPHYSICAL)
         axes.axvline(parts, **REFERENCE)
         axes.set_xlim(0, times[-1])
     normal.axhline(0, **REFERENCE)
     note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
     label(angle, "", "φ − 180° [°]", "How far the can has turned")
-    label(normal, "time t [s]", "normal force / weight", "How hard the incline pushes; below 0 it would have to pull")
+    label(normal, _TIME, "normal force / weight", "How hard the incline pushes; below 0 it would have to pull")
     name_below(panels, 2)
-
-
-def _in_weights(run: Trajectory) -> np.ndarray:
-    """Return the normal force that rolling needs, over the weight of can and load."""
-    return run.forces.normal / (run.scene.mass * run.scene.gravity)
 
 
 def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
@@ -108,7 +165,8 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
     rolling = exact(contact.scene, times, math.pi)
     parts = rolling.rolls_until()
     friction, moved = panels
-    needed = np.where((rolling.forces.needed_friction < 2.5) & (times < parts), rolling.forces.needed_friction, np.nan)
+    needed = rolling.forces.needed_friction
+    needed = np.where((needed < 2.5) & (times < parts), needed, np.nan)
     friction.plot(times, needed, label="needed to roll, exact theory", color="black")
     friction.axhline(FRICTION, **REFERENCE)
     note(friction, f"all that there is: μ = {FRICTION:g}", (0, FRICTION), (6, 8))
@@ -119,47 +177,8 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
         axes.set_xlim(0, times[-1])
     note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
     label(friction, "", "friction / normal force", "Friction that rolling needs", ylim=(0, 2.2))
-    label(moved, "time t [s]", "distance [mm]", "What the can does")
+    label(moved, _TIME, "distance [mm]", "What the can does")
     name_below(panels, 2)
-
-
-def draw_period(panels: Sequence[Axes]) -> None:
-    """Draw periods over amplitudes, and between which angles frozen beer swings."""
-    scenes = {"beer sliding": sliding(), "pendulum in a wheel": pendulum(), "beer frozen": frozen()}
-    period, swing = panels
-    for name, scene in scenes.items():
-        rest, (_, high) = scene.equilibrium(), scene.separatrix()
-        amplitudes = (high - rest) * (1 - np.geomspace(0.999, 1e-4, 60))
-        small = 2 * math.pi / scene.frequency()
-        theory = [scene.period(amplitude) / small for amplitude in amplitudes]
-        (line,) = period.plot(np.degrees(amplitudes), theory, label=name)
-        few = (high - rest) * np.array([0.2, 0.4, 0.6, 0.8, 0.9])
-        measured = [simulate(scene, 4, rest + amplitude, integrator=DOP853).frequency() for amplitude in few]
-        period.plot(np.degrees(few), 2 * math.pi / np.array(measured) / small, "o", color=line.get_color())
-        period.axvline(math.degrees(high - rest), color=line.get_color(), linewidth=1, linestyle=":")
-    period.plot([], [], "o", color=GREY, label="MuJoCo (lines: exact theory)")
-    period.plot([], [], ":", color=GREY, linewidth=1, label="widest swing: its period is infinite")
-    xlabel, ylabel = "amplitude, downhill from the equilibrium [°]", "period / period of small swings"
-    label(period, xlabel, ylabel, f"Periods on an incline of {in_degrees(INCLINE)}", ylim=(0.9, 2.6), xlim=(0, 185))
-    _draw_range(swing)
-    name_below([period, swing], 3)
-
-
-def _draw_range(axes: Axes) -> None:
-    """Draw between which angles a frozen load swings, over the incline."""
-    # At both ends of the inclines the limits are steep, so that the points are denser there.
-    inclines = frozen().largest_incline() * (1 - np.cos(np.linspace(0.02, math.pi - 0.005, 100))) / 2
-    cans, x = [frozen(incline) for incline in inclines], np.degrees(inclines)
-    low, high = np.degrees([can.separatrix() for can in cans]).T
-    axes.fill_between(x, low, high, color=COLOURS[5], alpha=0.25, linewidth=0)
-    axes.plot(x, high, color=COLOURS[5])
-    axes.plot(x, low, color=COLOURS[5])
-    axes.plot(x, np.degrees([can.equilibrium() for can in cans]), "k--", label="equilibrium of frozen beer, eq. (53)")
-    note(axes, "let go here, it swings", (4, 70), (0, 0), color="black")
-    for place in ((20.5, 150), (20.5, -120)):
-        note(axes, "let go here,\nit rolls off", place, (0, 0), color="black")
-    about, ylabel = "Frozen beer: where it swings, and where it does not", "φ, beer's surface to the incline [°]"
-    label(axes, "incline α [°]", ylabel, about, ylim=(-190, 190), yticks=range(-180, 181, 60))
 
 
 def skids(ratios: np.ndarray, mu: float) -> np.ndarray:
@@ -179,12 +198,12 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
     (axes,) = panels
     axes.plot(ratios, lifts, color=COLOURS[0], label="lifts off if it cannot skid, theory")
-    axes.plot(few, measured, "o", color=COLOURS[0], label="lifts off, MuJoCo, μ = 1 000 000")
+    axes.plot(few, measured, "o", color=COLOURS[0], label="the same, MuJoCo")
     for mu, colour in ((2.0, COLOURS[3]), (MU, COLOURS[1]), (0.5, COLOURS[4])):
         axes.plot(ratios, skids(ratios, mu), "--", color=colour, label=f"skids if μ = {mu:g}, theory")
     axes.axhline(90, **REFERENCE)
     axes.axvline(1 / 13, **REFERENCE)
-    note(axes, "Littlewood: 90°", (0.01, 90), (4, -8))
+    note(axes, "Littlewood: 90°", (0.01, 90), (4, -9))
     note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
     axes.set_xscale("log")
     label(axes, "mass of the hoop / weight on its rim, M / m", "angle of the weight from the top [°]")

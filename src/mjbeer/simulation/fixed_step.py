@@ -1,0 +1,151 @@
+"""MuJoCo's own integrators, stepping a model, and the record of all steps of a run, made while it is stepped."""
+
+import math
+from collections.abc import Generator, Sequence
+from copy import copy
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from mujoco.rollout import rollout
+
+from mjbeer.exceptions import DivergenceError
+from mjbeer.integrators import Observer
+from mjbeer.model.joints import to_coordinates
+from mjbeer.model.mujoco_library import LARGEST, quiet, untimed
+from mjbeer.theory.equations import accelerations
+from mjbeer.theory.record import Record
+from mjbeer.theory.scene import Scene
+
+_BLOCK = 4096
+"""Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
+cache."""
+_STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
+"""MuJoCo's state of a run: time, positions and rates first."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The states of a run, and what it says of itself."""
+
+    states: np.ndarray
+    """States at the samples, shape (samples, nq + nv)."""
+    record: Record | None = None
+    """The extremes of all steps, if they were asked for."""
+    error: float | None = None
+    """Estimated error of phi and u/a [rad], relative beyond 1 rad; None if there was no second run."""
+    integrator: str = ""
+    """The name of the integrator."""
+
+
+def blocks(
+    model: mujoco.MjModel, data: mujoco.MjData, start: np.ndarray, count: int, timesteps: Sequence[float] = ()
+) -> Generator[np.ndarray]:
+    """Yield the states at the ends of `count` steps from `start`, in blocks, shape (steps, nq + nv).
+
+    A step is one timestep of the model's, or these `timesteps` [s] one after the other. The next block overwrites the
+    one before.
+
+    Raises:
+      DivergenceError: if the motion stops being finite; the message names the time and MuJoCo's reason.
+    """
+    timesteps = timesteps or [model.opt.timestep]
+    models = [copy(model) for _ in timesteps[1:]]
+    models.insert(0, model)
+    for each, timestep in zip(models, timesteps, strict=True):
+        each.opt.timestep = timestep
+    rows = np.empty((1, _BLOCK, mujoco.mj_stateSize(model, _STATE)))
+    mujoco.mj_resetData(model, data)
+    data.qpos[:], data.qvel[:] = np.split(start, [model.nq])
+    for first in range(0, count, _BLOCK):
+        block = rows[:, : min(_BLOCK, count - first)]
+        states = block[0, :, 1 : 1 + len(start)]
+        with quiet(), untimed():
+            if len(models) == 1:
+                state = np.empty((1, rows.shape[2]))
+                mujoco.mj_getState(model, data, state[0], _STATE)
+                guess = data.qacc_warmstart[None]
+                rollout([model], data, state, nstep=len(states), initial_warmstart=guess, state=block, skip_checks=True)
+            else:
+                for row in states:
+                    for each in models:
+                        mujoco.mj_step(each, data)
+                    row[: model.nq], row[model.nq :] = data.qpos, data.qvel
+        causes = [mujoco.mju_warningText(kind, 0) for kind in np.flatnonzero(data.warning.number)]
+        if causes or not max(np.abs(states).max(), np.abs(data.qacc).max()) < LARGEST:
+            finite = (np.abs(states) < LARGEST).all(axis=1)
+            time = (first + int(finite.argmin() if not finite.all() else len(states))) * sum(timesteps)
+            cause = "; ".join(causes) or "its state is no longer finite"
+            raise DivergenceError(f"the run diverged at t = {time:.6g} s: {cause}")
+        yield states
+
+
+def states_after(
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    start: np.ndarray,
+    steps: np.ndarray,
+    timesteps: Sequence[float] = (),
+    observer: Observer | None = None,
+) -> np.ndarray:
+    """Return the states after increasing numbers of `steps` from `start`, shape (samples, nq + nv); see `blocks`.
+
+    The `observer` is shown all steps.
+    """
+    states, done = np.empty((len(steps), len(start))), 0
+    states[steps == 0] = start
+    if observer:
+        observer(np.zeros(1), start[None])
+    for block in blocks(model, data, start, int(steps[-1]), timesteps):
+        begin, end = np.searchsorted(steps, [done + 1, done + len(block) + 1])
+        states[begin:end] = block[steps[begin:end] - done - 1]
+        if observer:
+            observer(sum(timesteps or [model.opt.timestep]) * np.arange(done + 1, done + len(block) + 1), block)
+        done += len(block)
+    return states
+
+
+class Recorder:
+    """The record of a run of one model of a scene, an `Observer`.
+
+    The steps of DOP853 are so long that forces are looked for `within` them, too.
+    """
+
+    def __init__(self, model: mujoco.MjModel, scene: Scene, friction: float = math.inf, within: bool = False) -> None:
+        self._model, self._scene, self._within, self.record = model, scene, within, Record(scene, friction)
+        self._last = np.empty((7, 0))
+
+    def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
+        """Add the next steps."""
+        motion = to_coordinates(self._model, self._scene, states, times)
+        if not self._within:
+            self.record.add(motion)
+            return
+        self.record.add_conserved(motion)
+        rates = motion.phi_dot, motion.u_dot
+        gains = accelerations(self._scene, motion.phi, *rates)[::-1]
+        ends = np.concatenate([self._last, np.stack([times, motion.phi, motion.u, *rates, *gains])], axis=1)
+        self._last = ends[:, -1:]
+        self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
+
+
+# A polynomial of fifth degree over a step, from its change, rates and second derivatives at both ends, at parts of it.
+_PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
+_ENDS = np.array([[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]])
+_POWER, _TERMS = np.arange(1, 6), np.linalg.inv(_ENDS)
+_CHANGES, _RATES = _PART**_POWER @ _TERMS, _POWER * _PART ** (_POWER - 1) @ _TERMS
+
+
+def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Return times [s], phi, phi_dot and u_dot within steps, from both coordinates and their derivatives at the ends.
+
+    These have shape (2, ends); a single end is returned as it is.
+    """
+    if len(time) == 1:
+        return time, place[0], *rate
+    step = np.diff(time)
+    first, bend = step * rate[:, :-1], step**2 * gain[:, :-1]
+    last, bent = step * rate[:, 1:], step**2 * gain[:, 1:]
+    ends, step = np.stack([np.diff(place), first, bend, last, bent], axis=-1), step[:, None]
+    phi, (phi_dot, u_dot) = place[0, :-1, None] + ends[0] @ _CHANGES.T, ends @ _RATES.T / step
+    return tuple(each.ravel() for each in (time[:-1, None] + step * _PART.T, phi, phi_dot, u_dot))
