@@ -1,6 +1,5 @@
 """A sweep is what its scenes are one by one: to the last bit, in any executor, and near exact theory."""
 
-import contextlib
 import math
 import pathlib
 import subprocess
@@ -20,7 +19,6 @@ import mjbeer
 from mjbeer import Can, LiquidWarning, Scene, Trajectory, frozen, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.output import processes
-from mjbeer.studies import sweep as room
 from mjbeer.studies import sweep_runs
 from mjbeer.studies.sweep_runs import BEYOND, DIVERGED, NO_VALUE, NOT_REACHED, NOT_YET, REFUSED, WELL
 
@@ -29,10 +27,6 @@ INCLINES, FILLS = np.radians([3.0, 11.0, 20.0]), np.array([0.2, 0.5, 0.7, 0.95])
 
 def sweep_of_sliding(make: Callable[..., Scene] = sliding, duration: float = 1.0, **others: Any) -> xarray.Dataset:
     return mjbeer.sweep(make, duration, 1.0, **({"tolerance": 1e-6, "incline": INCLINES, "fill": FILLS} | others))
-
-
-def metal(incline: float, fill: float) -> Scene:
-    return sliding(incline, fill, Can.sheet_metal())
 
 
 def made_of_u(u: float) -> Scene:
@@ -59,12 +53,10 @@ def named(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
     "setting",
     [
         {"tolerance": 1e-6},
-        {"integrator": "DOP853", "timestep": 0.02},
         {"integrator": "RK4", "timestep": 3e-3},
         {"integrator": "Euler", "rolling": "contact", "friction": 0.4},
         {"tolerance": 1e-8, "rolling": "equality"},
         {"tolerance": 1e-6, "damping": 10.0, "drag": 1e-3},  # so stiff that other methods take over
-        {"integrator": "discrete", "timestep": 2e-3, "damping": 1e-4},
     ],
 )
 def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, Any]) -> None:
@@ -84,11 +76,6 @@ def test_each_scene_is_what_simulate_gives_to_the_last_bit(setting: dict[str, An
             single.record.lowest_normal,
             single.record.rolling_ends_at,
         )
-
-
-def test_a_run_ends_at_the_first_timestep_after_the_duration_as_in_simulate() -> None:
-    swept = mjbeer.sweep(frozen, 0.1, 0.7, integrator="RK4", timestep=3e-3, fill=[0.5])
-    assert swept["phi"][0] == simulate(frozen(), 0.1, 0.7, timestep=3e-3).phi[-1]
 
 
 def test_the_result_is_the_same_with_any_number_of_threads_and_in_any_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -155,6 +142,13 @@ def test_what_is_not_allowed_is_refused_before_anything_runs(
         mjbeer.sweep(**({"make": sliding, "duration": 0.1, "phi0": 1.0} | arguments))
 
 
+def test_units_and_the_call_are_attributes_and_a_run_ends_with_a_whole_timestep() -> None:
+    swept = mjbeer.sweep(frozen, 0.1, 0.7, phi_dot0=0.5, timestep=3e-3, fill=[0.5])
+    assert (swept.phi.attrs["units"], swept.fill.attrs, swept.phi0, swept.phi_dot0) == ("rad", {}, 0.7, 0.5)
+    assert (swept.make, swept.timestep, swept.duration) == ("mjbeer.theory.scenes.frozen", 3e-3, 34 * 3e-3)
+    assert swept["phi"][0] == simulate(frozen(), 0.1, 0.7, 0.5, timestep=3e-3).phi[-1]
+
+
 def test_a_combination_that_is_not_possible_is_told_and_the_others_are_there() -> None:
     swept = mjbeer.sweep(pendulum, 0.1, 1.0, tolerance=1e-6, offset=[0.01, 0.05], radius=[0.03, 0.06])
     assert swept["status"].values.tolist() == [[WELL, WELL], [REFUSED, WELL]]
@@ -193,31 +187,14 @@ def test_a_quantity_without_a_value_leaves_the_others() -> None:
     assert "broken: ZeroDivisionError: no frozen can do that" in swept.failed
 
 
-def test_units_and_the_call_are_attributes() -> None:
-    swept = sweep_of_sliding(phi_dot0=0.5)
-    assert (swept.phi.attrs["units"], swept.incline.attrs["units"]) == ("rad", "rad")
-    assert (swept.make, swept.tolerance, swept.phi0, swept.phi_dot0) == ("mjbeer.theory.scenes.sliding", 1e-6, 1.0, 0.5)
-    assert swept.phi.sel(fill=0.5).dims == ("incline",)
-
-
-def test_what_liquids_warn_of_is_said_once_and_nothing_global_is_touched() -> None:
-    seen = set()
-
+def test_what_liquids_warn_of_is_said_once() -> None:
     def honey(fill: float) -> Scene:
-        seen.add(warnings.showwarning)
         return liquid("honey", fill=fill)
 
     with warnings.catch_warnings(record=True, action="always") as told:
-        show = warnings.showwarning
-        swept = mjbeer.sweep(honey, 0.01, 1.0, tolerance=1e-6, fill=[0.4, 0.5, 0.6])
-    assert seen == {show}
-    assert len(told) == 1
+        mjbeer.sweep(honey, 0.01, 1.0, tolerance=1e-6, fill=[0.4, 0.5, 0.6])
     assert [(each.category, each.filename) for each in told] == [(LiquidWarning, __file__)]
     assert "it coats the can" in str(told[0].message)
-    with pytest.warns(LiquidWarning) as again:
-        single = simulate(honey(0.5), 0.01, 1.0, tolerance=1e-6, times=[0.01])
-    assert again[0].filename == __file__
-    assert swept["u"][1] == single.u[-1]
 
 
 class Interrupting(Executor):
@@ -235,28 +212,6 @@ class Interrupting(Executor):
         done: Future[Any] = Future()
         done.set_result(function(*arguments, **named))
         return done
-
-
-class Busy(Interrupting):
-    """Does one piece at once; those after it wait for a worker."""
-
-    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> Future[Any]:
-        self.given = [*getattr(self, "given", []), Future() if self.left == 0 else super().submit(function, *arguments)]
-        return self.given[-1]
-
-
-def test_an_interruption_between_two_pieces_leaves_no_work_behind(monkeypatch: pytest.MonkeyPatch) -> None:
-    executor = Busy(1)
-
-    def interrupt(_: str) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(room, "progress_bar", lambda *_: contextlib.nullcontext(interrupt))
-    with pytest.raises(KeyboardInterrupt):
-        sweep_of_sliding(executor=executor)
-    done, *waiting = executor.given
-    assert done.done()
-    assert [each.cancelled() for each in waiting] == [True] * 3
 
 
 @pytest.fixture
@@ -313,12 +268,9 @@ def edited(incline: float, fill: float) -> Scene:
 @pytest.mark.parametrize(
     ("other", "differs"),
     [
-        ({"duration": 0.5}, "another sweep, whose duration differ"),
-        ({"phi_dot0": 1.0}, "another sweep, whose phi_dot0 differ"),
+        ({"duration": 0.5, "phi_dot0": 1.0}, "another sweep, whose duration, phi_dot0 differ"),
         ({"fill": FILLS[:2]}, "another sweep, whose fill, quantities differ"),
-        ({"tolerance": 1e-7}, "another sweep, whose tolerance differ"),
         ({"quantity": "period"}, "another sweep, whose quantities differ"),
-        ({"make": metal}, "another sweep, whose make differ"),
         ({"make": edited}, "other results than this call, at incline.0. = 0.0523599, fill.0. = 0.2"),
     ],
 )

@@ -75,7 +75,8 @@ def html(
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data, "inline": _inline}
     made = "mjbeer paper" + " --films" * (not quick)
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
-    scenes, summary = {name: _scene(name, films.get(name)) for name in FILMS}, stability_maps.summary(maps).values()
+    scenes = {name: _scene(name, films.get(name)) for name in FILMS}
+    runs, same, _ = stability_maps.summary(maps["maps"])
     wrong, others = _misprints(validation), [name for name in stability_maps.FAMILIES if name not in _MAP]
     return environment.get_template("page.html").render(
         sketch=stories.letters(),
@@ -90,8 +91,8 @@ def html(
         maps=maps,
         map=plots[_MAP],
         other_maps={f"stability-{name}.svg": stability_maps.FAMILIES[name].title for name in others},
-        runs=round(sum(of["runs"] for of in summary)),
-        same=sum(of["as predicted"] for of in summary) / sum(of["runs"] for of in summary),
+        runs=runs,
+        same=same,
         misprints=wrong,
         kinds=Counter(claim.misprint.kind for _, claim in wrong if claim.misprint),
         quoted=[claim for claim in paper.claims() if claim.quote and not claim.misprint],

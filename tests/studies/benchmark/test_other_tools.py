@@ -81,15 +81,15 @@ FAILURES = {
 }
 
 
-@pytest.mark.parametrize("tool", BARE)
-def test_a_failure_is_raised(
-    tool: OtherTool, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize("name", FAILURES)
+def test_a_failure_is_raised(name: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+    if name in other_tools.absent():
+        pytest.skip(f"{name} is absent")
     blow_up = lambda _, state: (state[0] * state[0], 0 * state[0])  # noqa: E731
     monkeypatch.setattr(other_tools, "right_hand_side", lambda *_: blow_up)
-    run = tool.set_up(frozen(), 1.0, 0.0, TIMES, 1e-6)
+    run = OTHER_TOOLS[name].set_up(frozen(), 1.0, 0.0, TIMES, 1e-6)
     for _ in range(2):
-        with pytest.raises(DivergenceError, match=FAILURES[tool.name]):
+        with pytest.raises(DivergenceError, match=FAILURES[name]):
             run()
     assert capfd.readouterr() == ("", "")
 

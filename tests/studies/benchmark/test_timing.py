@@ -70,7 +70,7 @@ def test_a_setting_that_fails_is_a_point_with_a_reason(monkeypatch: pytest.Monke
 def test_a_tool_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
     case, lost = CASES["frozen"], np.where(CASES["frozen"].times > 1, np.nan, 0)
     for result in ((lost, 0 * case.times, 1), (0 * case.times, lost, 1)):
-        careless = other_tools.OtherTool("heyoka", (1e-3,), lambda *_, result=result: lambda: result)
+        careless = other_tools.OtherTool((1e-3,), lambda *_, result=result: lambda: result)
         monkeypatch.setitem(other_tools.OTHER_TOOLS, "heyoka", careless)
         with pytest.raises(DivergenceError, match="heyoka: the motion did not stay finite"):
             measure(case, Point(case.name, "heyoka", "", "tolerance", 1e-3), case.truth())

@@ -14,8 +14,8 @@ with A the steady acceleration of footnote 4. An evaluation needs one sine and o
 import importlib
 import math
 import warnings
-from collections.abc import Callable, Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -83,57 +83,38 @@ def coordinates(scene: Scene, states: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 class OtherTool(NamedTuple):
-    """A tool that computes the motion of a scene, with the ladder of its tolerances, finest last."""
+    """A tool that computes the motion of a scene, with its tolerances, finest last."""
 
-    name: str
     tolerances: tuple[float, ...]
     set_up: Callable[[Scene, float, float, np.ndarray, float], Integrate]
     """Takes scene, phi0 [rad], phi_dot0 [rad/s], times of samples [s] and tolerance. Equations, models and compilation
     are done there, so that only calls of what it returns need be timed."""
 
 
-def _solve_ivp(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-    from scipy.integrate import solve_ivp
+def _scipy(lsoda: bool, scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
+    """DOP853 of solve_ivp, or odeint, which is LSODA in a compiled loop."""
+    from scipy.integrate import odeint, solve_ivp
 
-    rates, begin = right_hand_side(scene), start(scene, phi0, phi_dot0)
-    span, allowed = (0.0, float(times[-1])), {"rtol": max(tolerance, _FINEST), "atol": tolerance}
-
-    def integrate() -> Motion:
-        with _warnings_as_errors():
-            evaluate = lambda time, state: rates(time, state.tolist())  # noqa: E731
-            solution = solve_ivp(evaluate, span, begin, method="DOP853", t_eval=times, **allowed)
-        if not solution.success:
-            raise DivergenceError(f"SciPy DOP853: {solution.message}")
-        return *coordinates(scene, solution.y.T), int(solution.nfev)
-
-    return integrate
-
-
-def _odeint(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-    from scipy.integrate import odeint
-
-    rates, begin = right_hand_side(scene), start(scene, phi0, phi_dot0)
-    settings = {"rtol": tolerance, "atol": tolerance, "tfirst": True, "mxstep": _MOST_STEPS}
+    rates, begin, span = right_hand_side(scene), start(scene, phi0, phi_dot0), (0.0, float(times[-1]))
+    allowed = {"rtol": tolerance if lsoda else max(tolerance, _FINEST), "atol": tolerance}
+    evaluate = lambda time, state: rates(time, state.tolist())  # noqa: E731
 
     def integrate() -> Motion:
-        with _warnings_as_errors():
-            states, told = odeint(
-                lambda time, state: rates(time, state.tolist()), begin, times, full_output=True, **settings
-            )
-        return *coordinates(scene, states), int(told["nfe"][-1])
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")  # if odeint fails, it only warns, and still returns numbers
+                if lsoda:
+                    settings = {"tfirst": True, "full_output": True, "mxstep": _MOST_STEPS}
+                    states, about = odeint(evaluate, begin, times, **settings, **allowed)
+                    return *coordinates(scene, states), int(about["nfe"][-1])
+                found = solve_ivp(evaluate, span, begin, method="DOP853", t_eval=times, **allowed)
+        except (Warning, ValueError, OverflowError) as error:  # the last two: a state is too large for a sine
+            raise DivergenceError(f"SciPy: {error}") from error
+        if not found.success:
+            raise DivergenceError(f"SciPy DOP853: {found.message}")
+        return *coordinates(scene, found.y.T), int(found.nfev)
 
     return integrate
-
-
-@contextmanager
-def _warnings_as_errors() -> Generator[None]:
-    """Turn SciPy's warnings into DivergenceErrors: if odeint fails, it only warns, and still returns numbers."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            yield
-    except (Warning, ValueError, OverflowError) as error:  # the last two: a state is too large for a sine
-        raise DivergenceError(f"SciPy: {error}") from error
 
 
 def _heyoka(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
@@ -166,18 +147,12 @@ def _whole_call(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, t
     return integrate
 
 
-def _decades(first: int, last: int) -> tuple[float, ...]:
-    return tuple(float(f"1e-{digits}") for digits in range(first, last + 1))
-
-
+_DECADES = tuple(float(f"1e-{digits}") for digits in range(3, 17))
 OTHER_TOOLS = {
-    tool.name: tool
-    for tool in (
-        OtherTool("SciPy DOP853", _decades(3, 13), _solve_ivp),
-        OtherTool("SciPy odeint", _decades(3, 13), _odeint),  # LSODA, in a compiled loop
-        OtherTool("heyoka", _decades(3, 16), _heyoka),
-        OtherTool(WHOLE, _decades(3, 12), _whole_call),
-    )
+    "SciPy DOP853": OtherTool(_DECADES[:11], partial(_scipy, False)),
+    "SciPy odeint": OtherTool(_DECADES[:11], partial(_scipy, True)),
+    "heyoka": OtherTool(_DECADES, _heyoka),
+    WHOLE: OtherTool(_DECADES[:10], _whole_call),
 }
 """All other tools by their names, whether they can be imported here or not."""
 

@@ -113,8 +113,8 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
             found[Curve(rolling, CHOSEN, TOLERANCE)] = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
     found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
     found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in USUAL.items() if supported(scene, rolling)}
-    others = (tool for tool in OTHER_TOOLS.values() if tool.name not in missing)
-    return found | {Curve(tool.name, "", TOLERANCE): tool.tolerances[::every] for tool in others}
+    others = {name: tool for name, tool in OTHER_TOOLS.items() if name not in missing}
+    return found | {Curve(name, "", TOLERANCE): tool.tolerances[::every] for name, tool in others.items()}
 
 
 def measure(case: Case, point: Point, truth: Trajectory) -> Rung:

@@ -97,29 +97,6 @@ class Outcome:
     """The run's warnings, or the text of the error that ended it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Angles:
-    """phi and u/a of a motion [rad] at some times, and where both started."""
-
-    phi: np.ndarray
-    roll: np.ndarray
-    start: tuple[float, float]
-
-    @classmethod
-    def of(cls, scene: Scene, motion: Coordinates, phi0: float, phi_dot0: float) -> "Angles":
-        """Return the angles of a motion that starts at `phi0` [rad] with `phi_dot0` [rad/s]."""
-        radius = scene.can.radius
-        return cls(motion.phi, motion.u / radius, (phi0, scene.start(phi0, phi_dot0)[0] / radius))
-
-    def off(self, phi: np.ndarray, roll: np.ndarray) -> float:
-        """Return the largest distance of `phi` and `roll` from this motion [rad], relative to the way beyond 1 rad."""
-        off = []
-        for found, right, start in zip((phi, roll), (self.phi, self.roll), self.start, strict=True):
-            turned = np.maximum.accumulate(np.abs(right - start))
-            off.append(np.max(np.abs(found - right) / np.maximum(1, turned)))
-        return float(np.max(off))
-
-
 def judge(trial: Trial) -> Outcome:
     """Simulate, and return how the run ended.
 
@@ -138,9 +115,9 @@ def judge(trial: Trial) -> Outcome:
     except REFUSALS as error:
         return Outcome(REFUSED, says=str(error))
     judges, motions, theory_distance = truth(trial.scene, run.time, trial.phi0, trial.phi_dot0)
-    radius = trial.scene.can.radius
+    radius, start = trial.scene.can.radius, _start(trial.scene, trial.phi0, trial.phi_dot0)
     # Where rounding decides, each motion is that of a start which doubles cannot tell from this one.
-    error = min((motion.off(run.phi, run.u / radius) for motion in motions), default=math.inf)
+    error = min((_off(_angles(trial.scene, run), motion, start) for motion in motions), default=math.inf)
     admitted = run.error_estimate + (run.record.slip + run.record.lift) / radius
     allowed = ERROR if trial.tolerance is None else min(ERROR, trial.tolerance + theory_distance)
     if math.isinf(theory_distance):
@@ -165,36 +142,52 @@ def _judge_attached(trial: Trial) -> Outcome:
     return Outcome(verdict, THEORY, error, ERROR, "; ".join(doubts))
 
 
-def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tuple[str, list[Angles], float]:
+def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tuple[str, list[np.ndarray], float]:
     """Return which of `JUDGES` has the motion at increasing `times` [s], the motions that a run may be near, and by how
-    much the two theories differ [rad], relative beyond 1 rad: infinitely, if by more than rounding explains."""
+    much the two theories differ [rad], relative beyond 1 rad: infinitely, if by more than rounding explains.
+
+    A motion is phi and u/a [rad], shape (2, samples).
+    """
     try:
-        first = Angles.of(scene, exact_motion(scene, times, phi0, phi_dot0), phi0, phi_dot0)
+        first = _angles(scene, exact_motion(scene, times, phi0, phi_dot0))
     except (NoLibrationError, ParameterError, ToleranceError):  # on a separatrix, and beyond what rounding leaves it
         first = None
-    second = _by_series(scene, times, phi0, phi_dot0)
+    second, start = _by_series(scene, times, phi0, phi_dot0), _start(scene, phi0, phi_dot0)
     if second is None:
         return (NOBODY, [], 0.0) if first is None else (THEORY, [first], 0.0)
     if first is None:
         return SERIES, [second, *_beside(scene, times, phi0, phi_dot0)], 0.0
-    theory_distance = second.off(first.phi, first.roll)
-    if theory_distance <= _FLOOR + _LAST_DIGITS * _ROUNDING * max(float(np.abs(second.phi).max()), abs(phi0)):
+    theory_distance = _off(first, second, start)
+    if theory_distance <= _FLOOR + _LAST_DIGITS * _ROUNDING * max(float(np.abs(second[0]).max()), abs(phi0)):
         return BOTH, [first, second], theory_distance
     beside = list(_beside(scene, times, phi0, phi_dot0))
-    effect = sum(second.off(motion.phi, motion.roll) for motion in beside)
+    effect = sum(_off(motion, second, start) for motion in beside)
     return BOTH, [first, second, *beside], theory_distance if theory_distance <= _NUDGES * effect else math.inf
 
 
-def _by_series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Angles | None:
+def _angles(scene: Scene, motion: Coordinates) -> np.ndarray:
+    return np.array([motion.phi, motion.u / scene.can.radius])
+
+
+def _start(scene: Scene, phi0: float, phi_dot0: float) -> np.ndarray:
+    return np.array([[phi0], [scene.start(phi0, phi_dot0)[0] / scene.can.radius]])
+
+
+def _off(found: np.ndarray, right: np.ndarray, start: np.ndarray) -> float:
+    """Return the largest distance of a motion from the `right` one [rad], relative to the way from the start."""
+    turned = np.maximum.accumulate(np.abs(right - start), axis=1)
+    return float((np.abs(found - right) / np.maximum(1, turned)).max())
+
+
+def _by_series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> np.ndarray | None:
     """Return the motion by Taylor series; None if it takes too many steps, or is damped."""
     try:
-        motion = None if scene.dissipates else series(scene, times, phi0, phi_dot0)
+        return None if scene.dissipates else _angles(scene, series(scene, times, phi0, phi_dot0))
     except LongMotionError:
         return None
-    return None if motion is None else Angles.of(scene, motion, phi0, phi_dot0)
 
 
-def _beside(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Iterator[Angles]:
+def _beside(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> Iterator[np.ndarray]:
     """Yield the motions, by series, of a scene and a start of which one number is nudged by a rounding.
 
     The incline is nudged by a rounding of 1 rad: it lifts or lowers the next crest by as much as rounding on the way

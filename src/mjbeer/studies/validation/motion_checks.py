@@ -1,11 +1,10 @@
-"""Checks of motions against exact theory, damped ones too, of orders, of laws towards extremes, and of drift."""
+"""Checks of motions against exact theory, damped ones too, of orders, and of drift."""
 
 import math
 from collections.abc import Iterator
 from functools import cache, partial
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.checks import Check, observed_order
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, Setting, supported
@@ -22,10 +21,6 @@ _FRICTION = 10.0
 """Friction coefficient of the runs with contact. Rolling without slipping needs 1.2 at most in any of them."""
 _METAL = Can.sheet_metal()
 """The 12-oz aluminium can of the paper's section 3."""
-_BESIDE_FOLD = np.array([1e-6, 1e-7, 1e-8])
-"""Relative distances of sin(alpha) from that of the steepest incline with an equilibrium, the fold."""
-_BESIDE_SEPARATRIX = np.array([1e-4, 1e-6, 1e-8, 1e-10])
-"""Distances [rad] of the start from the end of the largest swing, the separatrix."""
 ORDERS: dict[Integrator, tuple[int, float]] = {"RK4": (4, 0.2), DOP853: (8, 0.5)}
 """Order of each integrator, and the largest difference of the observed order from it."""
 ORDERS |= {name: (1, 0.1) for name in INTEGRATORS if name != "RK4"}
@@ -44,6 +39,10 @@ def checks() -> Iterator[Check]:
         for rolling, (bound, reason) in rests.items():
             quantity, by = f"equilibrium, {name}, 5 s at rest", f"frozen, {rolling}, RK4, 1 ms"
             yield Check("rest", quantity, partial(_creep, scene, rolling), by, bound, "rad", reason)
+    quantity, reason = "full can, let go at 1 rad: how far it comes in 10 s", "b = 0, so that the torque is 0 as well"
+    for scene, by in ((sliding(fill=1.0), "sliding"), (frozen(0.0, fill=1.0), "frozen, on the level")):
+        measure = partial(_creep, scene, "reduced", 10, 1.0)
+        yield Check("rest", quantity, measure, f"{by}, reduced, RK4, 1 ms", 0.0, "rad", reason)
     scenes = {"sliding": sliding(), "sliding, metal can": sliding(can=_METAL), "frozen": frozen()}
     scenes |= {"frozen, metal can": frozen(can=_METAL), "pendulum": pendulum()}
     errors: tuple[tuple[Rolling, float, str], ...] = (("reduced", 1e-7, "RK4"), ("equality", 1e-7, "RK4"))
@@ -111,24 +110,8 @@ def orders() -> Iterator[Check]:
         yield Check("orders", f"observed order less {expected}", measure, by, margin, "", "higher orders' terms")
 
 
-def extremes() -> Iterator[Check]:
-    """Yield the checks of laws that motions obey towards an extreme, and over very many swings."""
-    check = partial(Check, "extremes")
-    quantity, by = "frequency over distance from the fold: exponent less 1/4", "frozen, reduced, DOP853"
-    reason = "the next term of the expansion: the root of the largest distance, 1e-6"
-    yield check(quantity, lambda: _fold_exponent() - 0.25, by, 1e-3, "", reason)
-    quantity = "fall from beside the separatrix over the logarithm of the distance: slope"
-    reason = "rounding by 4e-16 rad, against a distance of 1e-10 rad"
-    for name, scene in (("sliding, metal can", sliding(can=_METAL)), ("frozen", frozen()), ("pendulum", pendulum())):
-        yield check(quantity, partial(_slope_error, scene), f"{name}, reduced, DOP853", 1e-5, "relative", reason)
-    quantity, reason = "full can, let go at 1 rad: how far it comes in 10 s", "b = 0, so that the torque is 0 as well"
-    for scene, by in ((sliding(fill=1.0), "sliding"), (frozen(0.0, fill=1.0), "frozen, on the level")):
-        measure = partial(_creep, scene, "reduced", 10, 1.0)
-        yield check(quantity, measure, f"{by}, reduced, RK4, 1 ms", 0.0, "rad", reason)
-    yield from _drifts()
-
-
-def _drifts() -> Iterator[Check]:
+def drifts() -> Iterator[Check]:
+    """Yield the checks of energy over very many swings."""
     check, free = partial(Check, "drift"), sliding(0.0, can=Can.hoop(mass=1e5))
     width = "growth of the energy's largest deviation within a swing, over 1000 swings"
     falling = "samples fall differently: a period is not quite 32 steps; the method is symplectic"
@@ -177,38 +160,6 @@ def _speed_error(scene: Scene, rolling: Rolling) -> float:
 
 def _tilt_error(scene: Scene, rolling: Rolling) -> float:
     return _steady(scene, rolling)[1] - scene.terminal_tilt()
-
-
-def fall_slope(scene: Scene) -> float:
-    """Return dt/d(ln distance) [s] for the time t to fall from beside an unstable equilibrium.
-
-    It is -1/lambda with lambda^2 = -V''/J, since the distance grows as cosh(lambda t). A period has four such times
-    where both ends of the swing are unstable equilibria, as on level ground and for any sliding load, and two for a
-    frozen load on an incline.
-    """
-    form = scene.oscillator
-    return -math.sqrt(float(form.inertia(scene.separatrix()[1])) / form.potential.curvature)
-
-
-def _fold_exponent() -> float:
-    """Return the measured exponent of the frequency over the distance from the fold."""
-    fold, frequencies = math.sin(frozen().largest_incline()), []
-    for beside in _BESIDE_FOLD:
-        scene, amplitude = frozen(math.asin(fold * (1 - beside))), 1e-3 * math.sqrt(beside)  # the well shrinks alike
-        period = scene.period(amplitude)
-        run = simulate(scene, 2.2 * period, scene.equilibrium() + amplitude, integrator=DOP853, timestep=period / 50)
-        frequencies.append(run.frequency())
-    return observed_order(_BESIDE_FOLD, np.array(frequencies))
-
-
-def _slope_error(scene: Scene) -> float:
-    """Return the relative error of dt/d(ln distance), measured in falls from beside the separatrix."""
-    top, bottom, times = scene.separatrix()[1], scene.equilibrium(), []
-    for beside in _BESIDE_SEPARATRIX:
-        period = scene.period(top - beside - bottom)
-        run = simulate(scene, period / 2, top - beside, integrator=DOP853, timestep=period / 1000)
-        times.append(CubicHermiteSpline(run.time, run.phi, run.phi_dot).solve(bottom, extrapolate=False)[0])
-    return float(np.polyfit(np.log(_BESIDE_SEPARATRIX), times, 1)[0]) / fall_slope(scene) - 1
 
 
 @cache
