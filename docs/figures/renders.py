@@ -8,7 +8,7 @@ from PIL import Image
 from mjbeer.output import files
 from mjbeer.report.films import FILMS
 
-WIDTH, HEIGHT, FPS = 720, 405, 20
+WIDTH, HEIGHT, FPS = 720, 450, 20
 """Width and height [pixels] and pictures per second."""
 
 for name, film in FILMS.items():
