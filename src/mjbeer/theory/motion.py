@@ -44,7 +44,7 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
             delta_phi, phi_dot, margin = start.move(time)
             fastest = float(np.max(np.abs(phi_dot) / np.maximum(1, np.abs(delta_phi)), initial=0.0))
             effect = start.rounding_delay(margin, latest) * fastest
-    except _EndsOnCrestError:
+    except NoLibrationError:  # exactly on the separatrix
         effect = math.inf
     if not effect <= UNCERTAIN:
         raise NoLibrationError(
@@ -78,13 +78,9 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     )
 
 
-class _EndsOnCrestError(Exception):
-    """A motion comes to rest on a crest for ever: it is exactly on a separatrix."""
-
-
 @dataclass(frozen=True)
 class Start:
-    """Where a motion starts, in distances that keep their digits beside the crest and beside the equilibrium."""
+    """The start of a motion, in angles that keep their digits beside the crest and beside the equilibrium."""
 
     oscillator: Oscillator
     potential: Potential
@@ -247,7 +243,7 @@ class Turns:
         return self.duration - since if self._uphill else since
 
     def state(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what `Arc.state` does."""
+        """Return turn, angle and phi_dot, as `Arc.state`."""
         x, passage = self._travel_time.phase(self.duration - time if self._uphill else time)
         speed = self._speed(x, self._energies[passage])
         return passage, x, -speed if self._uphill else speed
@@ -260,7 +256,7 @@ def _period(swing: list[tuple[Arc, int, float]]) -> float:
 def _swing(start: Start) -> list[tuple[Arc, int, float]]:
     """Return the paths of a swing as `_roll` does, with angles past the rest; that on the side of the start first."""
     if start.energy_above_next_crest == 0:
-        raise _EndsOnCrestError
+        raise NoLibrationError("the motion comes to rest on a crest")
     side = 1 if start.angle_past_rest >= 0 else -1
     return [(_arc(start, each), 0, -start.energy_above_next_crest) for each in (side, -side)]
 
@@ -308,7 +304,7 @@ def _roll(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]:
         energy, ahead = float(energies[0]) - drop, float(energies[0])
     if energy <= highest:
         if energy == 0 and potential.excess == 0:
-            raise _EndsOnCrestError
+            raise NoLibrationError("the motion comes to rest on a crest")
         # A load that passes the crest uphill turns behind it: the well there is shallow, or there is none.
         end = potential.turn_begins + math.tau
         lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, end)
