@@ -22,7 +22,7 @@ from mjbeer.output.terminal import Table, progress_bar
 PASSED = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
 """The verdict on a check in a terminal."""
 FAILED = " **FAIL**"
-"""What marks a check that failed in a document."""
+"""Marks a check that failed in a document."""
 _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
@@ -47,7 +47,7 @@ class Study:
 
     @property
     def about(self) -> dict[str, Any]:
-        """What the study is of."""
+        """Command, settings and machine."""
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
 

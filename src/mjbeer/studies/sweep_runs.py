@@ -57,7 +57,7 @@ STATUSES = {
 
 @dataclass(frozen=True)
 class Work:
-    """What all scenes of a sweep have in common; it is sent to where they are simulated."""
+    """The part of a sweep that all of its scenes share; it is sent to where they are simulated."""
 
     make: Callable[..., Scene]
     fixed: Mapping[str, Any]
@@ -66,7 +66,7 @@ class Work:
     times: np.ndarray
     """Times of the samples of every run [s]."""
     measures: Mapping[str, Callable[[Run], Any]]
-    """What is measured besides the quantities of every sweep."""
+    """Measures of a run besides the quantities of every sweep."""
 
     def scene(self, varied: Mapping[str, float]) -> tuple[Scene, float, float]:
         """Return the scene of some values of what varies, with its phi0 [rad] and phi_dot0 [rad/s].

@@ -1,4 +1,4 @@
-"""What a benchmark measures: cases, points on curves, and the front of those that none beats."""
+"""Cases of a benchmark, points on curves, and the Pareto front of those that none beats."""
 
 import json
 import math
@@ -82,7 +82,7 @@ class Curve:
     method: str
     """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
     parameter: str = TIMESTEP
-    """What is varied along the curve: "timestep" [s] or "tolerance"."""
+    """The parameter that varies along the curve: "timestep" [s] or "tolerance"."""
 
     @property
     def label(self) -> str:
@@ -137,8 +137,8 @@ class Point:
     @property
     def setting(self) -> str:
         """The setting in a few words: its method, and its timestep [ms] or its tolerance."""
-        knob = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
-        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{knob}".strip()
+        value = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
+        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{value}".strip()
 
 
 def milliseconds(time: float) -> str:

@@ -107,40 +107,26 @@ def bound(counts: dict[str, int]) -> float | None:
 
 def tables(found: dict[str, Any], results: Sequence[Result] = ()) -> list[Table]:
     """Return the tables of a search from its totals: known cases, regions, kinds, and the silent runs of `results`."""
-
-    def line(name: str, counts: dict[str, int], columns: Sequence[str]) -> tuple[str, ...]:
-        return (
-            name,
-            str(sum(counts.get(verdict, 0) for verdict in VERDICTS)),
-            *(f"{counts.get(key, 0)}" for key in columns),
-        )
-
     by_region, by_kind = (*VERDICTS, NEEDLESS), (*VERDICTS, *JUDGES, ABOVE, TWICE)
-    kinds = []
-    for name, counts in found["kinds"].items():
-        share = bound(counts)
-        kinds.append((*line(name, counts, by_kind), "-" if share is None else f"{share:.1g}"))
-    silent = [run for of in results if of.group == RANDOM for run in of.values["silent"]]
+    shares = ["-" if (share := bound(counts)) is None else f"{share:.1g}" for counts in found["kinds"].values()]
+    kinds = [(*row, share) for row, share in zip(_rows(found["kinds"], by_kind), shares, strict=True)]
+    last, silent = "share of silent runs below, at 95 %", [run for of in results for run in of.values.get("silent", ())]
+    wrong = [(str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]) for run in silent]
     made = [
-        Table("Known cases", ("cases", "runs", *VERDICTS), [line("all", found["known"], VERDICTS)]),
-        Table(
-            "Random runs, by model and by what judged them",
-            ("model", "runs", *VERDICTS, *JUDGES, ABOVE, TWICE, "share of silent runs below, at 95 %"),
-            kinds,
-        ),
-        Table(
-            "Random runs, by region",
-            ("region", "runs", *by_region),
-            [line(*of, by_region) for of in found["regions"].items()],
-        ),
-        Table(
-            "Silent runs, which must not be",
-            ("number", "region", "error [rad]", "trial"),
-            [(str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]) for run in silent],
-            left=(0, 1, 3),
-        ),
+        Table("Known cases", ("cases", "runs", *VERDICTS), _rows({"all": found["known"]}, VERDICTS)),
+        Table("Random runs, by model and by what judged them", ("model", "runs", *by_kind, last), kinds),
+        Table("Random runs, by region", ("region", "runs", *by_region), _rows(found["regions"], by_region)),
+        Table("Silent runs, which must not be", ("number", "region", "error [rad]", "trial"), wrong, left=(0, 1, 3)),
     ]
     return [table for table in made if table.rows]
+
+
+def _rows(counted: dict[str, dict[str, int]], columns: Sequence[str]) -> list[tuple[str, ...]]:
+    """Return a row for each name: the number of its runs, and counts."""
+    return [
+        (name, str(sum(of.get(verdict, 0) for verdict in VERDICTS)), *(str(of.get(column, 0)) for column in columns))
+        for name, of in counted.items()
+    ]
 
 
 def table_of_cases(results: Sequence[Result]) -> Table:

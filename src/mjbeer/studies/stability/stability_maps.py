@@ -58,7 +58,7 @@ class Family(NamedTuple):
     """The least and the largest timestep [s]."""
     values: tuple[float, float]
     label: str
-    """What the values are, with their unit."""
+    """The quantity that the values are of, with its unit."""
     title: str
     caption: str
 
