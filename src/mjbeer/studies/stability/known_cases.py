@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from mjbeer.exceptions import NoEquilibriumError
-from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, supported
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
@@ -32,11 +32,7 @@ class Variant(NamedTuple):
     """Name of the way: of rolling, integrator, and timestep or tolerance."""
     trial: Trial
     within: float = math.inf
-    """Largest error that the run must have [rad]."""
-    refused: bool = False
-    """Whether it must be refused, as no model can have it."""
-    sample: bool = True
-    """Whether a quick study includes it."""
+    """Largest error that the run must have [rad], unless no model can have it and it must be refused."""
 
 
 class Case(NamedTuple):
@@ -86,17 +82,16 @@ def variants(motion: Motion) -> tuple[Variant, ...]:
         return Trial(scene, motion.phi0, motion.phi_dot0, timestep=timestep, steps=steps, **setting)
 
     for rolling in ("reduced", "equality", "contact"):
-        possible = supported(scene, rolling)
         for integrator in _ALL:
             steps = _LARGE_STEPS if integrator == DOP853 else _STEPS
             trial = lasting(motion.swings * period, period / steps, rolling=rolling, integrator=integrator)
             sure = rolling in motion.sure and (integrator == "RK4" or (integrator == DOP853 and rolling == "reduced"))
             name = f"{rolling}, {integrator}, T/{steps}"
-            made.append(Variant(name, trial, ERROR if sure else math.inf, not possible, integrator == "RK4"))
+            made.append(Variant(name, trial, ERROR if sure else math.inf))
         if rolling != "contact":
             trial = lasting(motion.swings * period, period / _STEPS, rolling=rolling, tolerance=TOLERANCE)
             within = TOLERANCE if "tolerance" in motion.sure else math.inf
-            made.append(Variant(f"{rolling}, to a tolerance of {TOLERANCE:g}", trial, within, not possible))
+            made.append(Variant(f"{rolling}, to a tolerance of {TOLERANCE:g}", trial, within))
     desk = min(max(motion.swings * period, 0.1), 30.0)  # as for a can on a desk, whatever the scene
     return (*made, Variant("reduced, RK4, 1 ms", lasting(desk, 1e-3)))
 
