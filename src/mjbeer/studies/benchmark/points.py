@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import finite
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Rolling, Setting
+from mjbeer.studies.study import document
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import Scene
@@ -20,7 +20,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
-"""The benchmark that comes with mjbeer: errors to six digits, least run times."""
+"""The benchmark that comes with mjbeer: `mjbeer benchmark` wrote it."""
 INTERVAL, _SAMPLES = 32e-3, 65
 """Time between two samples [s], and their number with both ends. It is a power of two times every timestep tried with
 MuJoCo's integrators, so that all runs have the same samples without interpolation."""
@@ -173,9 +173,8 @@ class Benchmark:
 
     def json(self) -> str:
         """Return the study as JSON, with a line a point."""
-        about = json.dumps({"command": COMMAND, "settings": self.settings, "machine": self.machine})
-        points = (json.dumps(finite(asdict(point)), allow_nan=False) for point in self.points)
-        return f'{about[:-1]}, "points": [\n' + ",\n".join(points) + "\n]}\n"
+        about = {"command": COMMAND, "settings": self.settings, "machine": self.machine}
+        return document(about, "points", map(asdict, self.points))
 
     def of(self, case: str) -> list[Point]:
         """Return the points of a case that have an error and a run time."""
