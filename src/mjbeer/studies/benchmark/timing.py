@@ -75,7 +75,7 @@ def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Bench
                 gc.disable()
                 try:
                     for point, rung in rungs[case.name]:
-                        point.times.append(round(_seconds(rung.solve), 9))
+                        point.times.append(_seconds(rung.solve))
                 finally:
                     gc.enable()
     return study
