@@ -13,7 +13,6 @@ from scipy.optimize import brentq
 
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, label, name_below, note, ticks
-from mjbeer.paper.segment import area_33
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can
 from mjbeer.theory.damping import Damping
@@ -53,7 +52,7 @@ def water_in(volume: float, incline: float, friction: float = 1.0, drag: float =
     `friction` is a factor of the water's torque; with 0 there is none.
     """
     area = 1e-6 * volume / (CAN.radius**2 * CAN.length)
-    half_angle = float(brentq(lambda beta: area_33(beta) - area, 0, math.pi, xtol=1e-15))
+    half_angle = float(brentq(lambda beta: beta - math.sin(2 * beta) / 2 - area, 0, math.pi, xtol=1e-15))
     fill = math.sin(half_angle / 2) ** 2
     own = liquid_in("water", incline, fill, CAN).damping
     damping = Damping(friction * own.linear, friction * own.quadratic, holds=own.holds) if friction else 0.0

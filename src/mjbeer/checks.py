@@ -1,4 +1,4 @@
-"""What is measured, against what, with which bound, and why: of models, of the paper, and of how runs end."""
+"""Checks of models, of the paper and of how runs end: a measured error, its bound, and the reason for the bound."""
 
 import math
 from collections.abc import Callable
@@ -7,18 +7,15 @@ from typing import Any
 
 import numpy as np
 
-_AS_STATED = 0.05
-"""Largest relative difference between the measured error of what is wrong and the stated one, which has two digits."""
-
 
 @dataclass(frozen=True)
 class Result:
-    """What was measured, beside its bound."""
+    """A measured quantity, and the error that it may have."""
 
     group: str
     """The part of a study that it belongs to, or the equation of the paper."""
     name: str
-    """What was measured."""
+    """The quantity."""
     by: str = ""
     """The scene and the setting, or the witness, that it was measured with."""
     bound: float = math.inf
@@ -29,21 +26,21 @@ class Result:
     error: float | None = None
     """Size of the deviation from what is expected, in `unit`; None if there is none, or none that is finite."""
     values: dict[str, Any] = field(default_factory=dict)
-    """What else was measured, as JSON has it. What the paper has wrong has its error as "printed", and the one that it
-    must have as "expected_error"."""
+    """Other measured values, as JSON has them. For a misprint of the paper its error is "printed", and the one that it
+    must have "expected_error"."""
 
     @property
     def passed(self) -> bool:
-        """Whether the error is within its bound, which NaN never is, and what is wrong misses by what is stated."""
+        """Whether the error is within its bound, which NaN never is, and a misprint misses by what is stated."""
         if (expected := self.values.get("expected_error")) is not None:
             printed = self.values["printed"]
-            if printed is None or not abs(printed / expected - 1) <= _AS_STATED:
+            if printed is None or not abs(printed / expected - 1) <= 0.05:  # it is stated with two digits
                 return False
         return self.bound == math.inf or (self.error is not None and self.error <= self.bound)
 
-    def known(self) -> dict[str, Any]:
-        """Return the fields as JSON has them: without what is empty, and with None for what is not finite."""
-        return finite({name: value for name, value in asdict(self).items() if value not in ("", {}, math.inf)})
+    def as_json(self) -> dict[str, Any]:
+        """Return the fields as JSON has them: those that are not empty, and None for numbers that are not finite."""
+        return json_values({name: value for name, value in asdict(self).items() if value not in ("", {}, math.inf)})
 
     def summary_line(self) -> str:
         """Return the result in a line, such as one that failed."""
@@ -55,12 +52,12 @@ class Result:
         return line
 
 
-def finite(content: Any) -> Any:
+def json_values(content: Any) -> Any:
     """Return content for JSON, in which infinity and NaN are None."""
     if isinstance(content, dict):
-        return {name: finite(value) for name, value in content.items()}
+        return {name: json_values(value) for name, value in content.items()}
     if isinstance(content, (list, tuple)):
-        return [finite(value) for value in content]
+        return [json_values(value) for value in content]
     return None if isinstance(content, float) and not math.isfinite(content) else content
 
 

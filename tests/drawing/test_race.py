@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -81,9 +82,7 @@ def test_a_race_is_drawn_with_its_cans_moving_downhill() -> None:
 @pytest.mark.draws
 @pytest.mark.slow
 def test_centres_of_mass_stay_abreast_however_the_beer_swings(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The line between them keeps its direction across the board, to a pixel; the cans' axes are up to 12 mm apart."""
-    cans = [run(sliding(INCLINE), phi0, 0.6) for phi0 in (1.0, 0.0)]
-    race = Race("a comparison", lambda: cans, 0.3, 1.0, told=str, still=0.0, centres=True)
+    """The near one is where that of a beer is that does not swing; 4 pixels are 3 mm, and the axes 12 mm apart."""
     dashed, line = [], Sheet.line
 
     def keep(sheet: Sheet, places: np.ndarray, *arguments: Any, **more: Any) -> None:
@@ -92,8 +91,10 @@ def test_centres_of_mass_stay_abreast_however_the_beer_swings(monkeypatch: pytes
         line(sheet, places, *arguments, **more)
 
     monkeypatch.setattr(Sheet, "line", keep)
-    list(race.plan().draw(np.array([0.0, 0.2, 0.4]), 640, 360))
-    ways = [places[1] - places[0] for places in dashed]
-    assert len(ways) == 3
-    for way in ways:
-        assert abs(way[0] / way[1] - ways[0][0] / ways[0][1]) < 0.1
+    for near in (1.0, 0.0):
+        cans = [run(sliding(INCLINE), phi0, 0.6) for phi0 in (near, 0.0)]
+        race = Race("a comparison", partial(list, cans), 0.3, 1.0, told=str, still=0.0, centres=True)
+        list(race.plan().draw(np.array([0.0, 0.2, 0.4]), 640, 360))
+    columns = np.array(dashed)[:, 0, 0]
+    assert columns[:3] == pytest.approx(columns[3:], abs=4)
+    assert np.ptp(columns) > 50

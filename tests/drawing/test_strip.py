@@ -65,7 +65,9 @@ def test_notes_are_there_while_it_happens() -> None:
     high = run.lift > 1e-3
     assert run.time[high].min() > first > 0.83
     assert run.time[high].max() < last < 0.97
-    assert strip.spans(run, "slips")[0][0] == pytest.approx(0.73, abs=0.01)
+    slips = strip.spans(run, "slips")
+    assert len(slips) == 3  # short rests do not interrupt them
+    assert slips[0][0] == pytest.approx(0.73, abs=0.01)
     below = strip.spans(run, "heavy")
     assert all(np.cos(np.interp((first + last) / 2, run.time, run.phi)) > 0.7 for first, last in below[:3])
     assert all(

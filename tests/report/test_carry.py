@@ -80,7 +80,9 @@ def test_the_surface_rises_behind_an_accelerating_can() -> None:
 def highest(picture: np.ndarray) -> tuple[int, int]:
     """Highest rows with beer of the near can, in the left and in the right third of its width."""
     amber = (picture[..., 0] > 1.3 * picture[..., 1].astype(int)) & (picture[..., 1] > 2 * picture[..., 2].astype(int))
-    rows, columns = np.nonzero(amber[220:380])
-    third = np.ptp(columns) / 3
-    left, right = columns < columns.min() + third, columns > columns.max() - third
-    return int(rows[left].min()), int(rows[right].min())
+    rows, columns = np.nonzero(amber)
+    there = np.unique(rows)
+    near = rows > there[np.diff(there).argmax()]  # below the gap between the two cans
+    third = np.ptp(columns[near]) / 3
+    left, right = columns < columns[near].min() + third, columns > columns[near].max() - third
+    return int(rows[near & left].min()), int(rows[near & right].min())

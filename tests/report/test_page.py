@@ -97,7 +97,7 @@ def test_a_report_is_one_page_with_all_films(
     calls = stubs.draw(monkeypatch)
     folder = tmp_path / "report"
     assert main(["report", "--output", str(folder), *(["--quick"] if quick else [])]) == 0
-    assert set(os.listdir(folder)) == {"index.html", "stability-more.svg"}
+    assert set(os.listdir(folder)) == {"index.html", "live.html", "stability-more.svg"}
     text = (folder / "index.html").read_text()
     names = [*films.RACES, *(name for name in FILMS if name not in films.RACES), *([] if quick else ["told"])]
     found = [base64.b64decode(each.partition(",")[2]).decode() for each in Page(text).values("src", "source")]

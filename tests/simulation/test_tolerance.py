@@ -279,6 +279,25 @@ def test_what_rounding_does_beside_a_separatrix_is_not_taken_back() -> None:
         simulate(scene, end, phi0, tolerance=5e-11, times=np.linspace(0, end, 99))
 
 
+NEAR_ROUNDING = {
+    "a wide swing, of which the nudge was all that differed": (pendulum(incline=0.1), "reduced", 6.8, 3.05, 3.5e-12),
+    "the same of a sliding load": (sliding(0.1, 0.3), "reduced", 7.5, 2.95, 1.5e-12),
+    "the first of three runs was nudged": (
+        frozen(0.0, can=Can(0.033, 0.12, 10.0, 0.0055)),
+        *("equality", 5, 2.0, 5e-12),
+    ),
+}
+
+
+@pytest.mark.parametrize(("scene", "rolling", "end", "phi0", "tolerance"), NEAR_ROUNDING.values(), ids=NEAR_ROUNDING)
+def test_what_a_nudge_does_is_not_taken_for_rounding(
+    scene: Scene, rolling: str, end: float, phi0: float, tolerance: float
+) -> None:
+    """These were refused, though their errors were a tenth of the tolerance and less."""
+    run = simulate(scene, end, phi0, rolling=rolling, tolerance=tolerance, times=np.linspace(0, end, 99))
+    assert_kept(run, tolerance)
+
+
 def test_a_tolerance_near_rounding_is_kept_where_the_damping_has_corners() -> None:
     """It was refused: two runs agreed, and the one before was far off."""
     assert_kept(simulate(BEER, 1.2, -2.8, tolerance=1e-11), 1e-11)

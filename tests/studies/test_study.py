@@ -34,7 +34,7 @@ run(checks, None, "mjbeer test", {})
 def test_a_result_passes_within_its_bound(error: float | None, bound: float, passed: bool) -> None:
     result = Result("g", "n", bound=bound, error=error)
     assert result.passed is passed
-    assert Result(**json.loads(json.dumps(result.known()))).passed is passed
+    assert Result(**json.loads(json.dumps(result.as_json()))).passed is passed
 
 
 def test_a_deviation_has_a_sign_and_an_error_none() -> None:

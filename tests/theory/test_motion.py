@@ -6,15 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import NoLibrationError, ParameterError
-from mjbeer.theory.equations import kinetic_energy
 from mjbeer.theory.motion import UNCERTAIN, solve
 from tests.support import taylor
-from tests.support.scenes import METAL, SCENES, scenes
+from tests.support.scenes import METAL, SCENES
 from tests.support.taylor import mp
 
 Case = tuple[Scene, float, float, np.ndarray]
@@ -98,23 +95,15 @@ def test_small_swings(scene: Scene) -> None:
 
 def compare(cases: list[Case], relative: float = 0.0) -> None:
     for scene, phi0, phi_dot0, time in cases:
-        turned, _, rate, _ = taylor.motion(scene, time, phi0, phi_dot0).astype(float).T
-        motion = exact(scene, time, phi0, phi_dot0)
-        bound = relative * np.abs(turned[-1]) if relative else ANGLE
-        assert np.abs(motion.phi - phi0 - turned).max() < bound
-        assert np.abs(motion.phi_dot - rate).max() < (1e-11 * np.abs(rate).max() if relative else RATE)
-
-
-@taylor.NEEDED
-@pytest.mark.slow
-def test_hundred_swings() -> None:
-    cases = []
-    for scene in SCENES.values():
-        rest, (low, high) = scene.equilibrium(), scene.separatrix()
-        for share, phi_dot0 in ((0.5, 0.0), (-0.9, 0.0), (0.6, 1e-6), (0.0, -3.0)):
-            phi0 = rest + share * (high - rest if share > 0 else rest - low)
-            cases.append((scene, phi0, phi_dot0, np.array([0.3, 49.62, 99.9]) * scene.period(1.0)))
-    compare(cases)
+        delta_phi, u, rate, speed = taylor.motion(scene, time, phi0, phi_dot0).astype(float).T
+        motion, radius = exact(scene, time, phi0, phi_dot0), scene.can.radius
+        bound = relative * np.abs(delta_phi[-1]) if relative else ANGLE
+        fastest = 1e-11 * np.abs(rate).max() if relative else RATE
+        # The axis comes down with a constant acceleration, besides what the load does to it.
+        assert np.abs(motion.phi - phi0 - delta_phi).max() < bound
+        assert np.abs(motion.u - u).max() < bound * max(radius, np.abs(u).max())
+        assert np.abs(motion.phi_dot - rate).max() < fastest
+        assert np.abs(motion.u_dot - speed).max() < fastest * max(radius, np.abs(speed).max())
 
 
 ROLLS = [
@@ -158,10 +147,14 @@ TURNS = [  # and about the time [s] of a hundred of them
 
 @taylor.NEEDED
 @pytest.mark.slow
-def test_a_hundred_turns() -> None:
-    cases = [(*each, time * np.array([0.1, 0.77, 1.0])) for *each, time in TURNS]
-    compare(cases, RELATIVE)
-    assert min(abs(exact(scene, time, *start).phi[-1]) for scene, *start, time in cases) > 625
+def test_a_hundred_turns_and_swings() -> None:
+    compare([(*each, time * np.array([0.1, 0.77, 1.0])) for *each, time in TURNS], RELATIVE)
+    swings = []
+    for scene in SCENES.values():
+        (low, high), time = scene.separatrix(), np.array([0.3, 49.62, 99.9]) * scene.period(1.0)
+        for share, phi_dot0 in ((0.75, 0.0), (0.05, 0.0), (0.8, 1e-6), (0.5, -3.0)):
+            swings.append((scene, low + share * (high - low), phi_dot0, time))
+    compare(swings)
 
 
 @pytest.mark.parametrize("incline", [0.0, 0.1, -0.1])
@@ -253,32 +246,6 @@ def test_beside_the_steepest_incline() -> None:
     assert len(found) > 0.5 * len(cases)  # others turn so often that the witness takes more steps
     assert found.max() < UNCERTAIN
     assert np.quantile(found, 0.9) < BESIDE_STEEPEST
-
-
-@pytest.mark.slow
-@settings(max_examples=60, deadline=None, derandomize=True)
-@given(scenes(), st.floats(-6, 6), st.floats(-8, 8))
-def test_energy_and_momentum(scene: Scene, phi0: float, swing: float) -> None:
-    can, load = scene.can, scene.load
-    clock = math.sqrt(can.radius / scene.gravity)
-    motion = exact(scene, np.linspace(0, 10 * clock, 50), phi0, swing / clock)
-    weight = scene.gravity * (scene.mass * np.abs(motion.u).max() + load.mass * can.radius)
-    # phi has angles of up to 100 rad behind it, and J depends on it.
-    assert np.ptp(motion.energy) < 100 * ROUNDING * (kinetic_energy(motion.scene, motion).max() + weight)
-    if scene.attachment == "frozen":
-        assert (motion.u == can.radius * motion.phi).all()
-        assert (motion.u_dot == can.radius * motion.phi_dot).all()
-    else:  # (46), integrated once and twice
-        whole, moment = scene.mass + can.inertia / can.radius**2, load.mass * load.offset
-        drive = scene.mass * scene.gravity * math.sin(scene.incline)
-        impulse = whole * motion.u_dot - moment * np.cos(motion.phi) * motion.phi_dot - drive * motion.time
-        most = whole * np.abs(motion.u_dot).max() + moment * np.abs(motion.phi_dot).max()
-        assert np.ptp(impulse) <= 10 * ROUNDING * most
-        place = whole * motion.u - moment * np.sin(motion.phi) - drive * motion.time**2 / 2 - impulse[0] * motion.time
-        assert np.ptp(place) <= 20 * ROUNDING * (whole * np.abs(motion.u).max() + moment + most * motion.time[-1])
-        assert motion.u[0] == pytest.approx(load.offset * math.sin(phi0), rel=ROUNDING)  # (12): s = 0 at the start
-    assert (motion.roll == motion.u / can.radius).all()
-    assert not motion.lift.any()
 
 
 @pytest.mark.parametrize("phi0", [1e4, -1e4, 1234.5])

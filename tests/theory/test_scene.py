@@ -1,16 +1,15 @@
-"""What a can, a load and a scene refuse and take, how scenes vary, and how they are shown."""
+"""The domain of cans, loads and scenes, and how scenes are shown."""
 
 import math
 import pickle
 import re
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import mjbeer
-from mjbeer import Can, Damping, Load, Scene, exact, frozen, liquid, pendulum, sliding
+from mjbeer import Can, Damping, Load, Scene, exact, sliding
 from mjbeer.exceptions import ParameterError
 
 BEER = Load(0.2, 0.01, 1e-5)
@@ -76,14 +75,12 @@ REFUSED = [
     ("sheet thickness must be greater than 0", lambda: Can.sheet_metal(thickness=0.0)),
     ("load density must be greater than 0", lambda: sliding(density=0.0)),
     (FILL.format(math.nextafter(1, 2)), lambda: sliding(fill=math.nextafter(1, 2))),
-    (FILL.format(2), lambda: sliding().replace(fill=2)),
     ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got 1.57", lambda: sliding(math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
     ("a can without mass has no inertia, got mass 0 kg and inertia 1e-05 kg m^2", lambda: Can(inertia=1e-5)),
     ("load mass must be between 1e-09 and 1e+09 [kg], got 0.0", lambda: sliding(fill=1e-300)),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
-    ("'drag', 'load', 'attachment'; got 'fil'", lambda: sliding().replace(fil=0.3)),
 ]
 
 
@@ -106,25 +103,6 @@ def test_a_point_frozen_to_the_rim_holds_on_any_incline() -> None:
     for radius in (0.9821718891880378, 0.033, 0.1):
         scene = Scene(Can(radius), Load(1e-9, radius, 1e-9 * radius**2), 0.0, "frozen")
         assert scene.largest_incline() == math.pi / 2
-
-
-@pytest.mark.parametrize(
-    ("scene", "changes", "same"),
-    [
-        (sliding(0.2), {"fill": 0.3}, sliding(0.2, 0.3)),
-        (frozen(0.1), {"incline": 0.2, "can": Can.sheet_metal()}, frozen(0.2, can=Can.sheet_metal())),
-        (pendulum(), {"length": 0.2, "damping": 1e-3}, replace(pendulum(length=0.2), damping=1e-3)),
-        (liquid("beer", 0.1), {"incline": 0.2}, liquid("beer", 0.2)),
-        (Scene(Can(), BEER), {"incline": 0.2, "attachment": "frozen"}, Scene(Can(), BEER, 0.2, "frozen")),
-        (sliding().replace(fill=0.3), {"gravity": 1.6}, sliding(fill=0.3, gravity=1.6)),
-    ],
-)
-def test_one_thing_is_replaced(scene: Scene, changes: dict[str, object], same: Scene) -> None:
-    """By making the scene anew where its function knows the name: so a liquid has the damping of its incline."""
-    before = repr(scene)
-    assert scene.replace(**changes) == same
-    assert repr(scene) == before
-    assert scene.replace() == scene
 
 
 @pytest.mark.parametrize(

@@ -62,22 +62,6 @@ def test_the_polynomials_tell_wrong_forms_from_right_ones() -> None:
     assert weight / omega**2 > 0.1 * moment
 
 
-def test_the_numbers_of_a_half_full_can() -> None:
-    """Kept since they were first derived, by other code."""
-    can = water(modes=3)
-    assert can.frequencies(3) == pytest.approx([23.366246869, 39.810708629, 50.374736199], rel=1e-10)
-    assert can.slosh_masses() == pytest.approx([5.1187043195e-2, 1.5443355396e-3, 3.6805389162e-4], rel=1e-10)
-    assert can.pivots() == pytest.approx([0.0445568097, 0.0538118330, 0.0561341667], abs=1e-10)
-    assert can.damping_ratios() == pytest.approx([4.05462818e-3, 1.82184613e-3, 1.55151272e-3], rel=1e-8)
-    assert (can.mass, can.solid_inertia) == pytest.approx((0.205271664, 1.174667097e-4), rel=1e-9)
-    assert can.held_inertia == pytest.approx(1.737013775e-5, rel=1e-9)
-    for share, expected in (
-        (0.5, (2.225109454e-1, 1.184095140e-3, 9.878666234e-5)),
-        (2.0, (1.340301354e-1, -1.266958209e-4, 1.648270558e-5)),
-    ):
-        assert can.reaction(share * can.frequencies(1)[0]) == pytest.approx(expected, rel=1e-9)
-
-
 @pytest.mark.parametrize("depth", [0.05, 1.0, 50.0])
 def test_sums_over_all_modes(depth: float) -> None:
     """The metacentre; the sum of 2/(xi^2 - 1), whose rest after n terms is 2/(pi^2 n); and slow motion is a solid's."""

@@ -1,6 +1,6 @@
 """How a command line is read: options of scenes, starts and runs, in degrees for angles and in SI units otherwise.
 
-A scene has the options that its function in Python has, with the same defaults; only their meanings are told here.
+A scene has the options that its function in Python has, with the same defaults; only their meanings are written here.
 """
 
 import argparse
@@ -122,17 +122,17 @@ class Parser(argparse.ArgumentParser):
         """Add options."""
         self.usage = "%(prog)s [options]"
         metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
-        for name, told, default, kind, otherwise in options:
-            shown = otherwise or (f"{default:g}" if isinstance(default, float) else default)
+        for name, meaning, default, kind, otherwise in options:
+            taken = otherwise or (f"{default:g}" if isinstance(default, float) else default)
             how: dict[str, Any] = {"type": kind, "metavar": metavars[kind]} if kind in metavars else {"choices": kind}
             if isinstance(default, tuple):
                 self.usage += " [NAME ...]"
-                self.add_argument(name, nargs="*", metavar="NAME", help=f"{told} (default: {', '.join(default)})")
+                self.add_argument(name, nargs="*", metavar="NAME", help=f"{meaning} (default: {', '.join(default)})")
             elif kind is bool:
-                self.add_argument(f"--{name}", action="store_true", help=told)
+                self.add_argument(f"--{name}", action="store_true", help=meaning)
             else:
-                how |= {"help": f"{told} ({shown if shown == REQUIRED else f'default: {shown}'})"}
-                how |= {"default": default, "required": shown == REQUIRED}
+                how |= {"help": f"{meaning} ({taken if taken == REQUIRED else f'default: {taken}'})"}
+                how |= {"default": default, "required": taken == REQUIRED}
                 self.add_argument("--" + name.replace("_", "-"), **how)
 
 
@@ -193,12 +193,12 @@ def model_options(rolling: str | None = "reduced") -> tuple[Option, ...]:
 
 def run_options(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
     """Return the options of a simulation with any integrator."""
-    told = "one of MuJoCo's, by its name in MJCF, or of mjbeer's: DOP853, GaussJackson"
+    integrators = "one of MuJoCo's, by its name in MJCF, or of mjbeer's: DOP853, GaussJackson"
     return (
         *_start(numbers),
         Option("duration", "duration of the motion [s]", DURATION),
         Option("rolling", _ROLLING, "reduced", ROLLINGS),
-        Option("integrator", told, None, (*INTEGRATORS, *OWN), "RK4, or what keeps a tolerance"),
+        Option("integrator", integrators, None, (*INTEGRATORS, *OWN), "RK4, or what keeps a tolerance"),
         _TIMESTEP,
         Option("tolerance", "largest error allowed in phi and u/radius [rad]", otherwise="none"),
         _FRICTION,

@@ -49,9 +49,9 @@ def trajectory_of(given: Namespace) -> "Trajectory":
     """Simulate the scene that was asked for and return its trajectory."""
     from mjbeer.simulation.simulate import simulate
 
-    asked = scene(given)
+    thing = scene(given)
     with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # `_warn` says it
-        return simulate(asked, given.duration, **start(given), **steps(given))
+        return simulate(thing, given.duration, **start(given), **steps(given))
 
 
 @command(
@@ -102,8 +102,8 @@ def render(given: Namespace) -> int:
     # An eye can follow a turn of 1 rad from picture to picture, a sixth of a circle.
     turn = given.speed / _FPS * max(float(np.abs(rate).max()) for rate in (trajectory.roll_dot, trajectory.phi_dot))
     if turn > 1:
-        told = f"can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture"
-        say(f"note: {told}; a --speed below {given.speed / turn:.2g} shows it better", "yellow")
+        fast = f"can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture"
+        say(f"note: {fast}; a --speed below {given.speed / turn:.2g} shows it better", "yellow")
     picture = {name: getattr(given, name) for name in ("width", "height", "speed", "camera")}
     render(trajectory, given.output, fps=_FPS, **picture)
     say(f"wrote {given.output}")

@@ -155,10 +155,10 @@ def stability(given: Namespace) -> int:
     """Test stiff and extreme cases and the limits of stability, in five minutes; exit status 1 if theory disagrees."""
     from mjbeer.studies.stability import stability_study as stability
 
-    asked = [f"--{each}" for each in ("long", "quick", "maps") if getattr(given, each)]
-    if len(asked) > 1:
-        raise ParameterError(f"{' and '.join(asked)} exclude each other: take one of them, or neither")
-    extent = asked[0].strip("-") if asked else "usual"
+    extents = [each for each in ("long", "quick", "maps") if getattr(given, each)]
+    if len(extents) > 1:
+        raise ParameterError(f"--{' and --'.join(extents)} exclude each other: take one of them, or neither")
+    extent = extents[0] if extents else "usual"
     with files.locked(given.output):
         study = stability.conduct(extent, STDERR)
         stability.write(study, given.output)

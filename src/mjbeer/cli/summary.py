@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import finite
+from mjbeer.checks import json_values
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import MjbeerError
 from mjbeer.model.setting import FRICTION
@@ -22,7 +22,7 @@ _EQUATIONS = {  # which equations a motion solves, by how the can rolls
     "equality": "rolling, by a joint equality",
     "contact": "a soft contact with friction",
 }
-Row = tuple[str, Any, str, str]
+KeyFigure = tuple[str, Any, str, str]
 """A name, a value, its unit, and how text shows it: as a format, or in words where it is none."""
 
 
@@ -56,7 +56,7 @@ class Summary:
         return (f"a real can would slip {', '.join(times)}",)
 
     @cached_property
-    def rows(self) -> tuple[Row, ...]:
+    def key_figures(self) -> tuple[KeyFigure, ...]:
         """The figures in the order of the text."""
         run, radius = self.trajectory, self.trajectory.scene.can.radius
         slip, lift, normal = run.slip / radius, run.lift / radius, run.forces.normal
@@ -66,9 +66,8 @@ class Summary:
         scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
         until = self.rolls_until.items()
         frictions = [{"friction coefficient": of, "to the end": math.isinf(end), "until [s]": end} for of, end in until]
-        ends = [
-            f"until t = {end:.6g} s with friction {of:g}".replace("until t = inf s", "to the end") for of, end in until
-        ]
+        ends = [f"until t = {end:.6g} s with friction {of:g}" for of, end in until]
+        in_words = f"\n{'':<32}".join(ends).replace("until t = inf s", "to the end")
         return (
             ("rolling", run.rolling, "", "{}"),
             ("integrator", run.integrator, "", "{}"),
@@ -85,12 +84,7 @@ class Summary:
             ("least normal force needed", normal.min(), "N", "{:.4g}"),
             ("largest normal force needed", normal.max(), "N", "{:.4g}"),
             ("friction coefficient needed", run.record.needed_friction, "", _needed(run)),
-            (
-                "can roll without slipping",
-                frictions,
-                "",
-                f"\n{'':<32}".join(ends).replace("until t = inf s", "to the end"),
-            ),
+            ("can roll without slipping", frictions, "", in_words),
             *_steady(run.scene),
             ("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
             ("equations solved", solved, "", f"{'yes' if solved else 'no'}: those of {_EQUATIONS[run.rolling]}"),
@@ -101,16 +95,16 @@ class Summary:
         """Return the figures as lines of text, without those that have no number to show."""
         lines = [
             f"{name:<31} {shown.format(value)} {unit}".rstrip() if "{" in shown else f"{name:<31} {shown}"
-            for name, value, unit, shown in self.rows
-            if "{" not in shown or finite(value) is not None
+            for name, value, unit, shown in self.key_figures
+            if "{" not in shown or json_values(value) is not None
         ]
         return "\n".join(lines) + "\n"
 
     def json(self) -> str:
         """Return the figures as a JSON object, with units in the names; what is not finite becomes null."""
-        content = {f"{name} [{unit}]" if unit else name: value for name, value, unit, _ in self.rows}
+        content = {f"{name} [{unit}]" if unit else name: value for name, value, unit, _ in self.key_figures}
         content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
-        return json.dumps(finite(content), indent=2, allow_nan=False) + "\n"
+        return json.dumps(json_values(content), indent=2, allow_nan=False) + "\n"
 
 
 def _needed(run: Trajectory) -> str:
@@ -120,7 +114,7 @@ def _needed(run: Trajectory) -> str:
     return f"none is enough: {ends if math.isfinite(run.record.rolling_ends_at) else 'nothing presses (N = 0)'}"
 
 
-def _steady(scene: Scene) -> Generator[Row]:
+def _steady(scene: Scene) -> Generator[KeyFigure]:
     """Yield what takes energy from a motion, and the steady rolling to which it may come."""
     if not scene.dissipates:
         return

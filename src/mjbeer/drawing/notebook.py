@@ -13,7 +13,7 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.drawing.words import damping_in_words, in_words
-from mjbeer.theory.exact import solution
+from mjbeer.theory.exact import exact_motion
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
@@ -61,7 +61,7 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> "tuple[Ax
         panels = tuple(figure.subplots(len(names), 1, sharex=True, squeeze=False).flat)
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
-            truth = solution(scene, dense, trajectory.phi0, trajectory.phi_dot0)
+            truth = exact_motion(scene, dense, trajectory.phi0, trajectory.phi_dot0)
             for axes, name in zip(panels, names, strict=True):
                 axes.plot(dense, _values(truth, name), label="exact theory", **THEORY)
         source = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"

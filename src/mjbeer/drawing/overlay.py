@@ -123,13 +123,9 @@ def note(
     body, load = _PARTS[looks.name(motion.scene)]
     said = next((name for name, of in notes.items() if any(first <= time <= last for first, last in of)), None)
     if said:
-        words, size = strip.NOTES[said][0].format(body=body, load=load, lift=1e3 * motion.lift.max()), 1.25 * sheet.unit
-        place = 1.9 * sheet.unit, top + NOTE / 2 * sheet.unit
-        left, upper, right, lower = sheet.box(place, words, size, bold=True)
-        corners = [[left, upper], [right, upper], [right, lower], [left, lower]]
-        edge = size / 2 * np.array([[-1, -0.4], [1, -0.4], [1, 0.4], [-1, 0.4]])
-        sheet.area(np.array(corners) + edge, _PLATE, alpha=0.92)
-        sheet.text(place, words, size, bold=True)
+        words = strip.NOTES[said][0].format(body=body, load=load, lift=1e3 * motion.lift.max())
+        place = 1.2 * sheet.unit, top + NOTE / 2 * sheet.unit
+        sheet.plate(place, [(words, True, INK)], (0, 0.5), _PLATE)
 
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.

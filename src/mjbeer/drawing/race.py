@@ -13,7 +13,7 @@ from mjbeer.drawing.camera import View, in_space, scale
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
-from mjbeer.drawing.sheet import INK, Colour, Sheet
+from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.words import in_degrees
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
@@ -25,7 +25,6 @@ _MARGIN = 0.01  # margin around what must be seen, in widths of the picture
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
 _FAR = 6.0  # distance of the eye, in lengths of the race
-_LINE = 1.5  # height of a line on a plate, in units of the picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,13 +139,15 @@ class Race:
                 head(sheet, words, time, self.speed)
                 for runner, lane, u in zip(runners, display.lanes, now[:, 0] * size, strict=True):
                     finish, result = results.get(runner.name, (math.inf, ""))
-                    arrived = time >= finish or (end < finish < math.inf and time >= end - self.after)
-                    said = (result if time >= finish else f"needs {finish:.2f} s", True, INK)
-                    said = said if arrived else (runner.note, False, INK)
+                    said = [(runner.note, False, INK)] * bool(runner.note)
+                    if time >= finish:
+                        said = [(result, True, INK)]
+                    elif end < finish < math.inf and time >= end - self.after:
+                        said = [(f"needs {finish:.2f} s", True, INK)]
                     # It travels with the can, and stays at the finish.
                     along = min(u, self.length) - 1.5 * RADIUS
                     column, row = view.pixel(in_space(scenes[0], along, 0.0, lane), top)
-                    draw_plate(sheet, [(runner.name, True, runner.colour), said][: 1 + bool(said[0])], column, row)
+                    sheet.plate((column, row), [(runner.name, True, runner.colour), *said], (1, 0.5))
                 if self.centres:
                     _join(sheet, view.pixel(np.array([display.centre(*of) for of in enumerate(now)]), top))
                 sheet.text((1.2 * sheet.unit, height - 1.5 * sheet.unit), self.caveat, 1.1 * sheet.unit, halo=True)
@@ -169,20 +170,3 @@ def _join(sheet: Sheet, places: np.ndarray) -> None:
     for place in places:
         sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))
     sheet.text(places[0] + sheet.unit * np.array([1.0, 1.2]), "centre of mass", 1.1 * sheet.unit, halo=True)
-
-
-def draw_plate(sheet: Sheet, lines: Sequence[tuple[str, bool, Colour]], right: float, middle: float) -> None:
-    """Draw a plate with a name and what else is said, each with whether it is bold and its colour.
-
-    The middle of the plate's right edge is given.
-    """
-    unit, written = sheet.unit, []
-    for number, (words, bold, colour) in enumerate(lines):
-        written.append((words, (1.05 if number else 1.2) * unit, colour, bold))
-    boxes = [sheet.box((right - 0.6 * unit, middle), words, size, (1, 0.5), bold) for words, size, _, bold in written]
-    left, half = min(box[0] for box in boxes) - 0.6 * unit, (len(lines) * _LINE + 0.5) * unit / 2
-    corners = [[left, middle - half], [right, middle - half], [right, middle + half], [left, middle + half]]
-    sheet.area(np.array(corners), (1.0, 1.0, 1.0), alpha=0.9)
-    for line, (words, size, colour, bold) in enumerate(written):
-        row = middle + (line - (len(lines) - 1) / 2) * _LINE * unit
-        sheet.text((left + 0.6 * unit, row), words, size, colour, bold=bold)

@@ -28,6 +28,7 @@ INK = "#1f2933"
 """Colour of texts and of lines that explain."""
 _EDGE = 2  # width of the white edge around a text that may lie on anything [pixels]
 _HEAD = 3.2  # length of an arrow's head, in widths of its line
+_LINE = 1.5  # height of a line on a plate, in units
 
 
 def require_pixels(name: str, pixels: float) -> int:
@@ -161,6 +162,26 @@ class Sheet:
         width, height = _size(words, size, bold)
         left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
         return left, top, left + width, top + height
+
+    def plate(
+        self,
+        place: np.ndarray | tuple[float, float],
+        lines: Sequence[tuple[str, bool, Colour]],
+        anchor: tuple[float, float],
+        ground: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    ) -> None:
+        """Draw a plate with lines, each with whether it is bold, and its colour; `anchor` is as for texts."""
+        unit, size = self.unit, [(1.05 if number else 1.2) * self.unit for number in range(len(lines))]
+        wide = max(
+            self.box((0, 0), words, each, bold=bold)[2] for (words, bold, _), each in zip(lines, size, strict=True)
+        )
+        width, height = wide + 1.2 * unit, (len(lines) * _LINE + 0.5) * unit
+        left, top = float(place[0]) - anchor[0] * width, float(place[1]) - anchor[1] * height
+        corners = [[left, top], [left + width, top], [left + width, top + height], [left, top + height]]
+        self.area(np.array(corners), ground, alpha=0.9)
+        for number, (words, bold, colour) in enumerate(lines):
+            row = top + ((number + 0.5) * _LINE + 0.25) * unit
+            self.text((left + 0.6 * unit, row), words, size[number], colour, bold=bold)
 
     def _pen(self, width: float, colour: Colour, alpha: float):
         pen = self._renderer.new_gc()

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.exact import solution
+from mjbeer.theory.exact import exact_motion
 from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
 
@@ -63,7 +63,7 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
     if trajectory.rolling != "exact" and trajectory.time[0] >= 0:
         times = np.linspace(trajectory.time[0], trajectory.time[-1], _SMOOTH)
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
-            theory = solution(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
+            theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
     for name in names:
         title, values, limits = QUANTITIES[name]
@@ -206,10 +206,10 @@ class Strip:
             figure = Figure(figsize=(width / 72, height / 72), dpi=72)
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
-            sides = {"left": 4.5 * self._letters / width, "right": 1 - 2 * self._letters / width}
-            between = 6 * self._letters / (width / len(charts) - 6 * self._letters)
-            low = (0.6 * unit + (1.2 if single else 2.4) * self._letters) / height
-            figure.subplots_adjust(**sides, top=1 - 1.8 * self._letters / height, bottom=low, wspace=between)
+            sides = {"left": 4.5 * letters / width, "right": 1 - 2 * letters / width}
+            between = 6 * letters / (width / len(charts) - 6 * letters)
+            low = (0.6 * unit + (1.2 if single else 2.4) * letters) / height
+            figure.subplots_adjust(**sides, top=1 - 1.8 * letters / height, bottom=low, wspace=between)
             drawn = [line for pair in zip(panels, charts, strict=True) for line in self._draw(*pair)]
             if len({line.name for line in charts[0].lines}) > 1:
                 handles, names = panels[0].get_legend_handles_labels()

@@ -1,4 +1,4 @@
-"""K. T. McDonald's paper: equations and statements as rows that are measured, its scenarios as plots and films."""
+"""K. T. McDonald's paper: equations and statements as claims that are measured, its scenarios as plots and films."""
 
 from typing import TYPE_CHECKING
 

@@ -95,7 +95,7 @@ class Motion(SceneConstants):
 def equation(text: str) -> Callable[[Any], Terms]:
     """Return what gives the terms of an equation from a motion, whose fields it names: "u - s - b*sin_phi" has three.
 
-    What is in parentheses after a sign is one term.
+    What is in parentheses after a sign is one term; functions are NumPy's.
     """
 
     def split(node: ast.expr) -> Generator[ast.expr]:
@@ -109,7 +109,8 @@ def equation(text: str) -> Callable[[Any], Terms]:
     codes = [compile(each, text, "eval") for each in terms]
 
     def evaluate(motion: Any) -> Terms:
-        named = {name: getattr(motion, name) for code in codes for name in code.co_names}
+        names = {name for code in codes for name in code.co_names}
+        named = {name: getattr(motion if hasattr(motion, name) else np, name) for name in names}
         return tuple(eval(code, named) for code in codes)
 
     return evaluate

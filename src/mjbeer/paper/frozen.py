@@ -96,7 +96,7 @@ def _acceleration(scene: Scene, phi: float) -> float:
 
 @cache
 def _rest() -> tuple[SceneConstants, float]:
-    """Return the letters, and the sine of alpha + phi where MuJoCo's acceleration changes sign, below 60 degrees."""
+    """Return the constants, and the sine of alpha + phi where MuJoCo's acceleration changes sign, below 60 degrees."""
     scene = frozen()
     phi = float(brentq(lambda phi: _acceleration(scene, phi), 0.0, math.pi / 3, xtol=1e-15))
     return SceneConstants.of(scene), math.sin(phi + scene.incline)

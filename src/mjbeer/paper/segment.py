@@ -4,8 +4,8 @@ Lengths are in can radii a, areas in a^2 and inertias in m a^2, unless a unit is
 that the beer subtends at the axis.
 """
 
-import dataclasses
 import math
+from collections.abc import Callable
 from functools import cache, partial
 from typing import Any
 
@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.model.build import build
-from mjbeer.paper.claim import Bound, Claim, Misprint, Terms, Witness
+from mjbeer.paper.claim import Bound, Claim, Misprint, Terms, Witness, equation
 from mjbeer.theory.can import ALUMINIUM, LENGTH, RADIUS, THICKNESS, Can
 from mjbeer.theory.load import BEER, Load, Segment, segment
 from mjbeer.theory.scenes import sliding
@@ -22,45 +22,28 @@ FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the formulas of section 3 are compared with quadrature, on both sides of a half-full can."""
 
 
-def area_33(beta: Any) -> Any:
-    """Return the area by the last form of eq. (33)."""
-    return (2 * beta - np.sin(2 * beta)) / 2
+_TWICE_AREA = "(2*beta - sin(2*beta))"
+"""Twice the area by the last form of eq. (33)."""
+_SECOND_36 = (
+    "4/3*(pi/4 - cos(beta)*sin(beta)/2 - arcsin(cos(beta))/2 + pi/8 + cos(beta)*sin(beta)**3/2 "
+    f"- cos(beta)*sin(beta)/4 - arcsin(cos(beta))/4)/{_TWICE_AREA}"
+)
+_THIRD_36 = f"4/3*(3*beta/4 - 3*sin(2*beta)/8 + sin(2*beta)*sin(beta)**2/{{}})/{_TWICE_AREA}"
+_LAST_36 = f"(1 + 2*sin(2*beta)*sin(beta)**2/(3*{_TWICE_AREA}))/2"
+"""I_axis/(m a^2) by the second line of eq. (36), with its integrals evaluated, its third line, and its last form."""
+_AXIAL = " - (inertia + offset**2)"  # less I_axis/(m a^2) by quadrature
 
 
-def middle_36(beta: Any, part: int = 4) -> Any:
-    """Return I_axis by the third line of eq. (36), with sin(2 beta) sin^2(beta)/`part`; 4 is right, the paper has 8."""
-    bracket = 3 * beta / 4 - 3 * np.sin(2 * beta) / 8 + np.sin(2 * beta) * np.sin(beta) ** 2 / part
-    return 2 / 3 * bracket / area_33(beta)
-
-
-def eq_36(beta: Any) -> Any:
-    """Return k = I_axis/(m a^2) by the last form of eq. (36)."""
-    return 0.5 * (1 + 2 * np.sin(2 * beta) * np.sin(beta) ** 2 / (3 * (2 * beta - np.sin(2 * beta))))
-
-
-def eq_37(beta: Any) -> Any:
-    """Return k = I_cm/(m a^2) by eq. (37)."""
-    twice = 2 * beta - np.sin(2 * beta)
-    return eq_36(beta) - 16 * np.sin(beta) ** 6 / (9 * twice**2)
-
-
-def _integral_36(beta: np.ndarray) -> np.ndarray:
-    """Return I_axis by the second line of eq. (36), with its integrals evaluated."""
-    c, s = np.cos(beta), np.sin(beta)
-    first = math.pi / 4 - c * s / 2 - np.arcsin(c) / 2
-    second = math.pi / 8 + c * s**3 / 2 - c * s / 4 - np.arcsin(c) / 4
-    return 2 / 3 * (first + second) / area_33(beta)
+def _of_segment(text: str) -> Callable[[Any], Terms]:
+    """Return an equation of a segment with half the angle beta."""
+    return equation(text.replace("beta", "half_angle"))
 
 
 @cache
 def _segments(fills: tuple[float, ...] = FILLS) -> Segment:
     """Return the segments of some fills, by quadrature, as one whose fields are arrays."""
-    columns: Any = np.transpose([dataclasses.astuple(segment(fill)) for fill in fills])
+    columns: Any = np.transpose([segment(fill) for fill in fills])
     return Segment(*columns)
-
-
-def _axial(shape: Segment) -> Any:
-    return shape.inertia + shape.offset**2
 
 
 def _chord(shape: Segment) -> Terms:
@@ -108,12 +91,10 @@ _DIGIT = "half a unit of the last digit"
 
 # fmt: off
 CLAIMS = (
-    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, lambda half: (4 / (3 * math.pi), -half.offset)),
-    Claim("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED,
-        lambda half: (0.5, -half.inertia, -(half.offset**2))),
-    Claim("(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED,
-        lambda half: (0.5 - (4 / (3 * math.pi)) ** 2, -half.inertia)),
-    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), lambda half: (0.32, -half.inertia)),
+    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, equation("4/(3*pi) - offset")),
+    Claim("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED, equation("0.5 - inertia - offset**2")),
+    Claim("(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED, equation("-inertia + (0.5 - (4/(3*pi))**2)")),
+    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), equation("0.32 - inertia")),
     Claim("(30)", "m_can", _SHELL, _ROUNDING,
         lambda shell: (2 * math.pi * RADIUS * THICKNESS * (LENGTH + RADIUS) * ALUMINIUM, -shell[0])),
     Claim("(31)", "I_can", _SHELL, _ROUNDING,
@@ -125,33 +106,32 @@ CLAIMS = (
     Claim("(32)", "h/a", Witness("chord of a circle", _segments), _CLOSED, _chord),
     Claim("(34)", "mass of the beer",
         Witness(_QUADRATURE, lambda: np.array([Load.segment(fill=fill).mass for fill in FILLS])), _CLOSED,
-        lambda mass: (RADIUS**2 * LENGTH * BEER * area_33(_segments().half_angle), -mass)),
-    Claim("(33)", "area, middle form", _FILLED, _CLOSED, lambda at: (
-        math.pi / 2 - np.cos(at.half_angle) * np.sin(at.half_angle) - np.arcsin(np.cos(at.half_angle)), -at.area)),
-    Claim("(33)", "area, last form", _FILLED, _CLOSED, lambda at: (area_33(at.half_angle), -at.area)),
-    Claim("(35)", "b, with A", _FILLED, _CLOSED,
-        lambda at: (2 * np.sin(at.half_angle) ** 3 / (3 * area_33(at.half_angle)), -at.offset)),
-    Claim("(35)", "b, last form", _FILLED, _CLOSED, lambda at: (
-        4 * np.sin(at.half_angle) ** 3 / (3 * (2 * at.half_angle - np.sin(2 * at.half_angle))), -at.offset)),
-    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, lambda at: (_integral_36(at.half_angle), -_axial(at))),
-    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, lambda at: (eq_36(at.half_angle), -_axial(at))),
-    Claim("(37)", "I_cm", _FILLED, _CLOSED, lambda at: (eq_37(at.half_angle), -at.inertia)),
+        lambda mass: (RADIUS**2 * LENGTH * BEER * sum(_of_segment(f"{_TWICE_AREA}/2")(_segments())), -mass)),
+    Claim("(33)", "area, middle form", _FILLED, _CLOSED,
+        _of_segment("-area + (pi/2 - cos(beta)*sin(beta) - arcsin(cos(beta)))")),
+    Claim("(33)", "area, last form", _FILLED, _CLOSED, _of_segment(f"{_TWICE_AREA}/2 - area")),
+    Claim("(35)", "b, with A", _FILLED, _CLOSED, _of_segment(f"2*sin(beta)**3/(3*({_TWICE_AREA}/2)) - offset")),
+    Claim("(35)", "b, last form", _FILLED, _CLOSED, _of_segment(f"4*sin(beta)**3/(3*{_TWICE_AREA}) - offset")),
+    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, _of_segment(_SECOND_36 + _AXIAL)),
+    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, _of_segment(_LAST_36 + _AXIAL)),
+    Claim("(37)", "I_cm", _FILLED, _CLOSED,
+        _of_segment(f"-inertia + ({_LAST_36} - 16*sin(beta)**6/(9*{_TWICE_AREA}**2))")),
     Claim("(36)", "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8", _FILLED, _CLOSED,
-        lambda at: (middle_36(at.half_angle), -_axial(at)),
-        Misprint(0.23, lambda at: (middle_36(at.half_angle, 8), -_axial(at)),
+        _of_segment(_THIRD_36.format(4) + _AXIAL),
+        Misprint(0.23, _of_segment(_THIRD_36.format(8) + _AXIAL),
             "The beer's inertia about the can's axis, third line",
             r"\frac{2\rho_{\text{beer}}a^4l}{3}\Bigl(\frac{3\beta}{4}-\frac{3\sin2\beta}{8}"
             r"+\frac{\sin2\beta\,\sin^2\!\beta}{<8|4>}\Bigr)")),
     Claim("(38)", "centre of mass of can and beer", Witness("MuJoCo, subtree_com", _centre_of_mass), _ROUNDING,
         lambda found: (found[1], -found[0])),
     Claim("figure of (36)", "k is 1/2 at beta = pi/2 and at pi",
-        Witness(_QUADRATURE, lambda: _segments((0.5, 1.0))), _CLOSED, lambda at: (np.full(2, 0.5), -_axial(at)),
+        Witness(_QUADRATURE, lambda: _segments((0.5, 1.0))), _CLOSED, equation("0.5" + _AXIAL),
         quote="k decreases from 1 … to 1/2 at β = π/2 …, then dips slightly and returns to k = 1/2 at β = π"),
     Claim("figure of (36)", "k is 1 for a film (fill 1e-5)", Witness(_QUADRATURE, partial(segment, 1e-5)),
-        Bound(1e-4, "the film's height"), lambda film: (1.0, -_axial(film)),
+        Bound(1e-4, "the film's height"), equation("1" + _AXIAL),
         quote="decreases from 1 (for a point mass at distance a from the axis)"),
     Claim("figure of (36)", "in between k dips, to 0.456 at 115 degrees", _THOUSAND,
-        Bound(2e-3, f"{_DIGIT}; the paper gives no number"), lambda at: (0.456, -_axial(at).min()),
+        Bound(2e-3, f"{_DIGIT}; the paper gives no number"), lambda at: (0.456, -(at.inertia + at.offset**2).min()),
         quote="then dips slightly"),
     Claim("figure of (37)", "k rises all the way: it is never below what it was", _THOUSAND, _ROUNDING,
         lambda at: (at.inertia, -np.maximum.accumulate(at.inertia)),

@@ -124,7 +124,7 @@ STORIES = (
         MotionFilm(
             story_plots.ROCKING,
             speed=0.5,
-            look=Look("Frozen beer, let go below: it rocks", ("phi", "u"), ("phi", "paths")),
+            look=Look("Frozen beer, let go below: it rocks and stays", ("phi", "u"), ("phi", "paths")),
         ),
     ),
     Story(

@@ -1,4 +1,4 @@
-"""MuJoCo as a witness: what its forward dynamics computes along a motion; and the motions that several rows share."""
+"""MuJoCo as a witness: what its forward dynamics computes along a motion; and the motions that several claims share."""
 
 import math
 from dataclasses import dataclass

@@ -13,7 +13,6 @@ from mjbeer.drawing.camera import View
 from mjbeer.drawing.carried import CarriedCans
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
-from mjbeer.drawing.race import draw_plate
 from mjbeer.drawing.scene import Painter, Scenery
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Chart, Line, Strip
@@ -130,8 +129,8 @@ class Carry:
                     highest = np.abs(run.rise[run.time <= time]).max()
                     trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
                     place = view.pixel(cans.wall(number, x, 0.0)[0] - [0.03, 0, 0], top)
-                    lines = [(move.name, True, move.colour), (f"rises by {highest:.2f} R: {trust}", False, INK)]
-                    draw_plate(sheet, lines, *place)
+                    told = f"rises by {highest:.2f} R: {trust}"
+                    sheet.plate(place, [(move.name, True, move.colour), (told, False, INK)], (1, 0.5))
                 head(sheet, words, time, self.speed)
                 strip.draw(sheet, time, height - below)
                 yield sheet.picture()

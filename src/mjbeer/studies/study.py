@@ -16,7 +16,7 @@ from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result, finite
+from mjbeer.checks import Check, Result, json_values
 from mjbeer.output.processes import pool
 from mjbeer.output.terminal import Table, progress_bar
 
@@ -110,7 +110,7 @@ def machine() -> dict[str, Any]:
 
 def document(about: dict[str, Any], name: str, rows: Iterable[dict[str, Any]]) -> str:
     """Return as JSON what a study is about, and its rows under a name, a line each, with numbers of six digits."""
-    lines = (json.dumps(finite(row), allow_nan=False) for row in rows)
+    lines = (json.dumps(json_values(row), allow_nan=False) for row in rows)
     rounded = (json.loads(line, parse_float=lambda digits: float(f"{float(digits):.6g}")) for line in lines)
     return json.dumps(about)[:-1] + f', "{name}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"
 

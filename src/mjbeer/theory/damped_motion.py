@@ -91,34 +91,34 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
         still = np.zeros_like(time)
         return phi0 + still, still, u0 + still, still
     order = np.argsort(time)
-    pace = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
+    swing_rate = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
     start = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
-    kinks = np.array([[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)).reshape(-1, 2)
-    followed = _follow(_rates_of(scene), time[order], start, pace, kinks)
+    corners = [[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)
+    followed = _follow(_rates_of(scene), time[order], start, swing_rate, np.reshape(corners, (-1, 2)))
     delta_phi, delta_roll, phi_dot, slip = followed[:, np.argsort(order)]
     return phi0 + delta_phi, phi_dot, u0 + radius * delta_roll, radius * (phi_dot + slip)
 
 
-def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kinks: np.ndarray) -> np.ndarray:
+def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float, corners: np.ndarray) -> np.ndarray:
     """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times, of shape (4, times).
 
-    The `state` is phi, phi_dot and w at time 0, `pace` is that of a swing [rad/s], and `kinks` are the sums of phi_dot
-    and w, of shape (sums, 2), whose absolute values count.
+    The `state` is phi, phi_dot and w at time 0, `swing_rate` is about that of a swing [rad/s], and `corners` are the
+    sums of phi_dot and w, of shape (sums, 2), whose absolute values count.
     """
-    now, latest, delta, farthest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
+    now, latest, deltas, largest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
     done = int(np.searchsorted(time, 0.0, "right"))
     samples = np.repeat(np.array([[0.0, 0.0, *state[1:]]]).T, len(time), axis=1)
     # What rounding of start and scene does to phi, phi_dot, w and roll: an angle of 0 stands for that of the incline.
     sensitivity = ROUNDINGS * np.array([abs(state[0]) + 1, *np.abs(state[1:]), 0.0])
     values, jacobian = rates(*state)
-    fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1]) + pace + math.sqrt(np.abs(values).sum())
+    fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1]) + swing_rate + math.sqrt(np.abs(values).sum())
     length = 1 / fastest if fastest > 0 else latest  # short beside every time that the motion has
     work, look, before = 0, _WORK // 8, 0.0
     while now < latest:
         if work >= look:
             _require_end(work, before, now, latest)
             look, before = 2 * look, now
-        length, scale = min(length, latest - now), max(pace, abs(state[1])) + np.finfo(float).tiny
+        length, scale = min(length, latest - now), max(swing_rate, abs(state[1])) + np.finfo(float).tiny
         if now + length == now:
             raise ToleranceError(
                 f"the motion cannot be followed later than {now:.6g} s of {latest:.6g} s: there it changes within the "
@@ -131,7 +131,7 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
             continue
         stages, changes = solved
         nodes = np.vstack([state[1:], stages.T])
-        if (corner := _corner(nodes, kinks)) is not None:
+        if (corner := _corner(nodes, corners)) is not None:
             length *= corner
             continue
         series = _TO_SERIES @ nodes
@@ -145,14 +145,17 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, pace: float, kink
         if until > done:
             x = 2 * (time[done:until] - now) / length - 1
             samples[:, done:until] = (legendre.legvander(x, _STAGES) @ np.hstack([angles, series])).T
-            samples[:2, done:until] += delta[:, np.newaxis]
+            samples[:2, done:until] += deltas[:, np.newaxis]
         sensitivity[[0, 3]] += length * _MATRIX[-1] @ np.array([changes[0], changes.sum(axis=0)]).T
-        ends = angles.sum(axis=0)
-        delta, state = delta + ends, np.array([reduced(state[0] + ends[0]), *stages[:, -1]])
+        step_angles = angles.sum(axis=0)
+        deltas, state = (
+            deltas + step_angles,
+            np.array([reduced(state[0] + step_angles[0]), *stages[:, -1]]),
+        )
         sensitivity[1:3] = changes[:, -1]
         sensitivity[:3] += np.copysign(ROUNDINGS * np.abs(state), sensitivity[:3])
-        farthest = np.maximum(farthest, np.abs(delta))
-        effect = float((np.abs(sensitivity[[0, 3]]) / farthest).max())
+        largest = np.maximum(largest, np.abs(deltas))
+        effect = float((np.abs(sensitivity[[0, 3]]) / largest).max())
         if not effect <= UNCERTAIN:
             raise ToleranceError(
                 f"phi is not known later than at {then:.6g} s: rounding of start and scene changes it by {effect:.2g} "
@@ -182,12 +185,12 @@ def _require_end(work: int, before: float, now: float, latest: float) -> None:
     )
 
 
-def _corner(nodes: np.ndarray, kinks: np.ndarray) -> float | None:
+def _corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     """Return the share of a step at which the first of the sums whose absolute values count passes zero inside.
 
     The `nodes` are phi_dot and w at the start and the stages, of shape (stages + 1, 2).
     """
-    sums, shares = nodes @ kinks.T, []
+    sums, shares = nodes @ corners.T, []
     # A sum has an eps of phi_dot and w, and the polynomial through the stages, whose sums each processor has in another
     # order, up to 72 in trials.
     signs = np.where(np.abs(sums) > 256 * EPS * np.abs(nodes).sum(axis=1).max(), np.sign(sums), 0.0)

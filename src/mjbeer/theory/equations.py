@@ -127,10 +127,8 @@ def rolling_forces(
     normal = scene.mass * scene.gravity * math.cos(scene.incline) + moment * (sin * phi_ddot + cos * square)
     if scene.attachment == "frozen":
         return Forces(normal, scene.downhill_weight - (scene.mass * u_ddot - moment * (cos * phi_ddot - sin * square)))
-    friction = scene.can.inertia / scene.can.radius**2 * u_ddot  # it and the damping turn the can
-    if scene.damping_law:
-        friction = friction + scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
-    return Forces(normal, friction)
+    damping = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot)) / scene.can.radius
+    return Forces(normal, scene.can.inertia / scene.can.radius**2 * u_ddot + damping)  # both turn the can
 
 
 def potential_energy(scene: Scene, motion: Coordinates) -> np.ndarray:

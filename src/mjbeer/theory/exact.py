@@ -27,11 +27,11 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
     require.warn_of_degrees(phi0)
-    return solution(scene, require.times("time", time), phi0, phi_dot0)
+    return exact_motion(scene, require.times("time", time), phi0, phi_dot0)
 
 
-def solution(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
-    """Return what `exact` returns, without a warning about the start."""
+def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> Trajectory:
+    """Return the motion of `exact`, without a warning about the start."""
     radius = scene.can.radius
     try:
         with np.errstate(over="raise", invalid="raise", divide="raise"):
@@ -60,5 +60,5 @@ def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
     If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
     error that a tolerance bounds.
     """
-    truth = solution(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
+    truth = exact_motion(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
     return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)

@@ -1,4 +1,4 @@
-"""What a real liquid does to the can: the scene that has its damping.
+"""A can with a real liquid in it: the scene that has its damping.
 
 The liquid is one lump here, as in the rest of the theory, that lies still in the rolling can. Three things drag it
 along, at a slip rate W:
@@ -39,12 +39,10 @@ NAMES: tuple[Name, ...] = get_args(Name)
 
 
 class Properties(NamedTuple):
-    """What a liquid's flow depends on."""
+    """The properties of a liquid on which its flow depends."""
 
-    density: float
-    """Density [kg/m^3]."""
-    viscosity: float
-    """Kinematic viscosity [m^2/s]."""
+    density: float  # [kg/m^3]
+    viscosity: float  # kinematic [m^2/s]
 
 
 LIQUIDS: dict[Name, Properties] = {
@@ -62,27 +60,21 @@ LIQUIDS: dict[Name, Properties] = {
     # Pa s, and a hundredth more of water does what 3.5 degrees do: it takes a third.
     "honey": Properties(1420.0, 7e-3),
 }
-"""Handbook values at 20 degrees Celsius; where samples differ, by how much is said beside them."""
+"""Handbook values at 20 degrees Celsius."""
 
-_VISCOSITY = 1e-9, 1e6
-"""Viscosities that a liquid may have [m^2/s]: that of liquid helium is 2e-8, that of pitch 2e5."""
 WALL = 0.8875
 """Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L."""
 ENDS = 2 * 0.61592
 """Von Karman's torque on two discs, over rho sqrt(nu) W^1.5 and the second moment of the area."""
 DECADE = 0.139, 1.39
-"""Slip rates, over that of the fit, between which the polynomial is as near to W^1.5 as `FIT_ERROR`."""
-FIT_ERROR = 0.0785
-"""Largest relative error of the fitted polynomial from W^1.5 there, where it has none at the slip rate of the fit. No
-polynomial with non-negative coefficients is better over a decade."""
+"""Slip rates, over that of the fit, between which the polynomial is within 7.85 % of W^1.5; at the slip rate of the fit
+it is exact. No polynomial with non-negative coefficients is better over a decade."""
 _CURVED = (1 + math.sqrt(1 - 16 / (2 + 10**0.25 + 10**-0.25) ** 2)) / 2
 """Share of the quadratic term in the torque at the slip rate of that fit. With x the slip rate over the decade's
 geometric mean it is x + x^2 times a factor: over x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and most at the ends."""
 _EDGE = 0.03
 """Length at the edges of the surface where the liquid slips or is carried along, over a: 1 mm in a 12-oz can. A third
 or three times of it changes c by a quarter."""
-_TURBULENT = 1e6
-"""Reynolds number U X/nu of the layer at its end, beyond which it is turbulent whatever the wall."""
 FILM_LOAD = 4.4427
 """Largest volume of a film that a turning wall carries round steadily, over a L sqrt(nu a W/g) (Moffatt, J. Mecanique
 16, 651, 1977). More liquid than that stays below as a pool."""
@@ -95,18 +87,12 @@ class Liquid:
     """A liquid in a can, and the damping that follows."""
 
     name: str
-    density: float
-    """Density [kg/m^3]."""
-    viscosity: float
-    """Kinematic viscosity nu [m^2/s]."""
-    law: str
-    """"thin layers", "creep" or "swing": which of the laws has the most to say in the damping."""
-    slip: float
-    """Slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground."""
-    film: float
-    """Thickness of the film that the wall carries round there, sqrt(nu a slip/g) [m]."""
-    carried: float
-    """Share of the liquid that this film can hold; if it is more than 1, all of the liquid can go round."""
+    density: float  # [kg/m^3]
+    viscosity: float  # kinematic, nu [m^2/s]
+    law: str  # "thin layers", "creep" or "swing": the law with the largest part in the damping
+    slip: float  # slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground
+    film: float  # thickness of the film that the wall carries round there, sqrt(nu a slip/g) [m]
+    carried: float  # share of the liquid that this film can hold; if it is more than 1, all of the liquid can go round
     damping: Damping
 
     def __str__(self) -> str:
@@ -131,11 +117,12 @@ def liquid(
 
     `name` is "water", "beer", "olive oil", "glycerol" or "honey", at 20 degrees Celsius; `density` [kg/m^3] and
     kinematic `viscosity` [m^2/s] replace its own. `incline` is in [rad], `fill` is h/2a of eq. (32), less than 1;
-    `drag` [kg/m] is that of the air. `liquid_in` tells what was used; the laws are those of the module `liquid`.
+    `drag` [kg/m] is that of the air. `liquid_in` has the numbers that were used; the laws are those of the module
+    `liquid`.
 
-    A `LiquidWarning` says where the damping is an order of magnitude only: where the liquid is no lump at the terminal
-    speed, as its film on the wall can hold a third of it or the wall's centrifugal acceleration exceeds g cos(alpha),
-    and where that speed is beyond the slip rates for which the damping is.
+    A `LiquidWarning` says that the damping is an order of magnitude only: the liquid is no lump at the terminal speed,
+    as its film on the wall can hold a third of it or the wall's centrifugal acceleration exceeds g cos(alpha), or that
+    speed is beyond the slip rates for which the damping is.
 
     Raises:
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.
@@ -146,17 +133,13 @@ def liquid(
         speed = scene.terminal_speed()
     except NoEquilibriumError:  # none on so steep an incline
         speed = 0.0
-    reasons = []
+    reasons, ratio, share = [], float(centrifugal_ratio(scene, speed)), _percent(used.carried)
     if used.carried > _CARRIED:
-        reasons.append(
-            f"it coats the can: the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold "
-            f"{_share(used.carried)} of the liquid"
-        )
-    if (ratio := float(centrifugal_ratio(scene, speed))) > 1:
-        reasons.append(
-            f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times "
-            "g cos(alpha), which spreads it round the can"
-        )
+        film = f"the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold {share} of the liquid"
+        reasons.append(f"it coats the can: {film}")
+    if ratio > 1:
+        at = f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times"
+        reasons.append(f"{at} g cos(alpha), which spreads it round the can")
     if reason := _no_lump(name, scene, abs(speed) / scene.can.radius, reasons, "steady rolling"):
         warn_of_liquid(reason, stacklevel=3)
     return scene
@@ -171,16 +154,17 @@ def liquid_in(
     viscosity: float | None = None,
     gravity: float = GRAVITY,
 ) -> Liquid:
-    """Return what `liquid` uses for the same arguments, with the same errors."""
+    """Return the liquid of the scene that `liquid` makes with the same arguments, with the same errors."""
+    # Liquid helium has a viscosity of 2e-8, and pitch of 2e5.
     own = LIQUIDS[require.choice("liquid", name, NAMES)]
     density = own.density if density is None else require.positive("density", density, "kg/m^3")
-    nu = own.viscosity if viscosity is None else require.within("viscosity", viscosity, *_VISCOSITY, "m^2/s")
+    nu = own.viscosity if viscosity is None else require.within("viscosity", viscosity, 1e-9, 1e6, "m^2/s")
     free = sliding(incline, fill, can, density, gravity)
     load, a, length = free.load, free.can.radius, free.can.length
     if load.offset == 0 or free.gravity == 0:
         raise ParameterError(
-            "a liquid's damping is that of a can which it fills in part, under gravity: fill must be less than 1 and "
-            f"gravity more than 0, got fill = {fill!r} and gravity = {free.gravity!r} m/s^2"
+            "the damping of a liquid is known where it fills the can in part: fill must be less than 1 and gravity "
+            f"more than 0, got fill = {fill!r} and gravity = {free.gravity!r} m/s^2"
         )
     shape = segment(require.number("fill", fill))
     moment = shape.area * (shape.inertia + shape.offset**2)  # second moment of the wetted area of an end, over a^4
@@ -197,10 +181,10 @@ def liquid_in(
     drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
     rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0
     bent = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
-    if bent > 0 and (reynolds := slip * a * arc * a / nu) > _TURBULENT:
+    if bent > 0 and (reynolds := slip * a * arc * a / nu) > 1e6:  # of the layer at its end, whatever the wall
         raise ParameterError(
-            f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}), which no law here knows: the "
-            f"viscosity is too small or the can too fast, got {nu:.4g} m^2/s in {free!r}"
+            f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}): the viscosity is too small or the "
+            f"can too fast, got {nu:.4g} m^2/s in {free!r}"
         )
     holds = DECADE[0] * slip * bent / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
     coats_at = (_CARRIED * shape.area * a / FILM_LOAD) ** 2 * free.gravity / (nu * a)
@@ -211,24 +195,20 @@ def liquid_in(
 
 
 def run_warning(scene: Scene, fastest: float, spread_at: float, turns: float) -> str | None:
-    """Return what speaks against the damping in a run of a liquid; None if nothing does, or it is no liquid's.
+    """Return the reasons to doubt the damping in a run of a liquid; None if there are none, or it is no liquid's.
 
-    `fastest` is the largest slip rate of the run [rad/s], from `spread_at` [s] on `centrifugal` was more than 1, and
-    the can has turned by so many `turns`.
+    `fastest` is the largest slip rate of the run [rad/s], from `spread_at` [s] on `centrifugal_ratio` was more than 1,
+    and the can has turned by so many `turns`.
     """
     reasons = []
     if spread_at < math.inf:
-        reasons.append(
-            f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha), "
-            "which spreads it round the can"
-        )
+        exceeds = f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha)"
+        reasons.append(f"{exceeds}, which spreads it round the can")
     # A film grows with the wall that has come up.
     carried = _CARRIED * math.sqrt(fastest / scene.damping_law.coats_at) * min(1.0, turns)
     if carried > _CARRIED:
-        reasons.append(
-            f"it coats the can: after {turns:.2g} turns at up to {fastest:.3g} rad/s the film on the wall can hold "
-            f"{_share(carried)} of it"
-        )
+        after = f"after {turns:.2g} turns at up to {fastest:.3g} rad/s"
+        reasons.append(f"it coats the can: {after} the film on the wall can hold {_percent(carried)} of it")
     return _no_lump("the liquid", scene, fastest, reasons, "the run")
 
 
@@ -237,16 +217,16 @@ def centrifugal_ratio(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | f
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
 
 
-def _share(carried: float) -> str:
+def _percent(carried: float) -> str:
     return f"{100 * carried:.0f} %" if carried < 1 else "all"
 
 
-def _no_lump(name: str, scene: Scene, slip: float, reasons: list[str], what: str) -> str | None:
-    """Return the reasons in one sentence, with a largest slip rate [rad/s] of `what` for which the damping is not."""
+def _no_lump(name: str, scene: Scene, slip: float, reasons: list[str], motion: str) -> str | None:
+    """Return the reasons in one sentence; one more is a largest slip rate [rad/s] for which the damping is not."""
     if scene.damping_law.holds is None:
         return None
     lowest, highest = scene.damping_law.holds
     if not lowest * (1 - 1e-9) <= slip <= highest:
         meant = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid, but {slip:.3g}"
-        reasons = [*reasons, f"{what} is not what the damping is for, {meant}"]
+        reasons = [*reasons, f"{motion} is not what the damping is for, {meant}"]
     return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}" if reasons else None

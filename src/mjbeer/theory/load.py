@@ -3,6 +3,7 @@
 import functools
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,20 +80,14 @@ class Load:
         return cls(mass, offset, 0.0)
 
 
-@dataclass(frozen=True)
-class Segment:
+class Segment(NamedTuple):
     """A segment of a circle of radius a, in units of a."""
 
-    half_angle: float
-    """Half of the angle that the segment subtends at the axis, beta [rad]."""
-    area: float
-    """Area over a^2, eq. (33)."""
-    offset: float
-    """Distance of the centroid from the axis over a, eq. (35)."""
-    inertia: float
-    """Moment of inertia about the centroid over mass and a^2, eq. (37)."""
-    width: float
-    """The part of it that lies across, along the flat side: the mean of x^2 over a^2."""
+    half_angle: float  # half of the angle that the segment subtends at the axis, beta [rad]
+    area: float  # over a^2, eq. (33)
+    offset: float  # distance of the centroid from the axis over a, eq. (35)
+    inertia: float  # moment of inertia about the centroid over mass and a^2, eq. (37)
+    width: float  # the part of it that lies across, along the flat side: the mean of x^2 over a^2
 
 
 @functools.lru_cache(maxsize=1024)  # a sweep has the same ones again and again

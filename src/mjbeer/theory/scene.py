@@ -3,7 +3,7 @@
 import inspect
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -94,13 +94,10 @@ class Scene:
             require.within("rate of damping", rate, *limits, "1/s", zero=True)
             require.within("rate of drag", 2 * self.drag * a / self.effective_mass, *limits, "1/s", zero=True)
 
-    def _made(self) -> tuple[Callable[..., "Scene"], dict[str, Any]]:
-        """Return the function that makes the scene, and its arguments."""
-        return self.made_by or (type(self), {each.name: getattr(self, each.name) for each in fields(self) if each.init})
-
     def __repr__(self) -> str:
         """Return the call that makes the scene, without arguments that it has by default."""
-        make, given = self._made()
+        own = {each.name: getattr(self, each.name) for each in fields(self) if each.init}
+        make, given = self.made_by or (type(self), own)
         usual = inspect.signature(make).parameters
         plain = {name: each.item() if isinstance(each, np.generic) else each for name, each in given.items()}
         arguments = (f"{name}={value!r}" for name, value in plain.items() if value != usual[name].default)
@@ -109,20 +106,6 @@ class Scene:
     def _repr_html_(self) -> str:
         """Return a table for a notebook."""
         return load_drawing[0]().scene_html(self)
-
-    def replace(self, **changes: Any) -> "Scene":
-        """Return the scene with some of its fields changed, or of the arguments of the function that made it.
-
-        `sliding().replace(fill=0.4)` is `sliding(fill=0.4)`: the load is made anew, and so is a liquid's damping.
-        """
-        make, given = self._made()
-        own = inspect.signature(make).parameters
-        for name in changes:
-            require.choice("name of a change to a scene", name, [*own, *inspect.signature(type(self)).parameters])
-        arguments = {name: value for name, value in changes.items() if name in own}
-        others = {name: value for name, value in changes.items() if name not in own}
-        scene = make(**given | arguments) if arguments else self
-        return replace(scene, **others) if others else scene
 
     @cached_property
     def damping_law(self) -> Damping:

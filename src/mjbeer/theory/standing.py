@@ -22,19 +22,13 @@ from mjbeer.theory.scene import GRAVITY
 
 QUANTITATIVE, INDICATIVE = 0.1, 0.3
 """Elevations of the surface at the wall, over the radius, up to which linear theory gives numbers, and a picture."""
-DEPTHS = 0.05, 50.0
-"""Heights of the liquid over the radius that are allowed. In thinner films viscosity is everywhere."""
 MOST_MODES = 5
-_SHAKING = 1e-6, 1e6
-"""Frequencies that are allowed [rad/s]."""
 SERIES = 4000
 """Number of terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13."""
-_THIN = 0.1
-"""Largest thickness of the layer on the walls, sqrt(2 nu/omega) over R, with which it counts as thin."""
 
 
 class Reaction(NamedTuple):
-    """What holds the liquid must give per unit of acceleration, about the liquid's centroid at rest."""
+    """The forces on the liquid per unit of acceleration of the can, about the liquid's centroid at rest."""
 
     force: np.ndarray | float
     """Force per sideways acceleration, F_X [kg]."""
@@ -45,14 +39,11 @@ class Reaction(NamedTuple):
 
 
 class Mode(NamedTuple):
-    """What the sums need of modes; heights are above the centroid."""
+    """The pendulums of the modes."""
 
-    mass: np.ndarray
-    """Slosh masses m_n [kg]."""
-    bob: np.ndarray
-    """Heights z_n of the bobs [m]."""
-    length: np.ndarray
-    """Lengths L_n of the pendulums [m]."""
+    mass: np.ndarray  # slosh masses m_n [kg]
+    bob: np.ndarray  # heights z_n of the bobs above the centroid [m]
+    length: np.ndarray  # L_n [m]
 
 
 @dataclass(frozen=True)
@@ -84,11 +75,10 @@ class Standing:
                 raise ParameterError(f"a can that stands free must have {what}, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            raise ParameterError(
-                "fill (height of the liquid over the can's length) must be between 0 and 1: a full can has no free "
-                f"surface, got {require.format_value(self.fill)}"
-            )
-        require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, *DEPTHS)
+            what = "fill (height of the liquid over the can's length) must be between 0 and 1: a full can has no free"
+            raise ParameterError(f"{what} surface, got {require.format_value(self.fill)}")
+        # In thinner films viscosity is everywhere.
+        require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         if not _is_count(self.modes) or not 0 <= self.modes <= MOST_MODES:
             raise ParameterError(f"modes must be one of 0, 1, ... {MOST_MODES}, got {require.format_value(self.modes)}")
         ratio = self.damping_ratio
@@ -173,7 +163,7 @@ class Standing:
         if isinstance(omega, (list, tuple)) or getattr(omega, "ndim", 0) > 0:
             omega = require.samples("omega", omega, "rad/s")
         for each in np.atleast_1d(omega):
-            require.within("omega", each, *_SHAKING, "rad/s")
+            require.within("omega", each, 1e-6, 1e6, "rad/s")
         omega = np.asarray(omega, float)
         series = self._modes(SERIES)
         square = omega[..., None] ** 2
@@ -183,7 +173,7 @@ class Standing:
         return Reaction(self.mass + force, coupling, self.held_inertia + moment)
 
     def fixed_moments(self) -> np.ndarray:
-        """Return what the model must have in all: the zeroth, first and second moment of mass about the centroid.
+        """Return the moments of mass of the model in all, about the centroid: the zeroth, first and second one.
 
         The modes left out are fixed at their pivots, where slow motion has them: sum(m_n L_n) to the first moment
         [kg m], sum(m_n (p_n^2 - z_n^2)) to the second [kg m^2].
@@ -239,12 +229,10 @@ def standing(
     made = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
     if modes > 0 and damping_ratio is None:
         layer = math.sqrt(2 * viscosity / made.frequencies(1)[0]) / made.can.radius
-        if layer > _THIN:
-            warn_of_liquid(
-                f"{name} is too thick for the damping of thin layers: that on the wall has "
-                f"{require.format_above(layer, _THIN)} radii, not {_THIN:g} or less; give a damping_ratio",
-                stacklevel=2,
-            )
+        if layer > 0.1:
+            radii = f"{require.format_above(layer, 0.1)} radii, not 0.1 or less"
+            thick = f"{name} is too thick for the damping of thin layers: that on the wall has {radii}"
+            warn_of_liquid(f"{thick}; give a damping_ratio", stacklevel=2)
     return made
 
 
@@ -260,7 +248,7 @@ def _roots(count: int) -> np.ndarray:
     beta = (np.arange(1, count + 1) - 0.25) * math.pi
     xi = beta - 7 / (8 * beta)
     for _ in range(6):
-        slope = jv(0, xi) - jv(1, xi) / xi  # J1'; Bessel's equation gives its derivative
-        xi = xi - slope / (-slope / xi - (1 - 1 / xi**2) * jv(1, xi))
+        derivative = jv(0, xi) - jv(1, xi) / xi  # J1'; Bessel's equation gives its own derivative
+        xi = xi - derivative / (-derivative / xi - (1 - 1 / xi**2) * jv(1, xi))
     xi.flags.writeable = False
     return xi

@@ -271,11 +271,6 @@ def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tupl
     return max(angle_distance(motion.phi, truth.phi, phi), angle_distance(motion.u / radius, truth.u / radius, rolled))
 
 
-def mean_acceleration(motion: Coordinates) -> float:
-    """Return the mean acceleration of the axis down the incline [m/s^2] of a motion that starts at rest."""
-    return float(2 * (motion.u[-1] - motion.u[0]) / motion.time[-1] ** 2)
-
-
 def _zeros(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Return the times [s] at which `rate` changes sign; in between it is the cubic with its values and derivatives."""
     before = np.flatnonzero(np.diff(rate > 0))

@@ -92,7 +92,7 @@ def test_theories_that_differ_are_silent(monkeypatch: pytest.MonkeyPatch) -> Non
     assert math.isfinite(apart)
     assert len(motions) > 2
     assert truth(frozen(), LONG, 1.0, 0.0)[2] < 1e-11
-    right = judging.solution
-    monkeypatch.setattr(judging, "solution", lambda scene, *rest: right(replace(scene, gravity=9.8101), *rest))
+    right = judging.exact_motion
+    monkeypatch.setattr(judging, "exact_motion", lambda scene, *rest: right(replace(scene, gravity=9.8101), *rest))
     assert truth(frozen(), LONG, 1.0, 0.0)[2] == math.inf
     assert judge(Trial(frozen(), 1.0)).verdict == SILENT

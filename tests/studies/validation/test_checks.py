@@ -15,7 +15,6 @@ from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
 from mjbeer.studies.validation.validate import Validation, checks
 from mjbeer.theory import exact as theory
-from mjbeer.theory import trajectory
 from mjbeer.theory.damping import Damping
 
 CHECKS = {f"{check.name} - {check.by}": check for check in checks()}
@@ -39,13 +38,11 @@ def test_checks_can_be_written() -> None:
 
 
 def test_a_wrong_motion_is_found_out() -> None:
-    """A gravity 1e-7 too strong shows in phi, in the period and in the acceleration."""
+    """A gravity 1e-6 too strong shows in phi and in the period."""
     run = simulate(sliding(gravity=9.81 * (1 + 1e-6)), 4, 1.0)
     wrong = dataclasses.replace(run, scene=sliding())
     assert theory.phi_error(wrong) > 1e-7
     assert abs(2 * math.pi / wrong.frequency() / sliding().period(1.0) - 1) > 1e-9
-    steady = simulate(sliding(gravity=9.81 * (1 + 1e-6)), 2, 0.0)
-    assert abs(trajectory.mean_acceleration(steady) / sliding().acceleration() - 1) > 1e-10
 
 
 def test_takeoff_is_the_first_sample_in_the_air() -> None:

@@ -23,7 +23,7 @@ from mjbeer.simulation.simulate import simulate
 from mjbeer.studies import attached_can
 from mjbeer.studies.stability.taylor_series import LongMotionError, series
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.exact import exact, solution
+from mjbeer.theory.exact import exact, exact_motion
 from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene
 
@@ -149,7 +149,7 @@ def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tupl
     A motion is phi and u/a [rad], shape (2, samples).
     """
     try:
-        first = _angles(scene, solution(scene, times, phi0, phi_dot0))
+        first = _angles(scene, exact_motion(scene, times, phi0, phi_dot0))
     except (NoLibrationError, ParameterError, ToleranceError):  # on a separatrix, and beyond what rounding leaves it
         first = None
     second, start = _by_series(scene, times, phi0, phi_dot0), _start(scene, phi0, phi_dot0)

@@ -52,7 +52,7 @@ def tables(study: Study) -> list[Table]:
 def to_json(study: Study) -> str:
     """Return the study as one JSON document: all results, and the totals of the search as numbers."""
     content = study.about | {"failed": [result.name for result in study.failed]}
-    content |= {"totals": search.totals(study.results), "results": [result.known() for result in study.results]}
+    content |= {"totals": search.totals(study.results), "results": [result.as_json() for result in study.results]}
     return json.dumps(content) + "\n"
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.checks import Check, Result, finite
+from mjbeer.checks import Check, Result, json_values
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.claim import CONFIRMED, CORRECTED, LIMIT
 from mjbeer.studies.study import FAILED, PASSED, machine, table
@@ -53,7 +53,7 @@ class Validation:
             for name, results in (("checks", self.results), ("audit", self.audit))
         }
         content = {"versions": machine()["versions"], "passed": self.passed, **listed}
-        return json.dumps(finite(content), indent=2, allow_nan=False) + "\n"
+        return json.dumps(json_values(content), indent=2, allow_nan=False) + "\n"
 
 
 def checks() -> list[Check]:

@@ -1,0 +1,168 @@
+"""The page of two racing cans: its physics is that of exact theory, and it needs nothing but a browser."""
+
+import json
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+import quickjs
+
+from mjbeer import Can, Scene, exact, frozen, liquid, sliding
+from mjbeer.theory import can, load
+from mjbeer.theory import liquid as liquids
+from mjbeer.theory import scene as scenes
+
+PAGE = pathlib.Path(__file__).parents[1] / "docs" / "live.html"
+TEXT = PAGE.read_text(encoding="utf-8")
+PHYSICS = TEXT.split('<script id="physics">')[1].split("</script>")[0]
+TRACK = "const DEGREE = Math.PI / 180;" + TEXT.split("// A track:")[1].partition("\n")[2].split("function take(")[0]
+INSIDE = ["no friction", "ice", *liquids.NAMES]
+# Of phi and of the distance over the radius [rad]. A step errs by some 1e-13, which motions beside a top magnify.
+AGREES = 1e-7
+
+
+def script(code: str, given: str = PHYSICS) -> Any:
+    """What an expression is after a script has run."""
+    context = quickjs.Context()
+    context.eval(given)
+    return json.loads(context.eval(f"JSON.stringify({code})"))
+
+
+def scene_of(setting: dict[str, Any]) -> Scene:
+    metal = Can.sheet_metal() if setting["metal"] else Can.massless()
+    arguments = {"incline": setting["incline"], "fill": setting["fill"], "can": metal}
+    if setting["inside"] == "no friction":
+        return sliding(**arguments)
+    return frozen(**arguments) if setting["inside"] == "ice" else liquid(setting["inside"], **arguments)
+
+
+def require_agreement(cases: list[tuple[dict[str, Any], list[float]]]) -> None:
+    motions = script(f"{json.dumps(cases)}.map(([setting, times]) => motion(setting, times))")
+    for (setting, times), found in zip(cases, motions, strict=True):
+        truth = exact(scene_of(setting), times, setting["phi0"])
+        assert found["phi"] == pytest.approx(truth.phi, rel=0, abs=AGREES), setting
+        assert found["distance"] == pytest.approx(truth.distance, rel=0, abs=AGREES * can.RADIUS), setting
+
+
+def random_cases(count: int) -> list[tuple[dict[str, Any], list[float]]]:
+    """Settings of all that can be inside, with one time or more, neither evenly spaced nor in order."""
+    random = np.random.default_rng(20261123)
+    cases = []
+    for k in range(count):
+        incline, phi0 = math.radians(random.uniform(0, 30)) * (k % 10 > 0), random.uniform(-math.pi, math.pi)
+        fill, metal = random.uniform(0.05, 1.0), bool(random.integers(2))
+        setting = {"incline": incline, "fill": fill, "inside": INSIDE[k % 7], "metal": metal, "phi0": phi0}
+        cases.append((setting, random.uniform(0, random.uniform(0.2, 4), size=random.integers(1, 20)).tolist()))
+    return cases
+
+
+@pytest.mark.parametrize(
+    "count", [pytest.param(28, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.costly)]
+)
+def test_its_motions_are_those_of_exact_theory(count: int) -> None:
+    require_agreement(random_cases(count))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("inside", ["no friction", "ice"])
+def test_so_they_are_beside_a_separatrix(inside: str) -> None:
+    """Down to 1e-4 rad, nearer than anybody can let go: beside it an error of the start grows by 1e6 within 3 s."""
+    setting = {"incline": 0.1, "fill": 0.4, "inside": inside, "metal": True}
+    ends = scene_of(setting).separatrix()
+    starts = [end + way * 10.0**-power for end in ends for way in (1, -1) for power in (2, 3, 4)]
+    require_agreement([({**setting, "phi0": start}, [0.3, 1.0, 3.0]) for start in starts])
+
+
+def test_balanced_and_full_cans_are_those_of_theory() -> None:
+    level = {"incline": 0.0, "fill": 0.5, "metal": True, "phi0": math.pi}
+    steep = {"incline": 0.2, "fill": 0.5, "inside": "no friction", "metal": False, "phi0": math.pi}
+    full = {"incline": 0.2, "fill": 1, "metal": True, "phi0": 1.0}
+    cases = [{**level, "inside": inside} for inside in INSIDE] + [steep]
+    cases += [{**full, "inside": inside} for inside in ("no friction", "ice")]
+    require_agreement([(setting, [2.0, 0.0]) for setting in cases])
+
+
+def test_its_constants_are_those_of_theory() -> None:
+    found = script("[LIQUIDS, RADIUS, LENGTH, SHEET, GRAVITY, BEER]")
+    assert found[0] == {name: each._asdict() for name, each in liquids.LIQUIDS.items()}
+    assert found[1:] == [can.RADIUS, can.LENGTH, can.THICKNESS * can.ALUMINIUM, scenes.GRAVITY, load.BEER]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "times"),
+    [
+        ({"inside": "tea"}, [1]),
+        ({"inside": "water", "fill": 1}, [1]),
+        ({"fill": 0}, [1]),
+        ({"phi0": None}, [1]),
+        ({}, [-1]),
+    ],
+)
+def test_what_is_not_allowed_is_refused(wrong: dict[str, Any], times: list[float]) -> None:
+    setting = {"incline": 0.1, "fill": 0.5, "inside": "ice", "metal": True, "phi0": 1} | wrong
+    with pytest.raises(quickjs.JSException, match="RangeError"):
+        script(f"motion({json.dumps(setting)}, {times})")
+
+
+def test_it_is_one_small_file_that_asks_for_nothing() -> None:
+    assert TEXT.count("\n") <= 450
+    assert len(TEXT.encode()) <= 60_000
+    assert "default-src 'none'" in TEXT
+    assert "://" not in TEXT
+
+
+def test_a_track_is_read_in_its_units_and_with_decimal_commas() -> None:
+    table = "Time (ms);x;along [cm];phi [°]\r\n0;;5,0;90\r\n500;;7,5;45\r\n"
+    found = script(f"readTrack({json.dumps(table)})", TRACK)
+    assert found["distance"] == [[0, 0], [0.5, pytest.approx(0.025)]]
+    assert found["phi"] == [[0, 90], [0.5, 45]]
+
+
+@pytest.mark.parametrize(
+    ("table", "sentence"),
+    [
+        ("", "its first line must name time, and along or phi; it has nothing"),
+        ("time,x\n0,1\n", "its first line must name time, and along or phi; it has “time”, “x”"),
+        ("time,along\n0,0\n1,two\n", "line 3 has “two” in the column “along”, where a number must be"),
+        ("time,along [ft]\n0,0\n1,2\n", "the unit of “along [ft]” must be one of m, cm, mm"),
+        ("t\tphi\n1\t0\n\n1\t2\n", "the time in line 4 must be 0 or more, and after that of the line before"),
+        ("t,phi\n1,0\n", "it must have 2 to 20000 rows below the names"),
+    ],
+)
+def test_a_bad_track_gets_a_sentence(table: str, sentence: str) -> None:
+    with pytest.raises(quickjs.JSException, match=re.escape(sentence)):
+        script(f"readTrack({json.dumps(table)})", TRACK)
+
+
+RACE = """<script>
+function slide(id, to) { $(id).value = to; $(id).dispatchEvent(new Event("input", {bubbles: true})); }
+slide("incline-slider", 7.1); slide("a-fill-slider", 60);
+change("a-inside", "water");
+guesses[1].click(); $("go").click();
+for (let now = last; running; now += 16) frame(now);
+</script>"""
+"""A headless browser may draw no frame; so each is asked for."""
+
+
+@pytest.mark.slow
+def test_a_browser_races_and_says_who_won(tmp_path: pathlib.Path) -> None:
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if not chromium:
+        pytest.skip("no Chromium: `apt-get install chromium` brings one")
+    page = tmp_path / "live.html"
+    page.write_text(TEXT.replace("</body>", RACE + "</body>"), encoding="utf-8")
+    command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", page.as_uri()]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
+    verdict = ran.stdout.split('id="verdict"')[1].split(">", 1)[1].split("</p>")[0]
+    time = re.match(r"<strong>Can A \(water\) wins</strong> after ([\d.]+) s\.", verdict)
+    assert time, verdict
+    assert verdict.endswith("Your guess was can B.")
+    around = [float(time[1]) - 6e-4, float(time[1]) + 6e-4]  # it is told to a thousandth
+    run = exact(liquid("water", math.radians(7.1), 0.6, Can.sheet_metal()), around, math.radians(30))
+    assert run.distance[0] < 1 < run.distance[1]
+    assert "as one lump is an order of magnitude only" in ran.stdout.split('id="limits"')[1]
