@@ -10,7 +10,7 @@ from mjbeer.checks import Check, Result
 from mjbeer.model.setting import supported
 from mjbeer.output.terminal import Table
 from mjbeer.studies.stability.judge import DOUBTED, JUDGES, REFUSED, RIGHT, SILENT, VERDICTS, judge
-from mjbeer.studies.stability.known_cases import Case, cases
+from mjbeer.studies.stability.known_cases import KnownCase, cases
 from mjbeer.studies.stability.regions import REGIONS, random_trial
 from mjbeer.theory.record import ERROR
 
@@ -42,7 +42,7 @@ def checks(extent: str, number: int = 0) -> list[Check]:
     return found
 
 
-def try_case(case: Case, quick: bool = False) -> dict[str, Any]:
+def try_case(case: KnownCase, quick: bool = False) -> dict[str, Any]:
     """Return how the variants of a known case ended, or a sample of them; "error" counts the wrong ends."""
     runs = []
     for each in case.variants:
