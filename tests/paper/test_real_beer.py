@@ -6,11 +6,13 @@ import sys
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from mjbeer import exact, sliding
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS
 from mjbeer.theory.scene import GRAVITY
+from tests.support.full_can import FullCan
 
 sys.path.append(str(pathlib.Path(__file__).parents[2] / "docs" / "figures"))
 from real_beer import CAN, DRAG, let_go, over_first_metre, times_of, water_in
@@ -74,3 +76,15 @@ def film_holds(incline: float) -> float:
     water, gravity = LIQUIDS["water"], GRAVITY
     speed = math.sqrt(gravity * math.sin(incline) * 1.0)
     return 1e6 * FILM_LOAD * math.sqrt(water.viscosity * speed / gravity) * CAN.radius * CAN.length
+
+
+def test_a_nearly_full_can_is_as_fast_as_a_full_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two theories that have nothing in common but the viscosity: of a layer that is steady, and of one that grows."""
+    monkeypatch.setattr("mjbeer.theory.liquid.ENDS", 0.0)  # the exact theory has none
+    lump = [first_metre(400.0, incline) for incline in INCLINES]
+    exactly = []
+    for incline in INCLINES:
+        full = FullCan(CAN, incline=incline)
+        time = brentq(lambda time, full=full: full.way(time)[0] - 1, 0.5, 5, xtol=1e-12)
+        exactly.append(2 / time**2 / (full.gravity * math.sin(incline)))
+    assert lump == pytest.approx(exactly, abs=4e-3)

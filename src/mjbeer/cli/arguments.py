@@ -193,6 +193,7 @@ def model_options(rolling: str | None = "reduced") -> tuple[Option, ...]:
 
 def run_options(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
     """Return the options of a simulation with any integrator."""
+    tolerance = "none" if numbers is float else "1e-6; none with an integrator"
     integrators = "one of MuJoCo's, by its name in MJCF, or of mjbeer's: DOP853, GaussJackson"
     return (
         *_start(numbers),
@@ -200,7 +201,7 @@ def run_options(numbers: Callable[[str], Any] = float) -> tuple[Option, ...]:
         Option("rolling", _ROLLING, "reduced", ROLLINGS),
         Option("integrator", integrators, None, (*INTEGRATORS, *OWN), "RK4, or what keeps a tolerance"),
         _TIMESTEP,
-        Option("tolerance", "largest error allowed in phi and u/radius [rad]", otherwise="none"),
+        Option("tolerance", "largest error allowed in phi and u/radius [rad]", otherwise=tolerance),
         _FRICTION,
     )
 

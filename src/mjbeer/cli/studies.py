@@ -54,8 +54,7 @@ _OUTPUT = (
 def sweep(given: Namespace) -> int:
     """Simulate a scene for ranges of its options, as --incline 1:20:39, which is 39 numbers from 1 to 20.
 
-    NUMBERS are one number, several as 1,2,5, or such a range. Without a tolerance and an integrator, the tolerance is
-    1e-6 rad.
+    NUMBERS are one number, several as 1,2,5, or such a range.
     """
     from mjbeer.studies.sweep import sweep
     from mjbeer.studies.sweep_runs import STATUSES, WELL
