@@ -1,6 +1,6 @@
 """Cans that are free in space: their masses, sensors, templates and exports.
 
-What the models do is measured in `studies/validation/standing.py`, whose rows are tests too.
+What the models do is measured in `studies/validation/standing_checks.py`, whose rows are tests too.
 """
 
 import math

@@ -64,22 +64,6 @@ def test_the_polynomial_is_a_step_of_the_method(integrator: str, z: complex) -> 
     assert abs(complex(by_stages(integrator, z)) - value) <= FEW * size
 
 
-@pytest.mark.parametrize("integrator", RUNGE_KUTTA)
-@pytest.mark.parametrize(("stiffness", "damping"), [(0.5, 0.0), (0.7, 4.0)])
-def test_eigenvalues_of_a_step_are_those_of_the_polynomial(integrator: str, stiffness: float, damping: float) -> None:
-    roots = np.roots([1, damping, stiffness])
-    wanted = np.sort_complex(np.polyval(polynomial(integrator)[::-1], roots))
-    found = np.sort_complex(np.linalg.eigvals(amplification(integrator, stiffness, damping)).astype(complex))
-    assert found == pytest.approx(wanted, rel=1e-12)
-
-
-def test_semi_implicit_euler_is_velocity_first() -> None:
-    stiffness, damping = 0.7, 0.3
-    q, v = 1.3, -0.4
-    new = v - stiffness * q - damping * v
-    assert amplification("Euler", stiffness, damping) @ [q, v] == pytest.approx([q + new, new], rel=FEW)
-
-
 def test_limits_on_the_imaginary_axis() -> None:
     """Bounded just below, not just above; an eigenvalue that is almost double is known to the root of rounding."""
     for integrator, limit in (("Euler", 2.0), ("discrete", 2.0), ("RK4", 2 * math.sqrt(2))):
@@ -107,17 +91,6 @@ def test_discrete_bears_every_row(timestep: float) -> None:
     ):
         assert rows.radius("discrete", row, timestep) <= 1 + 1e-12
     assert rows.stable_ratio("discrete") == math.inf
-
-
-def test_a_row_at_the_end_of_the_step_is_the_implicit_equation() -> None:
-    """With all of its force it is backward Euler."""
-    row, h = predictions.spring(3e-3, 0.6, 1.0), 1e-2
-    implicit = predictions.SoftRow(row.stiffness, row.damping, 1.0).at_end_of_step(h)
-    r, v = 0.3, -2.0
-    matrix = np.array([[1.0, -h], [h * row.stiffness, 1 + h * row.damping]])
-    new = np.linalg.solve(matrix, [r, v])
-    acceleration = -implicit.damping * v - implicit.stiffness * r
-    assert (v + h * acceleration, r + h * (v + h * acceleration)) == pytest.approx((new[1], new[0]), rel=1e-13)
 
 
 def test_errors_of_short_steps() -> None:

@@ -147,7 +147,7 @@ def benchmark(given: Namespace) -> int:
     _folder("stability"),
     _flag("long", "run the whole study: all integrators, finer maps, 20000 random runs; takes forty minutes"),
     _flag("quick", "make 250 random runs instead of 3000; takes two minutes"),
-    _flag("maps", "make only the maps of timestep and stiffness or damping, but all 34, and fine; takes three minutes"),
+    _flag("maps", "make only the maps of timestep and stiffness or damping, but all 22, and fine; takes three minutes"),
     _flag("json", "print the results as JSON"),
 )
 def stability(given: Namespace) -> int:

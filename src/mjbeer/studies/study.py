@@ -1,10 +1,11 @@
 """A study: checks that are measured on all cores, with the machine that measured them, and shown in tables."""
 
+import json
 import os
 import pathlib
 import platform
 import warnings
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
@@ -15,14 +16,14 @@ from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result
+from mjbeer.checks import Check, Result, json_values
 from mjbeer.output.processes import pool
 from mjbeer.output.terminal import Table, progress_bar
 
 PASSED = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
 """The verdict on a check in a terminal."""
 FAILED = " **FAIL**"
-"""What marks a check that failed in a document."""
+"""Marks a check that failed in a document."""
 _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
@@ -47,7 +48,7 @@ class Study:
 
     @property
     def about(self) -> dict[str, Any]:
-        """What the study is of."""
+        """Command, settings and machine."""
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
 
@@ -105,6 +106,13 @@ def machine() -> dict[str, Any]:
         "python": platform.python_version(),
         "versions": {name: version(name) for name in _PACKAGES if find_spec(name)},
     }
+
+
+def document(about: dict[str, Any], name: str, rows: Iterable[dict[str, Any]]) -> str:
+    """Return as JSON what a study is about, and its rows under a name, a line each, with numbers of six digits."""
+    lines = (json.dumps(json_values(row), allow_nan=False) for row in rows)
+    rounded = (json.loads(line, parse_float=lambda digits: float(f"{float(digits):.6g}")) for line in lines)
+    return json.dumps(about)[:-1] + f', "{name}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"
 
 
 def table(title: str, results: Sequence[Result], document: bool = False) -> Table:

@@ -199,14 +199,14 @@ def _checked(work: Work, axes: Axes) -> list[str]:
     notes: dict[str, str] = {}
 
     def problem(scene: int) -> ParameterError | None:
-        with collect_liquid_warnings() as told:
+        with collect_liquid_warnings() as warnings_of_liquids:
             try:
                 work.scene(_varied(axes, scene))
             except ParameterError as error:
                 return error
             except Exception:
                 pass
-        for note in told:
+        for note in warnings_of_liquids:
             notes.setdefault(_numberless(note), note)
         return None
 

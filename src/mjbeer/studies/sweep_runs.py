@@ -22,7 +22,7 @@ _WORKERS = 64
 """Number of workers that an executor is taken to have that does not tell, such as a cluster's."""
 
 
-class Quantity(NamedTuple):
+class RunQuantity(NamedTuple):
     """A number of a run, with its unit, and what it is in words."""
 
     of: Callable[[Run], Any]
@@ -31,18 +31,18 @@ class Quantity(NamedTuple):
 
 
 ALWAYS = {
-    "phi": Quantity(lambda run: run.phi[-1], "rad", "φ at the end"),
-    "u": Quantity(lambda run: run.u[-1], "m", "u at the end"),
-    "phi_dot": Quantity(lambda run: run.phi_dot[-1], "rad/s", "rate of φ at the end"),
-    "u_dot": Quantity(lambda run: run.u_dot[-1], "m/s", "velocity at the end"),
-    "error": Quantity(lambda run: run.error_estimate, "rad", "estimated error of φ and u/a"),
-    "lowest_normal": Quantity(lambda run: run.record.lowest_normal, "N", "lowest normal force"),
-    "friction_needed": Quantity(lambda run: run.record.needed_friction, "", "friction coefficient that rolling needs"),
-    "parting_time": Quantity(lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
-    "energy_drift": Quantity(lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
+    "phi": RunQuantity(lambda run: run.phi[-1], "rad", "φ at the end"),
+    "u": RunQuantity(lambda run: run.u[-1], "m", "u at the end"),
+    "phi_dot": RunQuantity(lambda run: run.phi_dot[-1], "rad/s", "rate of φ at the end"),
+    "u_dot": RunQuantity(lambda run: run.u_dot[-1], "m/s", "velocity at the end"),
+    "error": RunQuantity(lambda run: run.error_estimate, "rad", "estimated error of φ and u/a"),
+    "lowest_normal": RunQuantity(lambda run: run.record.lowest_normal, "N", "lowest normal force"),
+    "friction_needed": RunQuantity(lambda run: run.record.needed_friction, "", "friction coefficient needed"),
+    "parting_time": RunQuantity(lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
+    "energy_drift": RunQuantity(lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
 }
 """The quantities that every sweep has, besides whether a run is trusted and its status."""
-PERIOD = Quantity(lambda run: 2 * math.pi / run.frequency(), "s", "period of the swing")
+PERIOD = RunQuantity(lambda run: 2 * math.pi / run.frequency(), "s", "period of the swing")
 WELL, REFUSED, DIVERGED, NOT_REACHED, NO_VALUE, BEYOND, NOT_YET = 0, 1, 2, 3, 4, 5, -1
 STATUSES = {
     WELL: "all went well",
@@ -57,7 +57,7 @@ STATUSES = {
 
 @dataclass(frozen=True)
 class Work:
-    """What all scenes of a sweep have in common; it is sent to where they are simulated."""
+    """The part of a sweep that all of its scenes share; it is sent to where they are simulated."""
 
     make: Callable[..., Scene]
     fixed: Mapping[str, Any]
@@ -66,7 +66,7 @@ class Work:
     times: np.ndarray
     """Times of the samples of every run [s]."""
     measures: Mapping[str, Callable[[Run], Any]]
-    """What is measured besides the quantities of every sweep."""
+    """Measures of a run besides the quantities of every sweep."""
 
     def scene(self, varied: Mapping[str, float]) -> tuple[Scene, float, float]:
         """Return the scene of some values of what varies, with its phi0 [rad] and phi_dot0 [rad/s].

@@ -13,7 +13,7 @@ from mjbeer.studies.benchmark.points import Benchmark, Point, milliseconds
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which run times are compared with that of the best setting."""
 OTHERS = ("MuJoCo RK4", "SciPy DOP853", "SciPy odeint", "heyoka")
-"""What is compared with mjbeer's best reduced setting."""
+"""Compared with mjbeer's best reduced setting."""
 _NOTES = """
 The run time is that of one call that returns 65 samples of 2.048 s of motion, in one thread and with warm caches: the
 least of the rounds. What is done once, to build and compile a model or to compile equations, is not in it; whole calls
@@ -54,13 +54,13 @@ def tables(study: Benchmark) -> list[Table]:
 def cheapest(study: Benchmark, case: str) -> Table:
     """Return the fastest setting of a case for each error and way of rolling, with its run time and evaluations."""
     found = study.of(case)
-    ways = [way for way in ROLLINGS if any(point.model == way for point in found)]
+    rollings = [rolling for rolling in ROLLINGS if any(point.model == rolling for point in found)]
     rows = []
     for level in points.LEVELS:
-        best = [points.cheapest([point for point in found if point.model == way], level) for way in ways]
+        best = [points.cheapest([point for point in found if point.model == each], level) for each in rollings]
         cells = ["not reached" if each is None else f"{each.setting}: {milliseconds(each.time)}" for each in best]
         rows.append((f"{level:.0e} rad", *cells))
-    return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *ways), rows)
+    return Table(f"{case}: cheapest setting for an error, and its run time", ("error at most", *rollings), rows)
 
 
 def _by(study: Benchmark, case: str, name: str) -> list[Point]:

@@ -25,10 +25,10 @@ from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import integrate as simulate
 from mjbeer.theory.scene import Scene, require_no_dissipation
 
-Rates = Callable[[float, Sequence[Any]], tuple[Any, ...]]
-Motion = tuple[np.ndarray, np.ndarray, int | None]
+RightHandSide = Callable[[float, Sequence[Any]], tuple[Any, ...]]
+Samples = tuple[np.ndarray, np.ndarray, int | None]
 """phi [rad] and u [m], with one entry for each sample, and how often accelerations were evaluated, if that is known."""
-Integrate = Callable[[], Motion]
+Integrate = Callable[[], Samples]
 """A function that integrates a motion from its start at every call. It raises DivergenceError if the tool fails."""
 Function = Callable[[Any], Any]
 WHOLE = "mjbeer.simulate"
@@ -38,7 +38,7 @@ _MOST_STEPS = 100_000  # of odeint between two samples; its default is 500
 _MOST_TAYLOR_STEPS = 1_000_000  # without a limit heyoka may never end; a run over seconds takes hundreds
 
 
-def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math.cos) -> Rates:
+def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math.cos) -> RightHandSide:
     """Return the function f(t, state) that gives the rates of change of a scene's state [rad, m, and per s].
 
     Pass the state as plain floats: with NumPy's scalars the function takes four times as long. With the `sin` and `cos`
@@ -99,7 +99,7 @@ def _scipy(lsoda: bool, scene: Scene, phi0: float, phi_dot0: float, times: np.nd
     allowed = {"rtol": tolerance if lsoda else max(tolerance, _FINEST), "atol": tolerance}
     evaluate = lambda time, state: rates(time, state.tolist())  # noqa: E731
 
-    def integrate() -> Motion:
+    def integrate() -> Samples:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error")  # if odeint fails, it only warns, and still returns numbers
@@ -129,7 +129,7 @@ def _heyoka(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, toler
     equations = list(zip(variables, rates, strict=True))
     integrator = heyoka.taylor_adaptive(equations, begin.tolist(), tol=tolerance, compact_mode=False)
 
-    def integrate() -> Motion:
+    def integrate() -> Samples:
         integrator.time, integrator.state[:] = 0.0, begin
         outcome, _, _, _, _, states = integrator.propagate_grid(grid, max_steps=_MOST_TAYLOR_STEPS)
         if outcome != heyoka.taylor_outcome.time_limit:
@@ -140,7 +140,7 @@ def _heyoka(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, toler
 
 
 def _whole_call(scene: Scene, phi0: float, phi_dot0: float, times: np.ndarray, tolerance: float) -> Integrate:
-    def integrate() -> Motion:
+    def integrate() -> Samples:
         run = simulate(scene, phi0, phi_dot0, Setting(tolerance=tolerance), times)
         return run.phi, run.u, None
 

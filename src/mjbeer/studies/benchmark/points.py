@@ -1,4 +1,4 @@
-"""What a benchmark measures: cases, points on curves, and the front of those that none beats."""
+"""Cases of a benchmark, points on curves, and the Pareto front of those that none beats."""
 
 import json
 import math
@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import json_values
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Rolling, Setting
+from mjbeer.studies.study import document
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import Scene
@@ -20,7 +20,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
-"""The benchmark that comes with mjbeer: errors to six digits, least run times."""
+"""The benchmark that comes with mjbeer: `mjbeer benchmark` wrote it."""
 INTERVAL, _SAMPLES = 32e-3, 65
 """Time between two samples [s], and their number with both ends. It is a power of two times every timestep tried with
 MuJoCo's integrators, so that all runs have the same samples without interpolation."""
@@ -82,7 +82,7 @@ class Curve:
     method: str
     """The integrator, or `CHOSEN`; empty for another tool, which has its own."""
     parameter: str = TIMESTEP
-    """What is varied along the curve: "timestep" [s] or "tolerance"."""
+    """The parameter that varies along the curve: "timestep" [s] or "tolerance"."""
 
     @property
     def label(self) -> str:
@@ -137,8 +137,8 @@ class Point:
     @property
     def setting(self) -> str:
         """The setting in a few words: its method, and its timestep [ms] or its tolerance."""
-        knob = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
-        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{knob}".strip()
+        value = f"{self.value:g}" if self.parameter == TOLERANCE else milliseconds(self.value)
+        return f"{self.method} {'to ' if self.parameter == TOLERANCE else ''}{value}".strip()
 
 
 def milliseconds(time: float) -> str:
@@ -173,9 +173,8 @@ class Benchmark:
 
     def json(self) -> str:
         """Return the study as JSON, with a line a point."""
-        about = json.dumps({"command": COMMAND, "settings": self.settings, "machine": self.machine})
-        points = (json.dumps(json_values(asdict(point)), allow_nan=False) for point in self.points)
-        return f'{about[:-1]}, "points": [\n' + ",\n".join(points) + "\n]}\n"
+        about = {"command": COMMAND, "settings": self.settings, "machine": self.machine}
+        return document(about, "points", map(asdict, self.points))
 
     def of(self, case: str) -> list[Point]:
         """Return the points of a case that have an error and a run time."""

@@ -23,7 +23,7 @@ from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
-from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Motion
+from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
 from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Case, Curve, Point
 from mjbeer.studies.study import machine
 from mjbeer.theory.scene import Scene
@@ -40,7 +40,7 @@ class Rung(NamedTuple):
 
     solve: Callable[[], Any]
     """Runs once; this is what is timed."""
-    motion: Callable[[Any], Motion]
+    motion: Callable[[Any], Samples]
     """Makes phi, u and the number of evaluations from what `solve` returned."""
 
 
@@ -75,7 +75,7 @@ def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Bench
                 gc.disable()
                 try:
                     for point, rung in rungs[case.name]:
-                        point.times.append(round(_seconds(rung.solve), 9))
+                        point.times.append(_seconds(rung.solve))
                 finally:
                     gc.enable()
     return study
@@ -157,7 +157,7 @@ def _set_up(case: Case, point: Point) -> Rung:
         else:
             solve = lambda: simulator.solve(begin, times).states  # noqa: E731
 
-    def motion(states: np.ndarray) -> Motion:
+    def motion(states: np.ndarray) -> Samples:
         found, count = to_coordinates(model, scene, states, times), own.evaluations if own else None
         if point.method in INTEGRATORS:
             count = round(float(times[-1]) / value) * (4 if point.method == "RK4" else 1)

@@ -32,7 +32,7 @@ VERDICTS = RIGHT, REFUSED, DOUBTED, SILENT = "right", "refused", "doubted", "sil
 tolerance; refused if it ends in an error that states the reason; doubted if it warns, right or wrong. It is silent
 if it is trusted and wrong, which must not occur."""
 JUDGES = BOTH, THEORY, SERIES, NOBODY = "two theories", "exact theory alone", "series alone", "nobody"
-"""What can have judged a run. The series know no damping; exact theory refuses motions on a separatrix."""
+"""The judges that a run can have. The series know no damping; exact theory refuses motions on a separatrix."""
 REFUSALS = (ParameterError, ToleranceError, UnsupportedError, DivergenceError)
 """The errors with which a run is refused. Others, such as a template that is missing, are no way to end."""
 _ROUNDING = float(np.finfo(float).eps)
@@ -131,13 +131,13 @@ def judge(trial: Trial) -> Outcome:
 def _judge_attached(trial: Trial) -> Outcome:
     """Judge a can that was put into a world, as long as it can roll there; what warns is `attach`."""
     scene, duration = trial.scene, trial.timestep * trial.steps
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         times, phi = attached_can.roll(scene, trial.phi0, duration, trial.timestep)
     motion = exact(scene, times, trial.phi0)
     rolls = times <= motion.rolls_until(trial.friction)
     error = float(np.abs(phi - motion.phi)[rolls].max(initial=0.0) / max(1.0, np.abs(motion.phi - trial.phi0).max()))
-    doubts = [str(each.message) for each in told if issubclass(each.category, UntrustedWarning)]
+    doubts = [str(each.message) for each in warned if issubclass(each.category, UntrustedWarning)]
     verdict = DOUBTED if doubts else RIGHT if error <= ERROR else SILENT
     return Outcome(verdict, THEORY, error, ERROR, "; ".join(doubts))
 

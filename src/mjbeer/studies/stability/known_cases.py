@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from mjbeer.exceptions import NoEquilibriumError
-from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, supported
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.studies.stability.judge import Trial
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import Load
@@ -32,14 +32,10 @@ class Variant(NamedTuple):
     """Name of the way: of rolling, integrator, and timestep or tolerance."""
     trial: Trial
     within: float = math.inf
-    """Largest error that the run must have [rad]."""
-    refused: bool = False
-    """Whether it must be refused, as no model can have it."""
-    sample: bool = True
-    """Whether a quick study includes it."""
+    """Largest error that the run must have [rad], unless no model can have it and it must be refused."""
 
 
-class Case(NamedTuple):
+class KnownCase(NamedTuple):
     """A case: its name, why it is one, and its variants."""
 
     name: str
@@ -47,24 +43,9 @@ class Case(NamedTuple):
     variants: tuple[Variant, ...]
 
 
-class Motion(NamedTuple):
-    """A stiff or extreme motion, to be tried in every way."""
-
-    name: str
-    why: str
-    scene: Scene
-    phi0: float
-    phi_dot0: float = 0.0
-    sure: tuple[str, ...] = _SURE
-    """The ways that must be accurate: "reduced", "equality" and "tolerance"."""
-    swings: float = 5.0
-    """Length of the runs, in natural periods."""
-
-
-def cases() -> list[Case]:
+def cases() -> list[KnownCase]:
     """Return all cases."""
-    motions = [Case(each.name, each.why, variants(each)) for each in (*_stiff(), *_extreme())]
-    return [*motions, *_found()]
+    return [*_stiff(), *_extreme(), *_found()]
 
 
 def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
@@ -77,44 +58,50 @@ def natural_period(scene: Scene, phi_dot0: float = 0.0) -> float:
     return 2 * math.pi / fastest if fastest else 1.0
 
 
-def variants(motion: Motion) -> tuple[Variant, ...]:
-    """Return variants of a motion in every way of rolling, with every integrator, at timesteps that suit the scene."""
-    scene, period, made = motion.scene, natural_period(motion.scene, motion.phi_dot0), []
+def _tried(
+    name: str,
+    why: str,
+    scene: Scene,
+    phi0: float,
+    phi_dot0: float = 0.0,
+    sure: tuple[str, ...] = _SURE,
+    swings: float = 5.0,
+) -> KnownCase:
+    """Return a motion, some natural periods long, in every way of rolling and with every integrator."""
+    period, made = natural_period(scene, phi_dot0), []
 
     def lasting(duration: float, timestep: float, **setting: Any) -> Trial:
         steps = math.ceil(duration / timestep * (1 - 1e-10))
-        return Trial(scene, motion.phi0, motion.phi_dot0, timestep=timestep, steps=steps, **setting)
+        return Trial(scene, phi0, phi_dot0, timestep=timestep, steps=steps, **setting)
 
     for rolling in ("reduced", "equality", "contact"):
-        possible = supported(scene, rolling)
         for integrator in _ALL:
             steps = _LARGE_STEPS if integrator == DOP853 else _STEPS
-            trial = lasting(motion.swings * period, period / steps, rolling=rolling, integrator=integrator)
-            sure = rolling in motion.sure and (integrator == "RK4" or (integrator == DOP853 and rolling == "reduced"))
-            name = f"{rolling}, {integrator}, T/{steps}"
-            made.append(Variant(name, trial, ERROR if sure else math.inf, not possible, integrator == "RK4"))
+            trial = lasting(swings * period, period / steps, rolling=rolling, integrator=integrator)
+            exactly = rolling in sure and (integrator == "RK4" or (integrator == DOP853 and rolling == "reduced"))
+            made.append(Variant(f"{rolling}, {integrator}, T/{steps}", trial, ERROR if exactly else math.inf))
         if rolling != "contact":
-            trial = lasting(motion.swings * period, period / _STEPS, rolling=rolling, tolerance=TOLERANCE)
-            within = TOLERANCE if "tolerance" in motion.sure else math.inf
-            made.append(Variant(f"{rolling}, to a tolerance of {TOLERANCE:g}", trial, within, not possible))
-    desk = min(max(motion.swings * period, 0.1), 30.0)  # as for a can on a desk, whatever the scene
-    return (*made, Variant("reduced, RK4, 1 ms", lasting(desk, 1e-3)))
+            trial = lasting(swings * period, period / _STEPS, rolling=rolling, tolerance=TOLERANCE)
+            within = TOLERANCE if "tolerance" in sure else math.inf
+            made.append(Variant(f"{rolling}, to a tolerance of {TOLERANCE:g}", trial, within))
+    desk = min(max(swings * period, 0.1), 30.0)  # as for a can on a desk, whatever the scene
+    return KnownCase(name, why, (*made, Variant("reduced, RK4, 1 ms", lasting(desk, 1e-3))))
 
 
-def _stiff() -> Iterator[Motion]:
+def _stiff() -> Iterator[KnownCase]:
     """Yield stiff motions."""
     for ratio in (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6):
         for name, make in _EITHER:
             scene, why = make(can=Can.hoop(mass=ratio * Load.segment().mass)), "the mass matrix is badly conditioned"
-            yield Motion(f"{name}, can {ratio:.0e} times the load", why, scene, 1.0)
+            yield _tried(f"{name}, can {ratio:.0e} times the load", why, scene, 1.0)
     why = "J falls to a thousandth at phi = 0, where the load swings through in a thousandth of the period"
-    yield Motion("pendulum on a wheel of 0.1 g", why, pendulum(wheel_mass=1e-4), 1.0, 0.0, _ADAPTED)
+    yield _tried("pendulum on a wheel of 0.1 g", why, pendulum(wheel_mass=1e-4), 1.0, 0.0, _ADAPTED)
     for beside in (0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3):
         why = "at pi the tendon that gives the model its J has no length and no direction"
-        yield Motion(f"frozen, let go {beside:g} rad beside pi", why, frozen(), math.pi - beside)
+        yield _tried(f"frozen, let go {beside:g} rad beside pi", why, frozen(), math.pi - beside)
 
 
-def _extreme() -> Iterator[Motion]:  # noqa: PLR0912 - a list, most of it loops over few values
+def _extreme() -> Iterator[KnownCase]:  # noqa: PLR0912 - a list, most of it loops over few values
     """Yield extreme motions."""
     for fill in (1e-5, 1e-3, 1 - 1e-3, 1 - 1e-6, 1.0):
         amount = f"{fill:g}" if fill < 0.5 or fill == 1 else f"1 - {1 - fill:.0e}"
@@ -128,54 +115,54 @@ def _extreme() -> Iterator[Motion]:  # noqa: PLR0912 - a list, most of it loops 
                     distance = scene.acceleration() / 2 * (natural_period(scene) / 2) ** 2
                     why = f"rounding of the {distance:.0e} m that it rolls is not small beside b"
                 title = f"{name}, {'massless' if can is None else 'metal'} can, fill {amount}"
-                yield Motion(title, why, scene, 1.0, 0.0, sure, swings)
+                yield _tried(title, why, scene, 1.0, 0.0, sure, swings)
     for incline in (0.0, 1e-8, 89.9):
         sure = _SURE if incline < 1 else ("reduced", "equality")
         why = "level, or hardly tilted" if incline < 1 else "nearly a wall: hardly anything presses the can on it"
         for name, make, can in (("sliding, metal can", sliding, _METAL), ("frozen", frozen, None)):
             scene = make(math.radians(incline), can=can)
-            yield Motion(f"{name}, incline {incline:g} degrees", why, scene, 0.5, 0.0, sure)
+            yield _tried(f"{name}, incline {incline:g} degrees", why, scene, 0.5, 0.0, sure)
     fold = math.sin(frozen().largest_incline())
     for beside in (-1e-2, -1e-6, 1e-6, 1e-2):
         scene = frozen(math.asin(fold * (1 + beside)))
         start = scene.equilibrium() - 1e-3 * abs(beside) ** 0.5 if beside < 0 else math.pi / 2 - scene.incline
         why = "near the steepest incline with an equilibrium, eq. (53): a shallow well below, and a long rest above"
-        yield Motion(f"frozen, {abs(beside):.0e} {'below' if beside < 0 else 'above'} the fold", why, scene, start)
+        yield _tried(f"frozen, {abs(beside):.0e} {'below' if beside < 0 else 'above'} the fold", why, scene, start)
     for radius in (1e-4, 1e-3, 50.0):
         can = Can.sheet_metal(radius, min(3.6 * radius, 100.0), thickness=radius / 60)
         for name, make in _EITHER:
-            yield Motion(f"{name}, can of {radius:g} m", "the same motion in units of sqrt(a/g)", make(can=can), 1.0)
+            yield _tried(f"{name}, can of {radius:g} m", "the same motion in units of sqrt(a/g)", make(can=can), 1.0)
     for gravity in (0.0, 1e-3, 1e3):
         why = "times are proportional to 1/sqrt(g)" if gravity else "nothing presses the can on the incline"
         for name, make in _EITHER:
             scene = make(gravity=gravity, can=_METAL)
-            yield Motion(f"{name}, g = {gravity:g} m/s^2", why, scene, 1.0, 0.0 if gravity else 3.0)
+            yield _tried(f"{name}, g = {gravity:g} m/s^2", why, scene, 1.0, 0.0 if gravity else 3.0)
     for name, scene in _EVERYWHERE:
         for beside in (1e-2, 1e-6, 1e-10):
             sure = () if beside < 1e-3 else _ADAPTED
             why, start = "rounding of the start grows as exp(lambda t) near the top", scene.separatrix()[1] - beside
-            yield Motion(f"{name}, {beside:.0e} rad inside the separatrix", why, scene, start, 0.0, sure)
+            yield _tried(f"{name}, {beside:.0e} rad inside the separatrix", why, scene, start, 0.0, sure)
     for name, scene in _EVERYWHERE:
         for spin in (1e2, 1e4):
             why = "the energy of a swing is tiny beside that of the spin"
-            yield Motion(f"{name}, spun at {spin:.0e} rad/s", why, scene, 0.5, spin)
+            yield _tried(f"{name}, spun at {spin:.0e} rad/s", why, scene, 0.5, spin)
     point, why = "point on the rim of a hoop", "at the bottom the point stands still, and J is the hoop's alone"
-    yield Motion(f"{point}, let go a quarter turn from the bottom", why, hoop(), math.pi / 2)
+    yield _tried(f"{point}, let go a quarter turn from the bottom", why, hoop(), math.pi / 2)
     light = Scene(Can.hoop(mass=0.2e-6), Load.point(0.2, 0.033), 0.0, "frozen")
-    yield Motion(f"{point} of 1e-6 of its mass", why, light, math.pi / 2, 0.0, ())
+    yield _tried(f"{point} of 1e-6 of its mass", why, light, math.pi / 2, 0.0, ())
     why = "1e-20 kg m^2 are far below MuJoCo's smallest (mjMINVAL, 1e-15), and lost beside the load's 1e-5"
     scene = Scene(Can(mass=1e-3, inertia=1e-20), Load.segment())
-    yield Motion("can with next to no inertia around a sliding load", why, scene, 1.0, 0.0, ("reduced",))
+    yield _tried("can with next to no inertia around a sliding load", why, scene, 1.0, 0.0, ("reduced",))
     for name, scene in _EVERYWHERE:
         why = "exactly on top a sliding load balances, unless rounding pushes it off, and a frozen one rolls down"
-        yield Motion(f"{name}, let go at pi", why, scene, math.pi, 0.0, ())
+        yield _tried(f"{name}, let go at pi", why, scene, math.pi, 0.0, ())
 
 
-def _found() -> Iterator[Case]:
+def _found() -> Iterator[KnownCase]:
     """Yield the cases in which the random search found errors."""
 
-    def case(name: str, why: str, setting: str, trial: Trial, within: float = math.inf) -> Case:
-        return Case(name, why, (Variant(setting, trial, within),))
+    def case(name: str, why: str, setting: str, trial: Trial, within: float = math.inf) -> KnownCase:
+        return KnownCase(name, why, (Variant(setting, trial, within),))
 
     contact: dict[str, Any] = {"rolling": "contact", "integrator": DOP853}
     why = "MuJoCo's solver stops once its cost falls by less than 1e-8 m^2/s^4: its tolerance has to scale with g^2"

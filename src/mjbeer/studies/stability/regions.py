@@ -262,8 +262,8 @@ def _setting(pick: Pick, scene: Scene, kind: str) -> dict[str, Any]:
     """
     if kind == "attached":
         return {"rolling": "contact", "integrator": "RK4", "attached": True}
-    ways = [*(way for way in ROLLINGS if supported(scene, way)), *(ROLLINGS if kind == "any" else ())]
-    rolling, friction = ("contact", (0.01, 10)) if kind == "contact" else (pick.one(*ways), [1.0, 1.0, (0.01, 1e3)])
+    rollings = [*(each for each in ROLLINGS if supported(scene, each)), *(ROLLINGS if kind == "any" else ())]
+    rolling, friction = ("contact", (0.01, 10)) if kind == "contact" else (pick.one(*rollings), [1.0, 1.0, (0.01, 1e3)])
     setting: dict[str, Any] = {"rolling": rolling, "friction": pick(friction)}
     if rolling != "contact" and pick.one(True, False, False, False):
         return setting | {"tolerance": pick((1e-12, 0.03))}

@@ -40,7 +40,7 @@ class Plan:
     """Everything that defines the runs of a map except timestep and stiffness."""
 
     family: str
-    """What makes the motion stiff: an equality whose solref has a time constant ("solref") or a stiffness ("direct"),
+    """The cause of stiffness: an equality whose solref has a time constant ("solref") or a stiffness ("direct"),
     "gravity" without a constraint, or the "damping" between can and load."""
     integrator: Integrator
 

@@ -21,7 +21,7 @@ from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator
 from mjbeer.output.plots import COLOURS, chart, name_below
 from mjbeer.output.terminal import Table
 from mjbeer.studies.stability.short_runs import EXPLODED, Plan, Swings
-from mjbeer.studies.study import PASSED, Study
+from mjbeer.studies.study import PASSED, Study, document
 
 MAPS = "maps"
 """The group of the study that the maps are in."""
@@ -58,7 +58,7 @@ class Family(NamedTuple):
     """The least and the largest timestep [s]."""
     values: tuple[float, float]
     label: str
-    """What the values are, with their unit."""
+    """The quantity that the values are of, with its unit."""
     title: str
     caption: str
 
@@ -163,14 +163,9 @@ def table(results: Sequence[Result]) -> Table:
 
 
 def to_json(study: Study, date: datetime.date) -> str:
-    """Return the maps of a study as a JSON document, a line each, with its command, its machine and a date.
-
-    Numbers have six digits; a border is known to a hundredth.
-    """
-    maps = [json.dumps({"name": of.name, "worst": of.error, **of.values}) for of in study.of(MAPS)]
-    rounded = [json.loads(of, parse_float=lambda digits: float(f"{float(digits):.6g}")) for of in maps]
-    head = {**study.about, "date": date.isoformat()}
-    return json.dumps(head)[:-1] + ', "maps": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"
+    """Return the maps of a study as a JSON document, a line each, with its command, its machine and a date."""
+    maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(MAPS))
+    return document({**study.about, "date": date.isoformat()}, MAPS, maps)
 
 
 def load(path: pathlib.Path = SHIPPED) -> dict[str, Any]:
@@ -180,12 +175,12 @@ def load(path: pathlib.Path = SHIPPED) -> dict[str, Any]:
       ParameterError: if the file is missing, or is not such a document.
     """
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-        if not {"command", "date", "machine", MAPS} <= set(document):
+        stored = json.loads(path.read_text(encoding="utf-8"))
+        if not {"command", "date", "machine", MAPS} <= set(stored):
             raise ValueError("it has no maps")
     except (OSError, ValueError, TypeError) as error:
         raise ParameterError(f"{path} was not written by `mjbeer stability`: {error}") from error
-    return document
+    return stored
 
 
 def summary(maps: Sequence[dict[str, Any]]) -> tuple[int, float, float]:
@@ -195,9 +190,9 @@ def summary(maps: Sequence[dict[str, Any]]) -> tuple[int, float, float]:
     return sum(runs), same, max(of["worst"] for of in maps)
 
 
-def figures(document: dict[str, Any]) -> dict[str, Callable[[pathlib.Path], None]]:
+def figures(stored: dict[str, Any]) -> dict[str, Callable[[pathlib.Path], None]]:
     """Return what draws each figure of the maps in a document to a path, with .svg appended, by the figure's name."""
-    maps = {family: [of for of in document[MAPS] if of["family"] == family] for family in FAMILIES}
+    maps = {family: [of for of in stored[MAPS] if of["family"] == family] for family in FAMILIES}
     return {f"stability-{name}": partial(draw, maps=of) for name, of in maps.items() if of}
 
 

@@ -69,19 +69,19 @@ def water(modes: int = 1, fill: float = 0.5, damping_ratio: float | None = None)
 def let_go(can: Standing) -> tuple[float, float]:
     """Return the relative errors of frequency and decrement of the first mode, let go in a can that is held."""
     model = build(can, free=False)
-    data, rows_, omega, ratio = mujoco.MjData(model), [], can.frequencies()[0], can.damping_ratios()[0]
+    data, samples, omega, ratio = mujoco.MjData(model), [], can.frequencies()[0], can.damping_ratios()[0]
     data.joint("slosh1").qpos = [math.cos(_ANGLE / 2), 0, math.sin(_ANGLE / 2), 0]
     while data.time * omega < 64:
         mujoco.mj_forward(model, data)
-        rows_.append((data.time, data.joint("slosh1").qpos[2], data.joint("slosh1").qvel[1]))
+        samples.append((data.time, data.joint("slosh1").qpos[2], data.joint("slosh1").qvel[1]))
         mujoco.mj_step(model, data)
-    times, sines, rates = np.array(rows_).T
-    way = CubicHermiteSpline(times, 2 * np.arcsin(sines), rates)
-    crossings = way.roots(extrapolate=False)
+    times, sines, rates = np.array(samples).T
+    angle = CubicHermiteSpline(times, 2 * np.arcsin(sines), rates)
+    crossings = angle.roots(extrapolate=False)
     cycles = (len(crossings) - 1) / 2
     root = math.sqrt(1 - ratio**2)
     measured = 2 * math.pi * cycles / (crossings[-1] - crossings[0]) / (omega * root)
-    speeds = np.abs(way(crossings, 1))
+    speeds = np.abs(angle(crossings, 1))
     decrement = math.log(speeds[0] / speeds[-1]) / cycles
     expected = 2 * math.pi * ratio / root
     return measured / (1 - _ANGLE**2 / 16) - 1, decrement / expected - 1 if ratio > 0 else decrement
@@ -105,9 +105,7 @@ def response(can: Standing, omega: float) -> Reaction:
         forces = []
         for side in (step, -step):
             mujoco.mj_resetData(model, data)
-            way = np.zeros(model.nv)
-            way[place] = side
-            mujoco.mj_integratePos(model, data.qpos, way, 1.0)
+            mujoco.mj_integratePos(model, data.qpos, side * np.eye(model.nv)[place], 1.0)
             mujoco.mj_forward(model, data)
             forces.append(data.qfrc_bias.copy())
         stiffness[:, place] = (forces[0] - forces[1]) / (2 * math.sin(step))
