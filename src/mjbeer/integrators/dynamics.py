@@ -24,9 +24,11 @@ DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
 compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False)
 """Compiles what allocates nothing, so that arrays need not be counted: that takes a seventh of the time of a run."""
-inner = partial(compiled, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
-"""Compiles what compiled code alone may call, into its callers: a call with so many arguments takes as long as what it
-does, and an entry for Python a seventh of the compiler's time."""
+inner = partial(compiled, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Compiles what compiled code alone may call; an entry for Python takes a seventh of the compiler's time."""
+inline = partial(inner, forceinline=True)
+"""Compiles what is called in every step into its callers: a call with so many arguments takes as long as what it
+does."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
@@ -133,7 +135,7 @@ class Dynamics:
             mujoco.mj_forward(self._model, self.data)
 
 
-@compiled(forceinline=True)
+@inline
 def derivative(pointers, views, state, out):
     """Write the time derivative of a state to `out`.
 
@@ -154,7 +156,7 @@ def derivative(pointers, views, state, out):
         out[n + i] = qacc[i]
 
 
-@inner
+@inline
 def copy(values, out):
     """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
     for i in range(values.size):
