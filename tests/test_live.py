@@ -28,9 +28,7 @@ AGREES = 1e-7
 
 def script(code: str, given: str = PHYSICS) -> Any:
     """What an expression is after a script has run."""
-    context = quickjs.Context()
-    context.eval(given)
-    return json.loads(context.eval(f"JSON.stringify({code})"))
+    return json.loads(quickjs.Context().eval(f"{given}\nJSON.stringify({code})"))
 
 
 def scene_of(setting: dict[str, Any]) -> Scene:
@@ -52,10 +50,8 @@ def random_cases(count: int) -> list[tuple[dict[str, Any], list[float]]]:
     """Settings of all that can be inside, with one time or more, neither evenly spaced nor in order."""
     random, cases = np.random.default_rng(20261123), []
     for k in range(count):
-        setting: dict[str, Any] = {
-            "incline": math.radians(random.uniform(0, 30)) * (k % 10 > 0),
-            "fill": random.uniform(0.05, 1.0),
-        }
+        incline, fill = math.radians(random.uniform(0, 30)) * (k % 10 > 0), random.uniform(0.05, 1.0)
+        setting: dict[str, Any] = {"incline": incline, "fill": fill}
         setting |= {"inside": INSIDE[k % 7], "metal": k % 2 == 0, "phi0": random.uniform(-math.pi, math.pi)}
         cases.append((setting, random.uniform(0, random.uniform(0.2, 3), size=random.integers(1, 20)).tolist()))
     return cases
@@ -141,8 +137,7 @@ for (let now = last; running; now += 16) frame(now);
 def test_a_browser_races_and_says_who_won(tmp_path: pathlib.Path) -> None:
     if not (chromium := shutil.which("chromium") or shutil.which("google-chrome")):
         pytest.skip("no Chromium: `apt-get install chromium` brings one")
-    page = tmp_path / "live.html"
-    page.write_text(TEXT.replace("</body>", RACE), encoding="utf-8")
+    (page := tmp_path / "live.html").write_text(TEXT.replace("</body>", RACE), encoding="utf-8")
     command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", page.as_uri()]
     shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
     verdict = shown.split('id="verdict"')[1].split(">", 1)[1].split("</p>")[0]
