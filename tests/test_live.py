@@ -22,8 +22,8 @@ TEXT = pathlib.Path(__file__).parents[1].joinpath("docs", "live.html").read_text
 PHYSICS = TEXT.split('<script id="physics">')[1].split("</script>")[0]
 TRACK = "const DEGREE = Math.PI / 180;" + TEXT.split("// A track:")[1].partition("\n")[2].split("function take(")[0]
 INSIDE = ["no friction", "ice", *LIQUIDS]
-# Of phi and of the distance over the radius [rad]. A step errs by some 1e-13, which motions beside a top magnify.
-AGREES = 1e-7
+# Of phi and of the distance over the radius [rad]: 8e-10 was measured, and 6e-6 if no step ends at the corners of |w|.
+AGREES = 1e-8
 
 
 def script(code: str, given: str = PHYSICS) -> Any:
@@ -36,14 +36,14 @@ def scene_of(setting: dict[str, Any]) -> Scene:
     return make(setting["incline"], setting["fill"], Can.sheet_metal() if setting["metal"] else Can.massless())
 
 
-def require_agreement(cases: list[tuple[dict[str, Any], list[float]]]) -> None:
+def require_agreement(cases: list[tuple[dict[str, Any], list[float]]], within: float = AGREES) -> None:
     motions = script(f"{json.dumps(cases)}.map(([setting, times]) => motion(setting, times))")
     for (setting, times), found in zip(cases, motions, strict=True):
         truth = exact(scene_of(setting), times, setting["phi0"])
-        assert found["phi"] == pytest.approx(truth.phi, rel=0, abs=AGREES), setting
-        assert found["distance"] == pytest.approx(truth.distance, rel=0, abs=AGREES * can.RADIUS), setting
+        assert np.abs(found["phi"] - truth.phi).max() < within, setting
+        assert np.abs(found["distance"] - truth.distance).max() < within * can.RADIUS, setting
         for force in ("normal", "friction"):  # the rates, up to 1000 rad/s, count squared
-            assert found[force] == pytest.approx(getattr(truth.forces, force), rel=1e-6, abs=1e-6), setting
+            assert np.abs(found[force] - getattr(truth.forces, force)).max() < 1e3 * within, setting
 
 
 def random_cases(count: int) -> list[tuple[dict[str, Any], list[float]]]:
@@ -66,11 +66,11 @@ def test_its_motions_are_those_of_exact_theory(count: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("inside", ["no friction", "ice"])
 def test_so_they_are_beside_a_separatrix(inside: str) -> None:
-    """Down to 1e-4 rad, nearer than anybody can let go: an error of the start grows 1e5 times there."""
+    """Down to 1e-4 rad, nearer than anybody can let go: there an error grows 1e5 times."""
     setting = {"incline": 0.1, "fill": 0.4, "inside": inside, "metal": True}
     ends = scene_of(setting).separatrix()
     starts = [end + way * 10.0**-power for end in ends for way in (1, -1) for power in (2, 3, 4)]
-    require_agreement([({**setting, "phi0": start}, [0.3, 1.0, 3.0]) for start in starts])
+    require_agreement([({**setting, "phi0": start}, [0.3, 1.0, 3.0]) for start in starts], 1e-7)
 
 
 def test_balanced_and_full_cans_are_those_of_theory() -> None:
