@@ -13,13 +13,12 @@ _NAMES = (
     "needed_friction", "rolling_ends_at", "_kinetic", "_energy_change", "_swing_change", "_swing_drift",
     "_largest_swing_drift",
 )  # fmt: skip
-"""The first numbers that a recorder finds, by the names of `Record`."""
-(
-    TURNED, ROLLED, PATH, FASTEST, SWING, AXIS, LOWEST, NEEDED, FAILS_AT, KINETIC, ENERGY_CHANGE, SWING_CHANGE, DRIFT,
-    LARGEST_DRIFT, PHI0, U0, SPEED0, SWING0, ENERGY0, LAST_PHI, LAST_RATE, LAST_TIME,
-) = range(22)  # fmt: skip
-"""The places of all of them. What is not in a record is phi, u, the speed of the axis less its swing, J phi_dot^2 / 2
-and the energy at the start; and the last phi, its rate and time."""
+"""What a recorder finds, by the names of `Record`."""
+_FOUND = np.dtype([(name, float) for name in (
+    *_NAMES, "phi0", "u0", "speed0", "swing0", "energy0", "last_phi", "last_rate", "last_time",
+)])  # fmt: skip
+"""That, and at the start phi, u, the speed of the axis less its swing, J phi_dot^2 / 2 and the energy; and the last phi,
+its rate and time."""
 _HALVINGS = 50  # of the time between two states in which rolling ends
 
 
@@ -41,8 +40,8 @@ class SmoothRecorder:
             # Friction over drive, over the force of the swinging load, and over phi_ddot.
             *((turning / mass, turning / mass, 0.0) if sliding else (1.0, 1.0, -scene.mass * can.radius)),
         )
-        found = np.zeros(LAST_TIME + 1)
-        found[LOWEST] = found[FAILS_AT] = math.inf
+        found = np.zeros(1, _FOUND)
+        found["lowest_normal"] = found["rolling_ends_at"] = math.inf
         self._numbers, self._found = numbers, found
 
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
@@ -52,7 +51,7 @@ class SmoothRecorder:
     @property
     def record(self) -> Record:
         """Return the record of the steps so far."""
-        vars(self._record).update(zip(_NAMES, self._found.tolist(), strict=False))
+        vars(self._record).update(zip(_NAMES, self._found[0].item(), strict=False))
         return self._record
 
 
@@ -60,7 +59,7 @@ class SmoothRecorder:
 def _update(numbers, found, times, states):
     """Add states at `times` [s] to what was `found`."""
     for row in range(times.size):
-        _add(numbers, found, times[row], states[row])
+        _add(numbers, found[0], times[row], states[row])
 
 
 @inner
@@ -78,37 +77,40 @@ def _add(numbers, found, time, state):
     energy = kinetic - all_mass * u * down - moment * (normally * cos - down * sin)
     swings = inertia * square / 2
     if time == 0.0:
-        found[PHI0], found[U0], found[SPEED0] = phi, u, speed - arm * cos * rate
-        found[SWING0], found[ENERGY0], found[LAST_PHI] = swings, energy, phi
-    phi0 = found[PHI0]
-    found[TURNED], found[ROLLED] = max(found[TURNED], abs(phi - phi0)), max(found[ROLLED], abs(u - found[U0]))
-    found[FASTEST], found[SWING] = max(found[FASTEST], abs(rate)), max(found[SWING], swings)
-    found[KINETIC] = max(found[KINETIC], kinetic)
-    covered = abs(phi - found[LAST_PHI])
-    found[PATH] += covered
+        found.phi0, found.u0, found.speed0 = phi, u, speed - arm * cos * rate
+        found.swing0, found.energy0, found.last_phi = swings, energy, phi
+    phi0 = found.phi0
+    found.largest_turn, found.largest_distance = (
+        max(found.largest_turn, abs(phi - phi0)),
+        max(found.largest_distance, abs(u - found.u0)),
+    )
+    found.largest_rate, found.swing_energy = max(found.largest_rate, abs(rate)), max(found.swing_energy, swings)
+    found._kinetic = max(found._kinetic, kinetic)
+    covered = abs(phi - found.last_phi)
+    found.angle_covered += covered
     middle = (phi + phi0) / 2
     pulled = weight * math.sin(middle) - lean * math.cos(middle)
-    gained = swings - found[SWING0] - slope * (phi - phi0) + 2 * pulled * math.sin((phi - phi0) / 2)
-    found[ENERGY_CHANGE] = max(found[ENERGY_CHANGE], abs(energy - found[ENERGY0]))
-    found[SWING_CHANGE] = max(found[SWING_CHANGE], abs(gained))
-    found[DRIFT] += gained * covered
-    found[LARGEST_DRIFT] = max(found[LARGEST_DRIFT], abs(found[DRIFT]))
+    gained = swings - found.swing0 - slope * (phi - phi0) + 2 * pulled * math.sin((phi - phi0) / 2)
+    found._energy_change = max(found._energy_change, abs(energy - found.energy0))
+    found._swing_change = max(found._swing_change, abs(gained))
+    found._swing_drift += gained * covered
+    found._largest_swing_drift = max(found._largest_swing_drift, abs(found._swing_drift))
     if size > 1:
-        moved = u - arm * sin - (found[U0] - arm * math.sin(phi0))
-        found[AXIS] = max(found[AXIS], abs(moved - time * (found[SPEED0] + drive / mass * time / 2)))
+        moved = u - arm * sin - (found.u0 - arm * math.sin(phi0))
+        found.axis_drift = max(found.axis_drift, abs(moved - time * (found.speed0 + drive / mass * time / 2)))
     normal, pull, margin = _forces(numbers, sin, cos, square)
-    found[LOWEST] = min(found[LOWEST], normal)
-    found[NEEDED] = max(found[NEEDED], pull / normal if normal > 0 else math.inf)
-    if margin < 0 and found[FAILS_AT] == math.inf:
-        found[FAILS_AT] = _end_of_rolling(numbers, found, phi, rate, time) if time > 0 else 0.0
-    found[LAST_PHI], found[LAST_RATE], found[LAST_TIME] = phi, rate, time
+    found.lowest_normal = min(found.lowest_normal, normal)
+    found.needed_friction = max(found.needed_friction, pull / normal if normal > 0 else math.inf)
+    if margin < 0 and found.rolling_ends_at == math.inf:
+        found.rolling_ends_at = _end_of_rolling(numbers, found, phi, rate, time) if time > 0 else 0.0
+    found.last_phi, found.last_rate, found.last_time = phi, rate, time
 
 
 @inner
 def _end_of_rolling(numbers, found, phi, rate, time):
     """Return when rolling stopped being possible since the last state; phi is the cubic between the two meanwhile."""
-    begin, step, low, high = found[LAST_PHI], time - found[LAST_TIME], 0.0, 1.0
-    first, last, change = step * found[LAST_RATE], step * rate, phi - found[LAST_PHI]
+    begin, step, low, high = found.last_phi, time - found.last_time, 0.0, 1.0
+    first, last, change = step * found.last_rate, step * rate, phi - found.last_phi
     square, cube = 3 * change - 2 * first - last, first + last - 2 * change
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
@@ -118,7 +120,7 @@ def _end_of_rolling(numbers, found, phi, rate, time):
             high = middle
         else:
             low = middle
-    return found[LAST_TIME] + high * step
+    return found.last_time + high * step
 
 
 @inner

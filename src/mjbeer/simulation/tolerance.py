@@ -191,7 +191,8 @@ class ToleranceLoop:
                 self._left -= method.evaluations
                 compare = np.ascontiguousarray(fine[compared])
                 distance = _distance(self._angles, coarse, compare, start)
-                drift = max(_DRIFT * recorder.record.swing_error, recorder.record.axis_error)
+                record = recorder.record
+                drift = max(_DRIFT * record.swing_error, record.axis_error)
                 rounding = _ROUNDING
                 if self._scene.oscillator.chord > 0:
                     chord = float(np.abs(np.cos(compare[:, method.size - 1] / 2)).min())
@@ -205,7 +206,7 @@ class ToleranceLoop:
                     distance = max(_distance(self._angles, plain, compare, start), rounding * nudged)
                 error = max(safety * distance, drift)
                 if error <= tolerance:
-                    return Solution(fine, recorder.record, error, GAUSS_JACKSON)
+                    return Solution(fine, record, error, GAUSS_JACKSON)
                 timestep *= min(1 / _FINER, (tolerance / error) ** (1 / _ORDER))
         except DivergenceError:
             pass
