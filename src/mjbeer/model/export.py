@@ -30,10 +30,6 @@ CAMERA = "side"
 PORTABLE = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
-_PORTABLE_IMPEDANCE, _PORTABLE_IMPRATIO = (0.999, 0.999), 10.0
-"""The impedance of a portable contact, and how much harder its friction is. With 0.9999 and 100, as in models for
-MuJoCo 4, its error is a tenth in double precision, but in single precision, as in mujoco_warp, the solver then ends
-with NaN."""
 
 
 def export(
@@ -171,7 +167,9 @@ def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
         )
     spec.option.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_DIAGEXACT)
     for pair in spec.pairs:
-        pair.solimp[:2], spec.option.impratio = _PORTABLE_IMPEDANCE, _PORTABLE_IMPRATIO
+        # With 0.9999 and 100, as in models for MuJoCo 4, its error is a tenth in double precision, but in single
+        # precision, as in mujoco_warp, the solver then ends with NaN.
+        pair.solimp[:2], spec.option.impratio = 0.999, 10.0
     for equality in spec.equalities if scene.can.radius < 1.0 else ():
         equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
 

@@ -46,7 +46,6 @@ _SPOILING = {
 """What a can does under a flag that disables a stage of MuJoCo's."""
 _PARTS = ("can", "load", "swing", "liquid", *(f"slosh{mode}" for mode in range(1, MOST_MODES + 1)), "slide", "phi")
 """Bodies and joints by which cans differ; the last two are those of a scene that `build` made."""
-_FLAGS, _CONES, _KINDS = mujoco.mjtDisableBit, mujoco.mjtCone, mujoco.mjtIntegrator
 
 
 def attach(
@@ -101,17 +100,17 @@ def attach(
     lying = isinstance(can, Scene)
     child = _lying_spec(can) if lying else _standing_spec(require.instance("can", can, Standing))
     option = parent.option
-    if option.cone == _CONES.mjCONE_PYRAMIDAL:
+    if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
     if lying and option.impratio == 1:
         option.impratio = child.option.impratio
-    if lying and option.integrator == _KINDS.mjINT_EULER:
+    if lying and option.integrator == mujoco.mjtIntegrator.mjINT_EULER:
         option.integrator = child.option.integrator
     reasons = _spoiling_options(parent.option, can)
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
     if isinstance(can, Scene):
-        kind = _KINDS(parent.option.integrator).name.removeprefix("mjINT_")
+        kind = mujoco.mjtIntegrator(parent.option.integrator).name.removeprefix("mjINT_")
         integrator = next(each for each in INTEGRATORS if each.upper() == kind)
         touching.solref = [mechanics.stiffest(integrator, parent.option.timestep, contact=True), 1]
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
@@ -185,7 +184,7 @@ def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can:
 def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
     """Return what a world's options spoil."""
     reasons, size = [], float(np.linalg.norm(option.gravity))
-    explicit, decay = option.integrator == _KINDS.mjINT_RK4, _fastest_decay(can)
+    explicit, decay = option.integrator == mujoco.mjtIntegrator.mjINT_RK4, _fastest_decay(can)
     if isinstance(can, Scene):
         if not explicit:
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
@@ -203,7 +202,9 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
     for flag, told in _SPOILING.items():
-        if option.disableflags & int(_FLAGS.__members__[f"mjDSBL_{flag}"]) and (flag != "DAMPER" or decay > 0):
+        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag}"]) and (
+            flag != "DAMPER" or decay > 0
+        ):
             reasons.append(f"with the flag {flag.lower()} disabled it {told}")
     return reasons
 
@@ -234,7 +235,7 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
     """Return the specification of a standing can: on the floor if it is `free`, or else held by the world."""
     integrator = require.choice("integrator", setting.integrator, INTEGRATORS)
     spec = _standing_spec(can, visuals, free, setting.folder)
-    spec.option.integrator = int(_KINDS.__members__[f"mjINT_{integrator.upper()}"])
+    spec.option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
     spec.option.timestep = setting.timestep
     return spec
 

@@ -36,9 +36,8 @@ OF_THE_LOAD = ("load", "foam")
 """The geoms of a load that may be in the body of its can."""
 WALL = 0.06
 """Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
-FOAM, _FOAM_SHARE, _LEAST_FOAM = 0.025, 0.25, 1e-4
-"""Thickness of the foam in radii, and its largest one over the depth of the beer and over the room above it; a thinner
-one than the last is not drawn."""
+FOAM = 0.025
+"""Largest thickness of the foam, in radii."""
 EDGES = 256
 """Number of edges around the arc of the beer. The error of the polygon falls as its square; with 256 edges mass,
 centroid and inertia are within 6e-4 for every fill up to 0.95."""
@@ -209,13 +208,13 @@ def _place_point_load(spec: mujoco.MjSpec, scene: Scene) -> None:
 def shape_beer(spec: mujoco.MjSpec, scene: Scene, edges: int = EDGES) -> None:
     """Give the beer its fill, and put the foam on it, which gets thin or goes where there is no room or no beer."""
     radius, length, fill = scene.can.radius, scene.can.length, max(scene.load.fill or 0.0, 1e-6)  # a mesh is not flat
-    thickness = min(FOAM, _FOAM_SHARE * 2 * fill, _FOAM_SHARE * 2 * (1 - fill))
+    thickness = min(FOAM, fill / 2, (1 - fill) / 2)  # a quarter of the beer's depth, and of the room above it
     liquid, foam = spec.mesh("load"), spec.mesh("foam")
     shape = beer(fill, radius, length, edges)
     if len(liquid.usertexcoord):  # the texture covers the can's cross-section; multiples of 1/512 have few digits
         liquid.usertexcoord = (np.round(512 * (shape[0][:, [0, 2]] / (2 * radius) + 0.5)) / 512).ravel()
     _reshape(liquid, shape)
-    if foam is not None and thickness >= _LEAST_FOAM:
+    if foam is not None and thickness >= 1e-4:  # what is thinner is not seen
         heights = 2 * fill - 1 + thickness * np.array([0, 0, 1, 1])
         across = np.sqrt((1 - heights) * (1 + heights)) * [-1, 1, 1, -1]
         _reshape(foam, _prism(radius * np.stack([across, heights], axis=1), length))

@@ -129,11 +129,20 @@ class Recorder:
         self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
 
 
-# A polynomial of fifth degree over a step, from its change, rates and second derivatives at both ends, at parts of it.
 _PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
-_ENDS = np.array([[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]])
-_POWER, _TERMS = np.arange(1, 6), np.linalg.inv(_ENDS)
-_CHANGES, _RATES = _PART**_POWER @ _TERMS, _POWER * _PART ** (_POWER - 1) @ _TERMS
+
+
+def _polynomial() -> tuple[np.ndarray, np.ndarray]:
+    """Return what gives change and rate at `_PART` of a step by a polynomial of fifth degree.
+
+    They are multiplied by the change of the step, and by the rates and the second derivatives at its ends.
+    """
+    ends = [[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]]
+    power, terms = np.arange(1, 6), np.linalg.inv(ends)
+    return _PART**power @ terms, power * _PART ** (power - 1) @ terms
+
+
+_CHANGES, _RATES = _polynomial()
 
 
 def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:

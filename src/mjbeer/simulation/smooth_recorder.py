@@ -17,8 +17,8 @@ _NAMES = (
 _FOUND = np.dtype([(name, float) for name in (
     *_NAMES, "phi0", "u0", "speed0", "swing0", "energy0", "last_phi", "last_rate", "last_time",
 )])  # fmt: skip
-"""That, and at the start phi, u, the speed of the axis less its swing, J phi_dot^2 / 2 and the energy; and the last phi,
-its rate and time."""
+"""That, and at the start phi, u, the speed of the axis less its swing, J phi_dot^2 / 2 and the energy; and of the last
+state phi, its rate and time."""
 _HALVINGS = 50  # of the time between two states in which rolling ends
 
 
@@ -41,7 +41,7 @@ class SmoothRecorder:
             *((turning / mass, turning / mass, 0.0) if sliding else (1.0, 1.0, -scene.mass * can.radius)),
         )
         found = np.zeros(1, _FOUND)
-        found["lowest_normal"] = found["rolling_ends_at"] = math.inf
+        found[["lowest_normal", "rolling_ends_at"]] = math.inf
         self._numbers, self._found = numbers, found
 
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:

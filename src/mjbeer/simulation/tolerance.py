@@ -20,8 +20,6 @@ from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.theory.equations import relaxation_rate
 from mjbeer.theory.scene import Scene
 
-_LEAST_TOLERANCE = 1e-15
-"""Smallest tolerance [rad] that is tried: below it is what rounding leaves of a single step."""
 _PARTS = np.linspace(0, 1, 33)
 """Times, over the last one, at which runs are compared besides the samples, unless these are as near one another."""
 _COMPARED = 256
@@ -69,8 +67,6 @@ _SMALLEST = 1e-16
 """Local tolerance below which the error of a step is rounding."""
 _STALLED = 0.75
 """Error estimate over that of the run before, above which the finer run was no progress."""
-_PATIENCE = 2
-"""Number of times in a row that finer runs may be no progress: with too large steps their distance is arbitrary."""
 _EVALUATIONS = 2_000_000
 """Largest number of evaluations in all runs of a call, which take some seconds. A smooth motion takes thousands."""
 _STABLE = 6.4 / 12
@@ -95,19 +91,13 @@ _ORDER = 12
 """Power of the timestep with which an error of Gauss-Jackson falls, on the safe side of its order, 13."""
 _PRECISION = 1e-3
 """Precision of the time that passes in a step of Gauss-Jackson, over the tolerance."""
-_EXACTLY = 1e-15
-"""The same for a fixed timestep."""
 _SHARE, _REFERENCE, _ADDED, _POWER = 0.078, 1e-9, 1.5, 1 / 14
 """First timestep of Gauss-Jackson over the distance of the nearest pole, for an error of 1e-9 rad in a cycle; the power
 of the number of cycles with which errors add up; that of an error with which a timestep grows. Of 1,466 random motions
 nine of ten allow 1.03 times the timestep or more, and half of them 1.20 times."""
-_GAP, _LEAST_GAP = 2.5, 1e-6
+_GAP = 2.5
 """Energy below or above the crest, over the depth of the well, from which on a load hardly lingers there: beside the
-crest the time of a swing, and so its error, grows as the inverse of that energy; and the least share that counts."""
-_LEAST_MODULUS = 1e-3
-"""Least k of a swing for which its pole decides: smaller ones are as even, and only their size is smaller."""
-_FEWEST = 8
-"""Least number of timesteps in a run, for motions that hardly move."""
+crest the time of a swing, and so its error, grows as the inverse of that energy."""
 _TRIES = 3
 """Largest number of finer runs of Gauss-Jackson."""
 
@@ -143,8 +133,8 @@ class ToleranceLoop:
         Raises:
           ToleranceError: if the runs do not come that close; the message names how close they came.
         """
-        if tolerance < _LEAST_TOLERANCE:
-            raise _not_reached(tolerance, f"less than {_LEAST_TOLERANCE:g} rad is beyond the rounding of an angle")
+        if tolerance < 1e-15:
+            raise _not_reached(tolerance, "less than 1e-15 rad is beyond the rounding of an angle")
         if (rate := _stiffest(self._scene)) * times[-1] > _STABLE * _EVALUATIONS:
             raise _not_reached(
                 tolerance,
@@ -244,8 +234,9 @@ class ToleranceLoop:
                 break
             stalled = 0 if max(error, drift) <= _STALLED * estimate else stalled + 1
             ratios.append(min(_RATIO, local / self._smallest))
-            if ratios[-1] < _ROUNDED_RATIO or stalled > _PATIENCE:
-                end = "with ever smaller steps" if stalled > _PATIENCE else "at the limit of rounding"
+            # With too large steps the distance is arbitrary: a finer run may be no progress, even twice.
+            if ratios[-1] < _ROUNDED_RATIO or stalled > 2:
+                end = "with ever smaller steps" if stalled > 2 else "at the limit of rounding"
                 if error <= tolerance:
                     reason = f"two runs agree, but energy or momentum drift like an error of {drift:.2g} rad"
                 elif safety * distances[-1] <= tolerance:
@@ -303,7 +294,7 @@ def pendulum_time(scene: Scene, phi0: float, precision: float) -> OwnTime:
 def even_at_most(scene: Scene) -> OwnTime:
     """Return the same time in a unit in which no step is longer than a timestep."""
     shape = scene.oscillator
-    return _in_units_of(scene, shape.base + shape.chord + shape.coupling, _EXACTLY)
+    return _in_units_of(scene, shape.base + shape.chord + shape.coupling, 1e-15)
 
 
 def _in_units_of(scene: Scene, inertia: float, precision: float) -> OwnTime:
@@ -335,16 +326,16 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
         # It turns over and over, and a turn takes 2 pi mean(sqrt(J)) / sqrt(2 E), while E grows by 2 pi slope.
         most = (math.sqrt(2 * (most + 2 * depth)) + abs(slope) * duration / mean) ** 2 / 2
     if not depth > 0:
-        return duration / _FEWEST
-    one, modulus = 1.0, max(math.sqrt(most / (2 * depth)), _LEAST_MODULUS)
+        return duration / 8  # as for any motion that hardly moves
+    one, modulus = 1.0, max(math.sqrt(most / (2 * depth)), 1e-3)  # smaller swings are as even
     turned = math.sqrt(2 * most) * duration / mean if turns else 4 * modulus
     while abs(one - modulus) > 1e-3 * one:  # their arithmetic-geometric mean is pi/2 over K'
         one, modulus = (one + modulus) / 2, math.sqrt(one * modulus)
     pole = math.pi / (2 * one) * math.sqrt(inertia / depth)
     cycles = math.sqrt(depth) / mean * duration / (2 * math.pi)
-    slowed = max(_LEAST_GAP, min(1.0, _GAP * abs(over_crest) / depth))
+    slowed = max(1e-6, min(1.0, _GAP * abs(over_crest) / depth))
     allowed = tolerance / _REFERENCE * max(1.0, turned) * slowed / max(0.5, cycles) ** _ADDED
-    return min(_SHARE * pole * allowed**_POWER, duration / _FEWEST)
+    return min(_SHARE * pole * allowed**_POWER, duration / 8)
 
 
 @compiled()
