@@ -5,13 +5,10 @@ import warnings
 
 import mujoco
 import numpy as np
-import pytest
 
 from mjbeer import build, exact, frozen, specify
-from mjbeer.exceptions import UnsupportedError
 from mjbeer.model.joints import initial_state
-from mjbeer.model.setting import ROLLINGS
-from tests.support.scenes import METAL, SCENES
+from tests.support.scenes import METAL
 
 LOST = "timestep", "integrator", "impratio", "cone", "tolerance", "enableflags", "disableflags", "gravity"
 """The options that `mjcf/README.md` tells of."""
@@ -35,24 +32,6 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return spec.compile()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("visuals", [False, True])
-@pytest.mark.parametrize("rolling", ROLLINGS)
-def test_a_specification_is_that_of_the_built_model(rolling: str, visuals: bool) -> None:
-    for scene in SCENES.values():
-        try:
-            built = build(scene, rolling, visuals, "Euler", 2e-3, 0.7)
-        except UnsupportedError:
-            continue
-        made = specify(scene, rolling, visuals, "Euler", 2e-3, 0.7).compile()
-        assert made.nkey == 0  # a parent would get it
-        for name in ("body_mass", "body_ipos", "body_inertia", "jnt_axis", "eq_data", "pair_friction", "pair_solref",
-                     "geom_pos", "dof_armature", "tendon_armature", "actuator_biasprm"):  # fmt: skip
-            assert np.array_equal(getattr(made, name), getattr(built, name)), name
-        for name in ("timestep", "integrator", "gravity", "cone", "impratio", "disableflags"):
-            assert np.array_equal(getattr(made.opt, name), getattr(built.opt, name)), name
 
 
 def test_a_new_parent_keeps_its_own_options_and_one_that_merges_adopts_all() -> None:

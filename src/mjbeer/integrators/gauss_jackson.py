@@ -46,8 +46,8 @@ from mjbeer.integrators.uneven_time import (
     SPARE,
     OwnTime,
     dense_output,
+    dt_ds,
     kahan_add,
-    pace,
     weighted,
     weights,
 )
@@ -101,14 +101,14 @@ class GaussJackson:
         timestep: float,
         own: OwnTime,
         observer: Observer | None = None,
-        push: float = 0.0,
+        forcing: float = 0.0,
         limit: float = math.inf,
     ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
         All steps last a `timestep` in the method's `own` time. Six steps are taken before the start, and two more than
-        the times need. A `push` [rad/s^2] is added to all accelerations of phi. The `observer` is shown the ends of the
-        steps, and states between them where the load turns far in one.
+        the times need. A `forcing` [rad/s^2] is added to all accelerations of phi. The `observer` is shown the ends of
+        the steps, and states between them where the load turns far in one.
 
         Raises:
           DivergenceError: if the motion stops being finite, or there are `limit` evaluations.
@@ -118,7 +118,7 @@ class GaussJackson:
         rows = BLOCK + SPARE if observer else 0
         kept = np.empty(rows), np.empty((rows, 2 * size))
         work = np.empty((2, COUNT + 2)), np.empty((2, 2 * size)), np.empty(3), np.empty(5)
-        fixed = *self._dynamics.kernel, own, push, start, sums, history, work, times, samples, kept
+        fixed = *self._dynamics.kernel, own, forcing, start, sums, history, work, times, samples, kept
         self.evaluations = run_blocks("GaussJackson", _advance, fixed, (0.0, 0, timestep, 0), limit, observer)
         return samples
 
@@ -152,7 +152,7 @@ def _measure(pointers, views, own, law, work):
         # At a quarter turn the slide is pulled by the square of the rate, and not by a change of it.
         phi, rate = 2 * math.pi * k / _ANGLES if k < _ANGLES else math.pi / 2, 0.0
         if k == _ANGLES + 1:
-            rate = _SPIN * pace(own, phi)
+            rate = _SPIN * dt_ds(own, phi)
         elif k > _ANGLES + 1:
             phi, rate = 2 * math.pi * k / _CHECKS + 0.5, math.sqrt(square)
         gain, pulled = _accelerations(pointers, views, own, 0.0, phi, rate, work)
@@ -210,7 +210,7 @@ def _begin(pointers, views, own, law, phi, rate, step, sums, history, work):
 
 
 @compiled()
-def _advance(pointers, views, own, push, start, sums, history, work, times, samples, kept, place):
+def _advance(pointers, views, own, forcing, start, sums, history, work, times, samples, kept, place):
     """Take up to a block of steps, and return the status, the new place, and the numbers of evaluations and rows kept.
 
     `history` has a row for the second derivatives of phi, and one for the accelerations of the slide less its share.
@@ -228,18 +228,18 @@ def _advance(pointers, views, own, push, start, sums, history, work, times, samp
     phi, rate, status, taken, evaluations, back, row = start[size - 1], start[-1], BLOCK_END, 0, 0, LAG, 0
     if steps == 0:
         _measure(pointers, views, own, law, states)
-        fast = pace(own, phi)
+        pace = dt_ds(own, phi)
         for k in range(5):
             sums[0, k] = sums[1, k] = 0.0
         if size > 1:
             sums[0, 3] = start[0] - law[3] * math.sin(phi)
             sums[0, 4] = start[size] - law[3] * math.cos(phi) * rate
-        rate *= fast
+        rate *= pace
         evaluations = _begin(pointers, views, own, law, phi, rate, step, sums, history, states)
         if evaluations == 0:
             return NOT_FINITE, place, 0, 0
         evaluations += _ANGLES + 2 + _CHECKS
-        steps, back, node[0], node[1], node[2] = _MIDDLE, _MIDDLE, phi, rate, fast
+        steps, back, node[0], node[1], node[2] = _MIDDLE, _MIDDLE, phi, rate, pace
         if times[0] == 0.0:
             copy(start, samples[0])
             sample = 1
@@ -266,7 +266,7 @@ def _advance(pointers, views, own, push, start, sums, history, work, times, samp
                     history[0, end] += (law[2] * math.cos(phi) - law[1] * math.sin(phi)) * (corrected - phi)
                     break
                 rate = step * (sums[0, 0] + gain + weighted(_CORRECT_RATE, history[0], end + 1))
-            history[0, end] += push
+            history[0, end] += forcing
             kahan_add(sums, 0, history[0, end])
             kahan_add(sums, 1, sums[0, 0])
             steps, taken, end = steps + 1, taken + 1, end + 1

@@ -161,14 +161,14 @@ def weighted(weights, accelerations, end):
 
 
 @inline
-def pace(own, phi):
+def dt_ds(own, phi):
     """Return dt/ds, how fast time passes in the method's own time, at an angle."""
     sin = math.sin(own.turns * phi)
     return math.sqrt(own.even + own.uneven * sin * sin)
 
 
 @inner
-def _bend(line, history, end):
+def _fit_phi(line, history, end):
     """Write the coefficients of phi in the step of a `line`, by the accelerations before index `end`."""
     for row in range(COUNT + 2):
         line.curve[row] = 0.0
@@ -186,7 +186,7 @@ def _node(own, line, passed):
         rate = rate * x + place
         place = place * x + line.curve[row]
     phi = line.step * line.step * (place + line.second - (1 + line.back - passed) * line.first)
-    return phi, line.step * (line.first - rate), pace(own, phi)
+    return phi, line.step * (line.first - rate), dt_ds(own, phi)
 
 
 @inline
@@ -199,8 +199,8 @@ def _count(own, before, after, duration, seen):
     middle, half = (before[0] + after[0]) / 2, max(abs(before[1]), abs(after[1])) * duration / 2
     if not half < _FARTHEST:
         return -1
-    aside = middle - own.period * np.rint(middle / own.period)
-    away, half = aside * aside + own.height * own.height, half * half
+    nearest = middle - own.period * np.rint(middle / own.period)
+    away, half = nearest * nearest + own.height * own.height, half * half
     if half > seen * min(away, 1.0):
         return 0
     for count in range(1, _MOST_POINTS + 1):
@@ -215,7 +215,7 @@ def _whole(own, history, end, line, count):
     passed = 0.0
     for k in range(count):
         place = line.second - (LAG + 2 - _POINTS[count, k]) * line.first + weighted(_WITHIN[count, k], history[0], end)
-        passed += _WEIGHTS[count, k] * pace(own, line.step * line.step * place)
+        passed += _WEIGHTS[count, k] * dt_ds(own, line.step * line.step * place)
     return line.step * passed
 
 
@@ -232,7 +232,7 @@ def _duration(own, line, begin, end, count, work):
             place = place * x + line.curve[row]
         work[k] = line.second + place - (LAG + 1.5 + x) * line.first
     for k in range(count):
-        passed += _WEIGHTS[count, k] * pace(own, line.step * line.step * work[k])
+        passed += _WEIGHTS[count, k] * dt_ds(own, line.step * line.step * work[k])
     return line.step * length * passed
 
 
@@ -266,9 +266,9 @@ def _find(own, line, part, count, since, work):
             late = since - _duration(own, line, left, passed, count, work)
         else:
             late = since - span + _duration(own, line, passed, right, count, work)
-        phi, rate, fast = _node(own, line, passed)
-        grows = own.uneven * own.turns * math.sin(2 * own.turns * phi) * rate / (2 * fast * fast)
-        ahead = late / fast
+        phi, rate, pace = _node(own, line, passed)
+        grows = own.uneven * own.turns * math.sin(2 * own.turns * phi) * rate / (2 * pace * pace)
+        ahead = late / pace
         passed += ahead * (1 - grows * ahead / 2) / line.step
         if abs(late) <= _PUNCTUAL * span:
             break
@@ -285,7 +285,7 @@ def kahan_add(sums, row, term):
 
 
 @inner
-def _go_on(sums, span, pulled):
+def _add_span(sums, span, pulled):
     """Add a `span` [s] to the time, and what it adds to the slide less its share of sin(phi)."""
     kahan_add(sums, 2, span)
     kahan_add(sums, 3, span * (sums[0, 4] + span * pulled / 2))
@@ -305,12 +305,12 @@ def dense_output(own, share, sums, node, history, end, back, step, work, times, 
     span, seen = np.nan, _SEEN if kept[0].size > 0 else np.inf
     if back == LAG:
         phi = step * step * (line.second - line.back * line.first + weighted(_END_PLACE, history[0], end))
-        after = phi, step * (line.first + weighted(_END_RATE, history[0], end)), pace(own, phi)
+        after = phi, step * (line.first + weighted(_END_RATE, history[0], end)), dt_ds(own, phi)
         count = _count(own, before, after, step, seen)
         if count > 0:
             span = _whole(own, history, end, line, count)
     else:
-        _bend(line, history, end)
+        _fit_phi(line, history, end)
         after = _node(own, line, 1.0)
     # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
     pulled = (before[2] * history[1, end - 2 - back] + after[2] * history[1, end - 1 - back]) / (before[2] + after[2])
@@ -319,10 +319,10 @@ def dense_output(own, share, sums, node, history, end, back, step, work, times, 
             kept[0][row] = sums[0, 2] + span
             _write(share, sums, after, span, pulled, kept[1][row])
             row += 1
-        _go_on(sums, span, pulled)
+        _add_span(sums, span, pulled)
     else:
         if back == LAG:
-            _bend(line, history, end)
+            _fit_phi(line, history, end)
         motion = span, pulled, seen
         sample, row = _by_parts(
             own, share, sums, line, before, after, motion, work[0], times, sample, samples, kept, row
@@ -361,6 +361,6 @@ def _by_parts(own, share, sums, line, before, at_end, motion, work, times, sampl
                 kept[0][row] = times[-1]
                 copy(samples[-1], kept[1][row])
             row += 1
-        _go_on(sums, span, pulled)
+        _add_span(sums, span, pulled)
         left, right, before = right, 1.0, after
     return sample, row

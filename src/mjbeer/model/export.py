@@ -8,7 +8,7 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
-from mjbeer.model import looks, setting
+from mjbeer.model import looks
 from mjbeer.model.build import (
     START,
     add_start,
@@ -20,7 +20,7 @@ from mjbeer.model.build import (
 )
 from mjbeer.model.free import standing_spec
 from mjbeer.model.mujoco_library import library
-from mjbeer.model.setting import Setting
+from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import QUANTITATIVE, Standing
@@ -37,10 +37,10 @@ def export(
     path: str | os.PathLike[str],
     phi0: float = 0.0,
     phi_dot0: float = 0.0,
-    rolling: setting.Rolling = "reduced",
-    integrator: setting.Integrator = "RK4",
+    rolling: Rolling = "reduced",
+    integrator: Integrator = "RK4",
     timestep: float = 1e-3,
-    friction: float = setting.FRICTION,
+    friction: float = FRICTION,
     portable: bool = False,
     free: bool = True,
     mjcf: str | os.PathLike[str] | None = None,
@@ -73,24 +73,23 @@ def export(
         raise ParameterError(
             f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
         )
-    made = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
-    if made.integrator in setting.OWN:
+    setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
+    if setting.integrator in OWN:
         raise UnsupportedError(
-            f"{made.integrator} is mjbeer's integrator, not MuJoCo's; export with one of "
-            f"{', '.join(setting.INTEGRATORS)}"
+            f"{setting.integrator} is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(INTEGRATORS)}"
         )
-    if require.boolean("portable", portable) and made.integrator not in PORTABLE:
+    if require.boolean("portable", portable) and setting.integrator not in PORTABLE:
         raise UnsupportedError(
-            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {made.integrator}: MJX and "
+            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {setting.integrator}: MJX and "
             "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
         )
     if isinstance(scene, Standing):
-        spec = standing_viewer_spec(scene, free, made)
+        spec = standing_viewer_spec(scene, free, setting)
         spec.comment = f" Written by mjbeer: {scene!r}. "
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
     else:
-        spec = viewer_spec(scene, made, phi0=phi0, phi_dot0=phi_dot0)
+        spec = viewer_spec(scene, setting, phi0=phi0, phi_dot0=phi_dot0)
         if portable:
             _soften(spec, scene)
         spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
@@ -103,28 +102,28 @@ def export(
     files.write(target, _portable(text, model) if portable else text)
 
 
-def viewer_spec(scene: Scene, made: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
+def viewer_spec(scene: Scene, setting: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
     """Return the specification of a scene to be shown, which starts at `phi0` [rad] with `phi_dot0` [rad/s].
 
     The errors are those of `build` with `visuals`.
     """
-    spec = rolling_spec(scene, made, visuals=True)
+    spec = rolling_spec(scene, setting, visuals=True)
     u, far = scene.start(phi0, phi_dot0)[0], 1e4 * scene.can.radius  # a can of 33 mm takes 20 s for it on 10 degrees
     looks.lengthen_board(spec, scene, u - far, u + far)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec)
-    if fault := mechanics_fault(scene, made, model):
+    if fault := mechanics_fault(scene, setting, model):
         raise TemplateError(fault)
     spec.visual.global_.cameraid = model.camera(CAMERA).id
     return spec
 
 
-def standing_viewer_spec(can: Standing, free: bool, made: Setting) -> mujoco.MjSpec:
+def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.MjSpec:
     """Return the specification of a standing can to be shown; if it is free, with its keyframes.
 
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
-    spec = standing_spec(can, made, visuals=True, free=free)
+    spec = standing_spec(can, setting, visuals=True, free=free)
     spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
     if not free:
         return spec
