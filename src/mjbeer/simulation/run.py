@@ -62,9 +62,11 @@ class Simulator(ReusableModel):
     setting: Setting
     _dynamics: "Dynamics | None" = None  # of a model that one of mjbeer's own integrators has stepped
 
-    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
+    def __init__(
+        self, scene: Scene, setting: Setting, uneven: bool = False, mechanics: Mechanics | None = None
+    ) -> None:
         self._uneven = uneven
-        super().__init__(_mechanics(scene, setting, uneven))
+        super().__init__(mechanics or _mechanics(scene, setting, uneven))
 
     def write(self, mechanics: Mechanics) -> None:
         super().write(mechanics)
@@ -84,7 +86,7 @@ class Simulator(ReusableModel):
         try:
             simulator = idle.pop()  # at once, so that no two threads get it
         except IndexError:
-            simulator = cls(scene, setting)
+            simulator = cls(scene, setting, mechanics=mechanics)
         else:
             simulator.write(mechanics)
         try:
