@@ -7,7 +7,7 @@ import pathlib
 import re
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, nullcontext
 from importlib.metadata import version
@@ -211,13 +211,13 @@ def _checked(work: Work, axes: Axes) -> list[str]:
         return None
 
     scenes = np.arange(math.prod(_shape(axes))).reshape(_shape(axes))
-    groups = [
-        (f"{name}[{place}]: ", of_value.ravel().tolist())
+    groups: Iterable[tuple[str, Any]] = (
+        (f"{name}[{place}]: ", of_value.flat)
         for dimension, name in enumerate(axes)
         for place, of_value in enumerate(np.moveaxis(scenes, dimension, 0))
-    ]
-    for name, (first, *others) in groups or [("", [0])]:
-        if (error := problem(first)) and all(problem(scene) for scene in others):
+    )
+    for name, group in groups if axes else [("", [0])]:
+        if (error := problem(int(group[0]))) and all(problem(int(scene)) for scene in group):
             raise ParameterError(f"{name}{error}") from error
     return list(notes.values())
 
