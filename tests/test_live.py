@@ -6,6 +6,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,56 +15,50 @@ import quickjs
 
 from mjbeer import Can, Scene, exact, frozen, liquid, sliding
 from mjbeer.theory import can, load
-from mjbeer.theory import liquid as liquids
-from mjbeer.theory import scene as scenes
+from mjbeer.theory.liquid import LIQUIDS
+from mjbeer.theory.scene import GRAVITY
 
-PAGE = pathlib.Path(__file__).parents[1] / "docs" / "live.html"
-TEXT = PAGE.read_text(encoding="utf-8")
+TEXT = pathlib.Path(__file__).parents[1].joinpath("docs", "live.html").read_text(encoding="utf-8")
 PHYSICS = TEXT.split('<script id="physics">')[1].split("</script>")[0]
 TRACK = "const DEGREE = Math.PI / 180;" + TEXT.split("// A track:")[1].partition("\n")[2].split("function take(")[0]
-INSIDE = ["no friction", "ice", *liquids.NAMES]
-# Of phi and of the distance over the radius [rad]. A step errs by some 1e-13, which motions beside a top magnify.
-AGREES = 1e-7
+INSIDE = ["no friction", "ice", *LIQUIDS]
+# Of phi and of the distance over the radius [rad]: 8e-10 was measured, and 6e-6 if no step ends at the corners of |w|.
+AGREES = 1e-8
 
 
 def script(code: str, given: str = PHYSICS) -> Any:
     """What an expression is after a script has run."""
-    context = quickjs.Context()
-    context.eval(given)
-    return json.loads(context.eval(f"JSON.stringify({code})"))
+    return json.loads(quickjs.Context().eval(f"{given}\nJSON.stringify({code})"))
 
 
 def scene_of(setting: dict[str, Any]) -> Scene:
-    metal = Can.sheet_metal() if setting["metal"] else Can.massless()
-    arguments = {"incline": setting["incline"], "fill": setting["fill"], "can": metal}
-    if setting["inside"] == "no friction":
-        return sliding(**arguments)
-    return frozen(**arguments) if setting["inside"] == "ice" else liquid(setting["inside"], **arguments)
+    make = {"no friction": sliding, "ice": frozen}.get(setting["inside"], partial(liquid, setting["inside"]))
+    return make(setting["incline"], setting["fill"], Can.sheet_metal() if setting["metal"] else Can.massless())
 
 
-def require_agreement(cases: list[tuple[dict[str, Any], list[float]]]) -> None:
+def require_agreement(cases: list[tuple[dict[str, Any], list[float]]], within: float = AGREES) -> None:
     motions = script(f"{json.dumps(cases)}.map(([setting, times]) => motion(setting, times))")
     for (setting, times), found in zip(cases, motions, strict=True):
         truth = exact(scene_of(setting), times, setting["phi0"])
-        assert found["phi"] == pytest.approx(truth.phi, rel=0, abs=AGREES), setting
-        assert found["distance"] == pytest.approx(truth.distance, rel=0, abs=AGREES * can.RADIUS), setting
+        assert np.abs(found["phi"] - truth.phi).max() < within, setting
+        assert np.abs(found["distance"] - truth.distance).max() < within * can.RADIUS, setting
+        for force in ("normal", "friction"):  # the rates, up to 1000 rad/s, count squared
+            assert np.abs(found[force] - getattr(truth.forces, force)).max() < 1e3 * within, setting
 
 
 def random_cases(count: int) -> list[tuple[dict[str, Any], list[float]]]:
     """Settings of all that can be inside, with one time or more, neither evenly spaced nor in order."""
-    random = np.random.default_rng(20261123)
-    cases = []
+    random, cases = np.random.default_rng(20261123), []
     for k in range(count):
-        incline, phi0 = math.radians(random.uniform(0, 30)) * (k % 10 > 0), random.uniform(-math.pi, math.pi)
-        fill, metal = random.uniform(0.05, 1.0), bool(random.integers(2))
-        setting = {"incline": incline, "fill": fill, "inside": INSIDE[k % 7], "metal": metal, "phi0": phi0}
-        cases.append((setting, random.uniform(0, random.uniform(0.2, 4), size=random.integers(1, 20)).tolist()))
+        incline, fill = math.radians(random.uniform(0, 30)) * (k % 10 > 0), random.uniform(0.05, 1.0)
+        setting: dict[str, Any] = {"incline": incline, "fill": fill}
+        setting |= {"inside": INSIDE[k % 7], "metal": k % 2 == 0, "phi0": random.uniform(-math.pi, math.pi)}
+        cases.append((setting, random.uniform(0, random.uniform(0.2, 3), size=random.integers(1, 20)).tolist()))
     return cases
 
 
-@pytest.mark.parametrize(
-    "count", [pytest.param(28, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.costly)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [14, pytest.param(200, marks=pytest.mark.costly)])
 def test_its_motions_are_those_of_exact_theory(count: int) -> None:
     require_agreement(random_cases(count))
 
@@ -71,49 +66,40 @@ def test_its_motions_are_those_of_exact_theory(count: int) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("inside", ["no friction", "ice"])
 def test_so_they_are_beside_a_separatrix(inside: str) -> None:
-    """Down to 1e-4 rad, nearer than anybody can let go: beside it an error of the start grows by 1e6 within 3 s."""
+    """Down to 1e-4 rad, nearer than anybody can let go: there an error grows 1e5 times."""
     setting = {"incline": 0.1, "fill": 0.4, "inside": inside, "metal": True}
     ends = scene_of(setting).separatrix()
     starts = [end + way * 10.0**-power for end in ends for way in (1, -1) for power in (2, 3, 4)]
-    require_agreement([({**setting, "phi0": start}, [0.3, 1.0, 3.0]) for start in starts])
+    require_agreement([({**setting, "phi0": start}, [0.3, 1.0, 3.0]) for start in starts], 1e-7)
 
 
 def test_balanced_and_full_cans_are_those_of_theory() -> None:
     level = {"incline": 0.0, "fill": 0.5, "metal": True, "phi0": math.pi}
     steep = {"incline": 0.2, "fill": 0.5, "inside": "no friction", "metal": False, "phi0": math.pi}
     full = {"incline": 0.2, "fill": 1, "metal": True, "phi0": 1.0}
-    cases = [{**level, "inside": inside} for inside in INSIDE] + [steep]
-    cases += [{**full, "inside": inside} for inside in ("no friction", "ice")]
+    cases = [steep, *({**level, "inside": each} for each in INSIDE), *({**full, "inside": each} for each in INSIDE[:2])]
     require_agreement([(setting, [2.0, 0.0]) for setting in cases])
 
 
 def test_its_constants_are_those_of_theory() -> None:
     found = script("[LIQUIDS, RADIUS, LENGTH, SHEET, GRAVITY, BEER]")
-    assert found[0] == {name: each._asdict() for name, each in liquids.LIQUIDS.items()}
-    assert found[1:] == [can.RADIUS, can.LENGTH, can.THICKNESS * can.ALUMINIUM, scenes.GRAVITY, load.BEER]
+    assert found[0] == {name: each._asdict() for name, each in LIQUIDS.items()}
+    assert found[1:] == [can.RADIUS, can.LENGTH, can.THICKNESS * can.ALUMINIUM, GRAVITY, load.BEER]
 
 
 @pytest.mark.parametrize(
-    ("wrong", "times"),
-    [
-        ({"inside": "tea"}, [1]),
-        ({"inside": "water", "fill": 1}, [1]),
-        ({"fill": 0}, [1]),
-        ({"phi0": None}, [1]),
-        ({}, [-1]),
-    ],
+    "wrong", [{"inside": "tea"}, {"inside": "water", "fill": 1}, {"fill": 0}, {"phi0": None}, {"times": [-1]}]
 )
-def test_what_is_not_allowed_is_refused(wrong: dict[str, Any], times: list[float]) -> None:
-    setting = {"incline": 0.1, "fill": 0.5, "inside": "ice", "metal": True, "phi0": 1} | wrong
+def test_what_is_not_allowed_is_refused(wrong: dict[str, Any]) -> None:
+    given = {"incline": 0.1, "fill": 0.5, "inside": "ice", "metal": True, "phi0": 1, "times": [1]} | wrong
     with pytest.raises(quickjs.JSException, match="RangeError"):
-        script(f"motion({json.dumps(setting)}, {times})")
+        script(f"motion({json.dumps(given)}, {given['times']})")
 
 
 def test_it_is_one_small_file_that_asks_for_nothing() -> None:
     assert TEXT.count("\n") <= 450
     assert len(TEXT.encode()) <= 60_000
     assert "default-src 'none'" in TEXT
-    assert "://" not in TEXT
 
 
 def test_a_track_is_read_in_its_units_and_with_decimal_commas() -> None:
@@ -131,7 +117,6 @@ def test_a_track_is_read_in_its_units_and_with_decimal_commas() -> None:
         ("time,along\n0,0\n1,two\n", "line 3 has “two” in the column “along”, where a number must be"),
         ("time,along [ft]\n0,0\n1,2\n", "the unit of “along [ft]” must be one of m, cm, mm"),
         ("t\tphi\n1\t0\n\n1\t2\n", "the time in line 4 must be 0 or more, and after that of the line before"),
-        ("t,phi\n1,0\n", "it must have 2 to 20000 rows below the names"),
     ],
 )
 def test_a_bad_track_gets_a_sentence(table: str, sentence: str) -> None:
@@ -139,30 +124,27 @@ def test_a_bad_track_gets_a_sentence(table: str, sentence: str) -> None:
         script(f"readTrack({json.dumps(table)})", TRACK)
 
 
+# A headless browser may draw no frame: so each is asked for.
 RACE = """<script>
 function slide(id, to) { $(id).value = to; $(id).dispatchEvent(new Event("input", {bubbles: true})); }
-slide("incline-slider", 7.1); slide("a-fill-slider", 60);
-change("a-inside", "water");
+slide("incline-slider", 7.1); slide("a-fill-slider", 60); change("a-inside", "water");
 guesses[1].click(); $("go").click();
 for (let now = last; running; now += 16) frame(now);
-</script>"""
-"""A headless browser may draw no frame; so each is asked for."""
+</script></body>"""
 
 
 @pytest.mark.slow
 def test_a_browser_races_and_says_who_won(tmp_path: pathlib.Path) -> None:
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if not chromium:
+    if not (chromium := shutil.which("chromium") or shutil.which("google-chrome")):
         pytest.skip("no Chromium: `apt-get install chromium` brings one")
-    page = tmp_path / "live.html"
-    page.write_text(TEXT.replace("</body>", RACE + "</body>"), encoding="utf-8")
+    (page := tmp_path / "live.html").write_text(TEXT.replace("</body>", RACE), encoding="utf-8")
     command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom", page.as_uri()]
-    ran = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
-    verdict = ran.stdout.split('id="verdict"')[1].split(">", 1)[1].split("</p>")[0]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+    verdict = shown.split('id="verdict"')[1].split(">", 1)[1].split("</p>")[0]
     time = re.match(r"<strong>Can A \(water\) wins</strong> after ([\d.]+) s\.", verdict)
     assert time, verdict
     assert verdict.endswith("Your guess was can B.")
     around = [float(time[1]) - 6e-4, float(time[1]) + 6e-4]  # it is told to a thousandth
     run = exact(liquid("water", math.radians(7.1), 0.6, Can.sheet_metal()), around, math.radians(30))
     assert run.distance[0] < 1 < run.distance[1]
-    assert "as one lump is an order of magnitude only" in ran.stdout.split('id="limits"')[1]
+    assert "as one lump is an order of magnitude only" in shown.split('id="limits"')[1]

@@ -1,4 +1,4 @@
-"""Whatever is passed to a public function: a result comes back, or an error of mjbeer's that says what came.
+"""Public functions return a result, or raise an error of mjbeer's that says what came.
 
 Every parameter of everything public gets every value below, while the other arguments are good.
 """
@@ -120,7 +120,7 @@ def use(result: object) -> None:
 
 
 def named(value: object) -> set[str]:
-    """What an error may show of a value: the value, how many entries it has, or an entry, as it came or as a double."""
+    """Texts by which an error may show a value: it, its number of entries, or an entry, as it came or as a double."""
     several = isinstance(value, (list, tuple, range)) or (isinstance(value, np.ndarray) and value.ndim > 0)
     entries = list(value) if several else [value]
     texts = {format_value(value), f" {len(entries)}, got ", f"got {len(entries)}"} | {

@@ -1,4 +1,4 @@
-"""What an argument must be: numbers, names and samples that are refused, and how messages show them."""
+"""Checks of arguments: numbers, names and samples that are refused, and how messages show them."""
 
 import math
 from fractions import Fraction

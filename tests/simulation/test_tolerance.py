@@ -23,7 +23,6 @@ from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import accelerations, relaxation_rate
 from mjbeer.theory.exact import phi_error
 from mjbeer.theory.trajectory import distance
-from tests.support import damped_motion
 from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow
@@ -188,9 +187,9 @@ def test_damped_motions_keep_to_the_tolerance(
         scene, damping=scene.oscillator.base * unit * 10**damping, drag=scene.mass / scene.can.radius * 10**drag
     )
     times = np.linspace(0, 8 / unit, 41)
-    assume(tolerances._stiffest(scene) * times[-1] < 2e3)  # the reference is explicit
+    assume(tolerances._stiffest(scene) * times[-1] < 2e3)  # DOP853 takes steps as short as that
     run = simulate(scene, times[-1], phi0, swing * unit, tolerance=tolerance, times=times)
-    truth = damped_motion.motion(scene, times, phi0, swing * unit)
+    truth = exact(scene, times, phi0, swing * unit)
     assert distance(run, truth, scene.can.radius, (phi0, scene.start(phi0, 0.0)[0])) <= tolerance
     assert run.error_estimate <= tolerance
     assert run.integrator == "DOP853"
@@ -219,7 +218,7 @@ def test_stiffness_is_the_fast_root(phi: float) -> None:
 @pytest.mark.parametrize("damping", [1e-12, 1e-3])
 def test_a_damped_run_is_trusted_if_it_is_right(damping: float) -> None:
     scene, times = sliding(damping=damping), np.linspace(0, 4, 21)
-    truth = damped_motion.motion(scene, times, 2.0)
+    truth = exact(scene, times, 2.0)
     for integrator, timestep, right in (("RK4", 1e-3, True), ("DOP853", 1e-3, True), ("Euler", 5e-3, False)):
         run = simulate(scene, 4, 2.0, integrator=integrator, timestep=timestep, times=times)
         found = distance(run, truth, scene.can.radius)
@@ -233,7 +232,7 @@ def test_a_second_run_estimates_the_error_of_implicit_methods(integrator: str, r
     """Where MuJoCo's accelerations are those of a whole step, they must not be taken for a loss of the model's."""
     scene = sliding(can=METAL, damping=1e-3)
     run = simulate(scene, 1, 1.0, rolling=rolling, integrator=integrator, times=np.linspace(0, 1, 11))
-    found = distance(run, damped_motion.motion(scene, run.time, 1.0), scene.can.radius)
+    found = distance(run, exact(scene, run.time, 1.0), scene.can.radius)
     assert found < run.error_estimate < 5 * found
 
 

@@ -144,8 +144,8 @@ def test_unstable_balance() -> None:
 def test_a_corner_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Four of them in each period on the level, of |w| and |roll_dot|, which the swing passes until it dies away."""
     scene = sliding(0.0, can=METAL, damping=Damping(0, 1e-6, 0), drag=1e-3)
-    steps, newton = [], damped_motion._newton
-    monkeypatch.setattr(damped_motion, "_newton", lambda *step: steps.append(step) or newton(*step))
+    steps, newton = [], damped_motion._solve_stages
+    monkeypatch.setattr(damped_motion, "_solve_stages", lambda *step: steps.append(step) or newton(*step))
     assert np.isfinite(exact(scene, 2.0, 1.0).phi).all()
     assert len(steps) < STEPS_A_PERIOD * 2 * scene.frequency() / (2 * math.pi)
 
@@ -185,14 +185,14 @@ def test_what_takes_too_long_is_refused_soon_and_until_when_it_can_be_followed(
 ) -> None:
     """Half of the work shows it, and the motion can then be followed until the time that was named."""
     scene, latest, phi0, phi_dot0 = FAST[name]
-    work, newton = [0], damped_motion._newton
+    work, newton = [0], damped_motion._solve_stages
 
     def counted(*step: object) -> tuple:
         found = newton(*step)
         work[0] += found[0]
         return found
 
-    monkeypatch.setattr(damped_motion, "_newton", counted)
+    monkeypatch.setattr(damped_motion, "_solve_stages", counted)
     with pytest.raises(ToleranceError, match=r"too many steps: .* followed until \S* s; it can be followed") as refused:
         exact(scene, latest, phi0, phi_dot0)
     assert work[0] < damped_motion._WORK / 2 + 12

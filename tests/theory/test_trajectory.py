@@ -1,4 +1,4 @@
-"""What a trajectory says about itself: nothing against an exact one, and the truth about one that was tampered with."""
+"""A trajectory judges itself: an exact one is trusted, and one that was tampered with is not, for the right reason."""
 
 import math
 import pathlib
@@ -207,7 +207,7 @@ def test_frequency_is_that_of_the_period(scene: Scene) -> None:
 
 @pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
 def test_a_load_at_rest_has_no_frequency(rolling: str) -> None:
-    """What moves there is rounding, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
+    """Rounding moves it, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
     scene = frozen(can=METAL)
     run = simulate(scene, 4.0, scene.equilibrium() + 1e-13, rolling=rolling)
     with pytest.raises(MjbeerError, match="no frequency: "):

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import partial
 
 import numpy as np
 from scipy.optimize import brentq
@@ -15,7 +15,6 @@ from mjbeer.drawing.overlay import HEIGHT, head
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.words import in_degrees
-from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
@@ -38,19 +37,14 @@ class Runner:
     """Colour of what is in it; None is that of beer, or of ice if it is frozen."""
     note: str = ""  # what else is to be known of it, such as "μ = 0.35"; it stands below the name
 
-    @cached_property
-    def distance(self) -> np.ndarray:
-        """Return how far the can has rolled since the start [m], at each sample."""
-        return self.trajectory.u - self.trajectory.u[0]
-
     def finish(self, length: float) -> float:
         """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if it ends before."""
-        if self.distance[-1] < length:
-            return math.inf
-        moment = brentq(
-            lambda t: self.positions(np.array([t]))[0, 0] - length, 1e-3, self.trajectory.time[-1], xtol=1e-12
-        )
-        return float(moment)
+        end = self.trajectory.time[-1]
+
+        def ahead(time: float) -> float:
+            return self.positions(np.array([time]))[0, 0] - length
+
+        return float(brentq(ahead, 1e-3, end, xtol=1e-12)) if ahead(end) >= 0 else math.inf
 
     def positions(self, times: np.ndarray) -> np.ndarray:
         """Return u from the start [m], phi, roll [rad] and lift [m] at some times [s], shape (times, 4).
@@ -87,31 +81,13 @@ class Race:
         return self.told()
 
     def plan(self) -> RenderPlan:
-        """Compute the motions, and return what is needed to draw them.
-
-        Raises:
-          ParameterError: if a can of a race does not finish.
-        """
+        """Compute the motions, and return what is needed to draw them."""
         runners = self.runners()
         if self.centres:
             end = min(float(runner.trajectory.time[-1]) for runner in runners)
         else:
-            end = self.finishes(runners)[-1 - self.missing] + self.after
+            end = sorted(runner.finish(self.length) for runner in runners)[-1 - self.missing] + self.after
         return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, end))
-
-    def finishes(self, runners: Sequence[Runner]) -> list[float]:
-        """Return the times [s] at which the cans finish, in increasing order.
-
-        Raises:
-          ParameterError: if one does not.
-        """
-        for runner in runners:
-            if runner.distance[-1] < self.length:
-                raise ParameterError(
-                    f"{runner.name} rolls {runner.distance[-1]:.3g} m to t = {runner.trajectory.time[-1]:.3g} s, and "
-                    f"the race is over {self.length:g} m"
-                )
-        return sorted(runner.finish(self.length) for runner in runners)
 
     def _pictures(
         self, runners: Sequence[Runner], end: float, times: np.ndarray, width: int, height: int
@@ -128,7 +104,7 @@ class Race:
         view = View.towards(eye, points, (sheet.width, sheet.height - top), _MARGIN)
         facts = [f"{self.length:g} m"] * (not self.centres) + [f"incline {in_degrees(scenes[0].incline)}"]
         words = self.title, ", ".join(facts + [self.facts] * bool(self.facts))
-        results = {} if self.centres else self._results(runners)
+        results = [(math.inf, "")] * len(runners) if self.centres else self._results(runners)
         starts = [runner.trajectory.u[0] * self.centres for runner in runners]  # in a race all start at one line
         with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
             for time in times:
@@ -137,8 +113,8 @@ class Race:
                 now[:, 0] += starts
                 painter.paint(sheet, view, now, top)
                 head(sheet, words, time, self.speed)
-                for runner, lane, u in zip(runners, display.lanes, now[:, 0] * size, strict=True):
-                    finish, result = results.get(runner.name, (math.inf, ""))
+                shown = zip(runners, results, display.lanes, now[:, 0] * size, strict=True)
+                for runner, (finish, result), lane, u in shown:
                     said = [(runner.note, False, INK)] * bool(runner.note)
                     if time >= finish:
                         said = [(result, True, INK)]
@@ -153,15 +129,12 @@ class Race:
                 sheet.text((1.2 * sheet.unit, height - 1.5 * sheet.unit), self.caveat, 1.1 * sheet.unit, halo=True)
                 yield sheet.picture()
 
-    def _results(self, runners: Sequence[Runner]) -> dict[str, tuple[float, str]]:
-        """Return when each can finishes [s], and what its plate then says, by the cans' names."""
-        finishes = self.finishes(runners)
-        results = {}
-        for runner in runners:
-            place = finishes.index(finish := runner.finish(self.length))
-            ordinal = ("1st", "2nd", "3rd")[place] if place < 3 else f"{place + 1}th"
-            results[runner.name] = finish, f"{ordinal}: {finish:.2f} s"
-        return results
+    def _results(self, runners: Sequence[Runner]) -> list[tuple[float, str]]:
+        """Return when each can finishes [s], and what its plate then says."""
+        finishes = [runner.finish(self.length) for runner in runners]
+        places = [sorted(finishes).index(finish) for finish in finishes]
+        ordinals = "1st", "2nd", "3rd", *(f"{place + 1}th" for place in range(3, len(runners)))
+        return [(finish, f"{ordinals[at]}: {finish:.2f} s") for finish, at in zip(finishes, places, strict=True)]
 
 
 def _join(sheet: Sheet, places: np.ndarray) -> None:

@@ -178,7 +178,7 @@ class Sheet:
         width, height = wide + 1.2 * unit, (len(lines) * _LINE + 0.5) * unit
         left, top = float(place[0]) - anchor[0] * width, float(place[1]) - anchor[1] * height
         corners = [[left, top], [left + width, top], [left + width, top + height], [left, top + height]]
-        self.area(np.array(corners), ground, alpha=0.9)
+        self.area(np.array(corners), ground)
         for number, (words, bold, colour) in enumerate(lines):
             row = top + ((number + 0.5) * _LINE + 0.25) * unit
             self.text((left + 0.6 * unit, row), words, size[number], colour, bold=bold)

@@ -20,6 +20,7 @@ from mjbeer.integrators.dynamics import (
     compiled,
     copy,
     derivative,
+    inline,
     inner,
     run_blocks,
 )
@@ -108,7 +109,7 @@ def _corners(model: mujoco.MjModel) -> np.ndarray:
     return np.pad(np.reshape(rows, (len(rows), model.nv)), ((0, 0), (model.nq, 0)))
 
 
-@inner
+@inline
 def _combine(weights, count, stages, out):
     """Write the weighted sum of the first `count` stages to `out`, stage by stage, so that additions can overlap."""
     for i in range(out.size):

@@ -5,7 +5,9 @@ does not import this.
 """
 
 import ctypes
-from contextlib import nullcontext
+import threading
+from collections.abc import Generator
+from contextlib import contextmanager, nullcontext
 from functools import partial
 from typing import Any
 
@@ -24,9 +26,11 @@ DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
 compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False)
 """Compiles what allocates nothing, so that arrays need not be counted: that takes a seventh of the time of a run."""
-inner = partial(compiled, no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True)
-"""Compiles what compiled code alone may call, into its callers: a call with so many arguments takes as long as what it
-does, and an entry for Python a seventh of the compiler's time."""
+inner = partial(compiled, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+"""Compiles what compiled code alone may call; an entry for Python takes a seventh of the compiler's time."""
+inline = partial(inner, forceinline=True)
+"""Compiles what is called in every step into its callers: a call with so many arguments takes as long as what it
+does."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
@@ -38,22 +42,25 @@ _WITHOUT_PASSIVE = (
 )  # fmt: skip
 """What that leaves of these in a model that has no damping either: another quarter less. Without tendons, those of the
 tendons are left out, too."""
-_COMPILING = "mjbeer: compiling this integrator for this machine, once: up to 4 s"
 
 
-class _Compiling(event.Listener):
-    """Says once, if somebody may see it, that numba compiles; what is read from its cache is not compiled."""
+@contextmanager
+def _announced() -> Generator[None]:
+    """Say, if somebody may see it, that numba compiles in the block, and does not read its cache, after a second."""
 
-    said = False
+    def say() -> None:
+        from mjbeer.output import terminal  # which takes a tenth of a second to import
 
-    def on_start(self, _: Any) -> None:
-        from mjbeer.output import terminal
+        if begun.buffer and terminal.is_seen():
+            terminal.say("mjbeer: compiling this integrator for this machine, once: up to 4 s")
 
-        if not _Compiling.said and terminal.is_seen():
-            _Compiling.said = True
-            terminal.say(_COMPILING)
-
-    def on_end(self, _: Any) -> None: ...
+    timer = threading.Timer(1.0, say)
+    with event.install_recorder("numba:compile") as begun:
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
 
 
 def run_blocks(
@@ -69,12 +76,12 @@ def run_blocks(
       DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
     """
     status, total = BLOCK_END, 0
-    heard = nullcontext() if kernel.overloads else event.install_listener("numba:compile", _Compiling())
-    with quiet(), untimed(), heard:
+    with quiet(), untimed():
         while status == BLOCK_END:
             if total > limit:
                 raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
-            status, place, evaluations, count = kernel(*fixed, place)
+            with nullcontext() if kernel.overloads else _announced():
+                status, place, evaluations, count = kernel(*fixed, place)
             total += evaluations
             if observer and count:
                 observer(*(rows[:count] for rows in fixed[-1]))
@@ -133,7 +140,7 @@ class Dynamics:
             mujoco.mj_forward(self._model, self.data)
 
 
-@compiled(forceinline=True)
+@inline
 def derivative(pointers, views, state, out):
     """Write the time derivative of a state to `out`.
 
@@ -154,7 +161,7 @@ def derivative(pointers, views, state, out):
         out[n + i] = qacc[i]
 
 
-@inner
+@inline
 def copy(values, out):
     """Write values to `out`, of the same size: an assignment would compile the text of an error for seconds."""
     for i in range(values.size):

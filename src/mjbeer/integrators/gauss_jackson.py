@@ -35,6 +35,7 @@ from mjbeer.integrators.dynamics import (
     compiled,
     copy,
     derivative,
+    inline,
     inner,
     run_blocks,
 )
@@ -122,7 +123,7 @@ class GaussJackson:
         return samples
 
 
-@inner
+@inline
 def _accelerations(pointers, views, own, share, phi, rate, work):
     """Return the second derivative of phi in the method's own time, and that of the slide less its share in time.
 
@@ -146,24 +147,26 @@ def _measure(pointers, views, own, law, work):
     """Write the law: the coefficients of 1, cos(phi) and sin(phi) in phi'', the share of the slide, and if it fits."""
     for k in range(5):
         law[k] = 0.0
-    for k in range(_ANGLES):
-        phi = 2 * math.pi * k / _ANGLES
-        gain, _ = _accelerations(pointers, views, own, 0.0, phi, 0.0, work)
-        law[0] += gain / _ANGLES
-        law[1] += 2 * gain * math.cos(phi) / _ANGLES
-        law[2] += 2 * gain * math.sin(phi) / _ANGLES
-    # At a quarter turn the slide is pulled by the square of the rate, and not by a change of it.
-    phi = math.pi / 2
-    sin = math.sin(own.turns * phi)
-    _, still = _accelerations(pointers, views, own, 0.0, phi, 0.0, work)
-    _, spun = _accelerations(pointers, views, own, 0.0, phi, _SPIN * math.sqrt(own.even + own.uneven * sin * sin), work)
-    law[3] = (still - spun) / _SPIN**2
-    square = abs(law[0]) + abs(law[1]) + abs(law[2])
-    square, law[4] = square if square > 0 else 1.0, 1.0
-    for k in range(_CHECKS):
-        phi = 2 * math.pi * k / _CHECKS + 0.5
-        gain, _ = _accelerations(pointers, views, own, 0.0, phi, math.sqrt(square), work)
-        if not abs(gain - law[0] - law[1] * math.cos(phi) - law[2] * math.sin(phi)) <= _FITS * square:
+    law[4], square = 1.0, 1.0
+    for k in range(_ANGLES + 2 + _CHECKS):
+        # At a quarter turn the slide is pulled by the square of the rate, and not by a change of it.
+        phi, rate = 2 * math.pi * k / _ANGLES if k < _ANGLES else math.pi / 2, 0.0
+        if k == _ANGLES + 1:
+            rate = _SPIN * pace(own, phi)
+        elif k > _ANGLES + 1:
+            phi, rate = 2 * math.pi * k / _CHECKS + 0.5, math.sqrt(square)
+        gain, pulled = _accelerations(pointers, views, own, 0.0, phi, rate, work)
+        if k < _ANGLES:
+            law[0] += gain / _ANGLES
+            law[1] += 2 * gain * math.cos(phi) / _ANGLES
+            law[2] += 2 * gain * math.sin(phi) / _ANGLES
+        elif k == _ANGLES:
+            law[3] = pulled / _SPIN**2
+            square = abs(law[0]) + abs(law[1]) + abs(law[2])
+            square = square if square > 0 else 1.0
+        elif k == _ANGLES + 1:
+            law[3] -= pulled / _SPIN**2
+        elif not abs(gain - law[0] - law[1] * math.cos(phi) - law[2] * math.sin(phi)) <= _FITS * square:
             law[4] = 0.0
 
 
@@ -251,15 +254,18 @@ def _advance(pointers, views, own, push, start, sums, history, work, times, samp
         else:
             phi = step**2 * (sums[0, 1] + weighted(_PREDICT, history[0], end))
             rate = step * (sums[0, 0] + weighted(_PREDICT_RATE, history[0], end))
-            gain, history[1, end] = _accelerations(pointers, views, own, law[3], phi, rate, states)
-            history[0, end] = gain
-            corrected = step**2 * (sums[0, 1] + weighted(_CORRECT, history[0], end + 1))
-            if law[4] > 0:
-                history[0, end] += (law[2] * math.cos(phi) - law[1] * math.sin(phi)) * (corrected - phi)
-            else:
+            corrected = phi
+            for correction in range(2):
+                gain, history[1, end] = _accelerations(pointers, views, own, law[3], corrected, rate, states)
+                history[0, end] = gain
+                if correction > 0:
+                    evaluations += 1
+                    break
+                corrected = step**2 * (sums[0, 1] + weighted(_CORRECT, history[0], end + 1))
+                if law[4] > 0:
+                    history[0, end] += (law[2] * math.cos(phi) - law[1] * math.sin(phi)) * (corrected - phi)
+                    break
                 rate = step * (sums[0, 0] + gain + weighted(_CORRECT_RATE, history[0], end + 1))
-                history[0, end], history[1, end] = _accelerations(pointers, views, own, law[3], corrected, rate, states)
-                evaluations += 1
             history[0, end] += push
             kahan_add(sums, 0, history[0, end])
             kahan_add(sums, 1, sums[0, 0])

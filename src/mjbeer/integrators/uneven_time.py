@@ -26,7 +26,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 
-from mjbeer.integrators.dynamics import compiled, copy, inner
+from mjbeer.integrators.dynamics import copy, inline, inner
 
 COUNT = 13
 """Number of accelerations that are kept: the method has differences up to the twelfth."""
@@ -144,7 +144,7 @@ _WITHIN = (np.vander(0.5 - _POINTS.ravel(), COUNT + 2) @ _BETWEEN.T).reshape(*_P
 _END_RATE, _END_PLACE = weights(1, LAG), weights(2, LAG)
 
 
-@inner
+@inline
 def weighted(weights, accelerations, end):
     """Return the weighted sum of the `COUNT` accelerations before index `end`, four by four, so that terms overlap.
 
@@ -160,7 +160,7 @@ def weighted(weights, accelerations, end):
     return (first + second) + (third + fourth)
 
 
-@compiled(forceinline=True)
+@inline
 def pace(own, phi):
     """Return dt/ds, how fast time passes in the method's own time, at an angle."""
     sin = math.sin(own.turns * phi)
@@ -189,7 +189,7 @@ def _node(own, line, passed):
     return phi, line.step * (line.first - rate), pace(own, phi)
 
 
-@inner
+@inline
 def _count(own, before, after, duration, seen):
     """Return how many points a part needs, between two nodes some `duration` apart in the method's own time.
 
@@ -209,7 +209,7 @@ def _count(own, before, after, duration, seen):
     return 0
 
 
-@inner
+@inline
 def _whole(own, history, end, line, count):
     """Return the time [s] that passes in the step that ends `LAG` steps before the last one, by so many points."""
     passed = 0.0
@@ -275,7 +275,7 @@ def _find(own, line, part, count, since, work):
     return _node(own, line, passed)
 
 
-@inner
+@inline
 def kahan_add(sums, row, term):
     """Add a term to a sum, and the rounding of the addition before."""
     term -= sums[1, row]
@@ -292,7 +292,7 @@ def _go_on(sums, span, pulled):
     kahan_add(sums, 4, span * pulled)
 
 
-@inner
+@inline
 def dense_output(own, share, sums, node, history, end, back, step, work, times, sample, samples, kept, row):
     """Go on to the step that many steps `back`: fill in the samples on the way, and keep states of it.
 

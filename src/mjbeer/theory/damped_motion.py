@@ -94,12 +94,12 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
     swing_rate = math.sqrt(scene.oscillator.depth / scene.oscillator.base)
     start = np.array([reduced(phi0), phi_dot0, u_dot0 / radius - phi_dot0])
     corners = [[0.0, 1.0]] * (scene.damping_law.quadratic > 0) + [[1.0, 1.0]] * (scene.drag > 0)
-    followed = _follow(_rates_of(scene), time[order], start, swing_rate, np.reshape(corners, (-1, 2)))
+    followed = _integrate(_rates_of(scene), time[order], start, swing_rate, np.reshape(corners, (-1, 2)))
     delta_phi, delta_roll, phi_dot, slip = followed[:, np.argsort(order)]
     return phi0 + delta_phi, phi_dot, u0 + radius * delta_roll, radius * (phi_dot + slip)
 
 
-def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float, corners: np.ndarray) -> np.ndarray:
+def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float, corners: np.ndarray) -> np.ndarray:
     """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times, of shape (4, times).
 
     The `state` is phi, phi_dot and w at time 0, `swing_rate` is about that of a swing [rad/s], and `corners` are the
@@ -124,14 +124,14 @@ def _follow(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float
                 f"the motion cannot be followed later than {now:.6g} s of {latest:.6g} s: there it changes within the "
                 "rounding of the time"
             )
-        used, solved = _newton(rates, state, length, scale, sensitivity)
+        used, solved = _solve_stages(rates, state, length, scale, sensitivity)
         work += used
         if solved is None:
             length /= 4
             continue
         stages, changes = solved
         nodes = np.vstack([state[1:], stages.T])
-        if (corner := _corner(nodes, corners)) is not None:
+        if (corner := _share_to_corner(nodes, corners)) is not None:
             length *= corner
             continue
         series = _TO_SERIES @ nodes
@@ -185,7 +185,7 @@ def _require_end(work: int, before: float, now: float, latest: float) -> None:
     )
 
 
-def _corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
+def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     """Return the share of a step at which the first of the sums whose absolute values count passes zero inside.
 
     The `nodes` are phi_dot and w at the start and the stages, of shape (stages + 1, 2).
@@ -207,7 +207,7 @@ def _corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     return min((share for share in shares if 1e-6 < share < 1 - 1e-6), default=None)
 
 
-def _newton(
+def _solve_stages(
     rates: Rates, state: np.ndarray, length: float, scale: float, sensitivity: np.ndarray
 ) -> tuple[int, tuple[np.ndarray, np.ndarray] | None]:
     """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `sensitivity`.

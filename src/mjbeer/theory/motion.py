@@ -44,7 +44,7 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
             delta_phi, phi_dot, margin = start.move(time)
             fastest = float(np.max(np.abs(phi_dot) / np.maximum(1, np.abs(delta_phi)), initial=0.0))
             effect = start.rounding_delay(margin, latest) * fastest
-    except _EndsOnCrestError:
+    except NoLibrationError:  # exactly on the separatrix
         effect = math.inf
     if not effect <= UNCERTAIN:
         raise NoLibrationError(
@@ -69,7 +69,7 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
         return math.tau / oscillator.frequency()
     if start.energy_above_next_crest < 0:
         with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-            found = _period(_swing(start))
+            found = _period(_arcs_of_swing(start))
             if start.rounding_delay(-start.energy_above_next_crest, found) <= UNCERTAIN * found:
                 return found
     raise NoLibrationError(
@@ -78,13 +78,9 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     )
 
 
-class _EndsOnCrestError(Exception):
-    """A motion comes to rest on a crest for ever: it is exactly on a separatrix."""
-
-
 @dataclass(frozen=True)
 class Start:
-    """Where a motion starts, in distances that keep their digits beside the crest and beside the equilibrium."""
+    """The start of a motion, in angles that keep their digits beside the crest and beside the equilibrium."""
 
     oscillator: Oscillator
     potential: Potential
@@ -162,8 +158,8 @@ class Start:
 
         The margin is the least energy by which the motion passes or misses a crest.
         """
-        swing = _swing(self) if self.swings else None
-        latest, legs = float(np.max(time, initial=0.0)), cycle(swing) if swing else _roll(self)
+        swing = _arcs_of_swing(self) if self.swings else None
+        latest, legs = float(np.max(time, initial=0.0)), cycle(swing) if swing else _paths_over_crests(self)
         first = next(legs)
         begin = first[0].time(self)
         since, cycles = time + begin, 0
@@ -247,7 +243,7 @@ class Turns:
         return self.duration - since if self._uphill else since
 
     def state(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what `Arc.state` does."""
+        """Return turn, angle and phi_dot, as `Arc.state`."""
         x, passage = self._travel_time.phase(self.duration - time if self._uphill else time)
         speed = self._speed(x, self._energies[passage])
         return passage, x, -speed if self._uphill else speed
@@ -257,15 +253,15 @@ def _period(swing: list[tuple[Arc, int, float]]) -> float:
     return sum(path.duration for path, *_ in swing)
 
 
-def _swing(start: Start) -> list[tuple[Arc, int, float]]:
-    """Return the paths of a swing as `_roll` does, with angles past the rest; that on the side of the start first."""
+def _arcs_of_swing(start: Start) -> list[tuple[Arc, int, float]]:
+    """Return the paths of a swing, that on the side of the start first; angles are past rest."""
     if start.energy_above_next_crest == 0:
-        raise _EndsOnCrestError
+        raise NoLibrationError("the motion comes to rest on a crest")
     side = 1 if start.angle_past_rest >= 0 else -1
-    return [(_arc(start, each), 0, -start.energy_above_next_crest) for each in (side, -side)]
+    return [(_arc_to(start, each), 0, -start.energy_above_next_crest) for each in (side, -side)]
 
 
-def _arc(start: Start, side: int) -> Arc:
+def _arc_to(start: Start, side: int) -> Arc:
     """Return the arc of a swing downhill (1) or uphill (-1) of the rest: from the rest, or the crest if that is nearer.
 
     In either case V rises or falls from there by 2 `height` to the turning point.
@@ -290,7 +286,7 @@ def _arc(start: Start, side: int) -> Arc:
     return Arc(start, -side * distance, -side * well, origin=side * well)
 
 
-def _roll(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]:
+def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]:
     """Yield the paths of a motion that passes crests, with angles past the crest of each turn.
 
     With each come the number of its most uphill turn from that of the start, and the energy [J] by which it passes or
@@ -308,7 +304,7 @@ def _roll(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]:
         energy, ahead = float(energies[0]) - drop, float(energies[0])
     if energy <= highest:
         if energy == 0 and potential.excess == 0:
-            raise _EndsOnCrestError
+            raise NoLibrationError("the motion comes to rest on a crest")
         # A load that passes the crest uphill turns behind it: the well there is shallow, or there is none.
         end = potential.turn_begins + math.tau
         lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, end)

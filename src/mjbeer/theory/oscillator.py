@@ -84,7 +84,7 @@ class Potential:
         return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
 
     def distances_by_rest(self, past_rest: float) -> tuple[float, float]:
-        """Return what `distances` does, by the angle [rad] past the equilibrium of a well."""
+        """Return the `distances` by the angle [rad] past the equilibrium of a well."""
         past_crest = _past_pi(past_rest) + 2 * self.lean
         return past_crest - (math.tau if past_crest >= self.turn_begins + math.tau else 0.0), past_rest
 

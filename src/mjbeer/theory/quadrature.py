@@ -44,7 +44,7 @@ class TravelTime:
                     "the time along this motion is beyond doubles: sizes, masses, gravity or speeds are of too many "
                     "different orders of magnitude"
                 )
-            done = _resolved(rates[0], lows, halves)
+            done = _are_resolved(rates[0], lows, halves)
             panels.append((lows[done], halves[done], rates[:, done]))
             lows, middles, ends = lows[~done], middles[~done], ends[~done]
             lows, ends = np.concatenate([lows, middles]), np.concatenate([middles, ends])
@@ -70,10 +70,11 @@ class TravelTime:
         panel = np.clip(np.searchsorted(self._times, time, side="right") - 1, 0, len(self._series) - 1)
         half, elapsed = self._halves[panel], time - self._times[panel]
         guess = 2 * elapsed / (self._times[panel + 1] - self._times[panel]) - 1
-        return self._lows[panel] + half * _invert(self._series[panel], elapsed / half, guess), panel // self._size
+        x = _inverse_integral(self._series[panel], elapsed / half, guess)
+        return self._lows[panel] + half * x, panel // self._size
 
 
-def _resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
+def _are_resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.ndarray:
     """Return which of the panels reproduce `rates` by a series, as far as the rounding of psi lets them."""
     coefficients = np.abs(rates @ _TO_SERIES)
     size, tail = coefficients.max(axis=1), coefficients[:, -3:].max(axis=1)
@@ -84,7 +85,7 @@ def _resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np.nda
     return (tail <= 3e-15 * size) | (stalled & (tail <= noise * size))
 
 
-def _invert(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
+def _inverse_integral(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
     """Return the x from 0 to 2 at which the integral of each series from -1 to x - 1 reaches its `target`.
 
     `guess` is one for x - 1. `series` has the shape (samples, coefficients); each is positive from -1 to 1.

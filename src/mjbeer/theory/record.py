@@ -160,7 +160,7 @@ def failed_checks(record: Record, rolling: str) -> list[str]:
 
     Only in "contact" may the can slip and part, as `rolling_failures` says, and then friction and impacts take energy.
     """
-    reasons = _slipped(record)
+    reasons = _slip_reasons(record)
     if rolling == "contact" and reasons:
         return []
     error = float(np.maximum(record.swing_error, record.axis_error))  # NaN if one is
@@ -182,14 +182,14 @@ def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -
         at = f"from t = {record.rolling_ends_at:.6g} s"
         pulls = f"{at} the incline would have to pull at the can (N < 0): a real one leaves it there"
         return [pulls] if math.isfinite(record.rolling_ends_at) else []
-    reasons = _slipped(record)
+    reasons = _slip_reasons(record)
     if not record.needed_friction <= friction:
         needed = require.format_above(record.needed_friction, friction, digits=3)
         reasons.append(f"rolling needs a friction coefficient of {needed}, and the contact has {friction:g}: it slides")
     return reasons
 
 
-def _slipped(record: Record) -> list[str]:
+def _slip_reasons(record: Record) -> list[str]:
     reasons, slip, lift = [], record.slip / record.scene.can.radius, record.lift / record.scene.can.radius
     if not slip <= SLIP:
         reasons.append(f"the can slips by {require.format_above(slip, SLIP)} radii (trusted up to {SLIP:g})")

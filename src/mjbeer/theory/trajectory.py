@@ -159,7 +159,7 @@ class Trajectory(Coordinates):
         swing = select_samples(self, slice(int(np.max(np.flatnonzero(np.abs(self.phi_dot) > least), initial=-1)) + 1))
         time, phi, rate = swing.time, swing.phi, swing.phi_dot
         phi_ddot = accelerations(scene, phi, rate, swing.u_dot)[1]
-        turns = _zeros(time, rate, phi_ddot)
+        turns = _turning_times(time, rate, phi_ddot)
         if len(turns) < 3:
             raise MjbeerError(f"no frequency: the load turns {len(turns)} times in {self.time[-1]:.6g} s, 3 are needed")
         if not scene.dissipates:
@@ -271,7 +271,7 @@ def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tupl
     return max(angle_distance(motion.phi, truth.phi, phi), angle_distance(motion.u / radius, truth.u / radius, rolled))
 
 
-def _zeros(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
+def _turning_times(time: np.ndarray, rate: np.ndarray, change: np.ndarray) -> np.ndarray:
     """Return the times [s] at which `rate` changes sign; in between it is the cubic with its values and derivatives."""
     before = np.flatnonzero(np.diff(rate > 0))
     step, p0, p1 = np.diff(time)[before], rate[before], rate[before + 1]
