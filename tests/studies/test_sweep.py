@@ -242,7 +242,8 @@ def test_a_sweep_that_is_killed_loses_no_more_than_the_last_seconds(tmp_path: pa
     """Killed as soon as its file has some more scenes, again and again, it gets on."""
     path, before = tmp_path / "map.nc", 0
     code = (
-        "import mjbeer; mjbeer.sweep(mjbeer.sliding, 2.0, 1.0, timestep=1e-4, fill=[0.1, 0.3, 0.5, 0.7, 0.8, 0.9], "
+        "import mjbeer; from mjbeer.studies import sweep; sweep._SAVED_EVERY = 0.0; "
+        "mjbeer.sweep(mjbeer.sliding, 2.0, 1.0, timestep=1e-4, fill=[k / 40 for k in range(1, 40)], "
         f"output={str(path)!r}, progress=False)"
     )
 

@@ -99,12 +99,6 @@ def motion(matrix: np.ndarray, start: np.ndarray, steps: int) -> np.ndarray:
     return states[: steps + 1]
 
 
-def growth(integrator: str, swing: float) -> float:
-    """Return the logarithm of the factor by which a swing with omega h = `swing` grows over `PERIODS` periods."""
-    steps = PERIODS * 2 * math.pi / swing
-    return steps * math.log(spectral_radius(amplification(integrator, swing**2)))
-
-
 def error(integrator: str, swing: float) -> float:
     """Return the largest error, as in `ACCURACY`, of a swing from rest with omega h = `swing` over `ACCURATE_PERIODS`.
 
@@ -122,7 +116,12 @@ def stable_limit(integrator: str) -> float:
 
     For RK4 it is 0.15 % more, as an instability needs time to grow.
     """
-    return first(lambda swing: growth(integrator, swing) - math.log(GROWTH), 0.05, 20.0)
+
+    def excess(swing: float) -> float:
+        steps = PERIODS * 2 * math.pi / swing
+        return steps * math.log(spectral_radius(amplification(integrator, swing**2))) - math.log(GROWTH)
+
+    return first(excess, 0.05, 20.0)
 
 
 def accurate_limit(integrator: str) -> float:

@@ -7,9 +7,10 @@ import pathlib
 import re
 import time
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import closing, nullcontext
+from functools import partial
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
@@ -141,15 +142,18 @@ def _shape(axes: Axes) -> tuple[int, ...]:
     return tuple(len(values) for values in axes.values())
 
 
-def _varied(axes: Axes, scene: int) -> dict[str, float]:
-    """Return what varies, as the scene with this number has it."""
-    places = np.unravel_index(scene, _shape(axes))
-    return {name: float(values[place]) for (name, values), place in zip(axes.items(), places, strict=True)}
+def _varied(axes: Axes, scenes: np.ndarray | list[int]) -> list[dict[str, float]]:
+    """Return what varies, as the scenes with these numbers have it."""
+    if not axes:
+        return [{}]  # the only one
+    columns = zip(axes.values(), np.unravel_index(scenes, _shape(axes)), strict=True)
+    rows = zip(*(values[places].tolist() for values, places in columns), strict=True)
+    return [dict(zip(axes, row, strict=True)) for row in rows]
 
 
 def _named(axes: Axes, scene: int) -> str:
     """Return what varies, as the scene with this number has it, as "incline[3] = 0.1, fill[0] = 0.5"."""
-    values = zip(_varied(axes, scene).items(), np.unravel_index(scene, _shape(axes)), strict=True)
+    values = zip(_varied(axes, [scene])[0].items(), np.unravel_index(scene, _shape(axes)), strict=True)
     return ", ".join(f"{name}[{place}] = {value:.6g}" for (name, value), place in values)
 
 
@@ -201,7 +205,7 @@ def _checked(work: Work, axes: Axes) -> list[str]:
     def problem(scene: int) -> ParameterError | None:
         with collect_liquid_warnings() as warnings_of_liquids:
             try:
-                work.scene(_varied(axes, scene))
+                work.scene(*_varied(axes, [scene]))
             except ParameterError as error:
                 return error
             except Exception:
@@ -211,13 +215,13 @@ def _checked(work: Work, axes: Axes) -> list[str]:
         return None
 
     scenes = np.arange(math.prod(_shape(axes))).reshape(_shape(axes))
-    groups = [
-        (f"{name}[{place}]: ", of_value.ravel().tolist())
+    groups: Iterable[tuple[str, Any]] = (
+        (f"{name}[{place}]: ", of_value.flat)
         for dimension, name in enumerate(axes)
         for place, of_value in enumerate(np.moveaxis(scenes, dimension, 0))
-    ]
-    for name, (first, *others) in groups or [("", [0])]:
-        if (error := problem(first)) and all(problem(scene) for scene in others):
+    )
+    for name, group in groups if axes else [("", [0])]:
+        if (error := problem(int(group[0]))) and all(problem(int(scene)) for scene in group):
             raise ParameterError(f"{name}{error}") from error
     return list(notes.values())
 
@@ -289,7 +293,7 @@ def _continued(path: pathlib.Path, new: "xarray.Dataset", work: Work, axes: Axes
     if differ:
         raise ParameterError(f"{path} has another sweep, whose {', '.join(differ)} differ: {advice}")
     for scene in np.flatnonzero(stored[_STATUS].values != NOT_YET)[:1].tolist():
-        (now,), *_ = measure(work, [_varied(axes, scene)])
+        (now,), *_ = measure(work, _varied(axes, [scene]))
         if not np.array_equal(now, [values.values.flat[scene] for values in stored.values()], equal_nan=True):
             raise ParameterError(
                 f"{path} has other results than this call, at {_named(axes, scene)}: another function, or another "
@@ -315,12 +319,12 @@ def _fill(
         with (
             progress_bar(STDERR if progress else None, 100) as advance,
             nullcontext(executor) if executor else ThreadPoolExecutor(os.cpu_count()) as pool,
-            closing(run_all(work, scenes, lambda scene: _varied(axes, scene), pool)) as pieces,
+            closing(run_all(work, scenes, partial(_varied, axes), pool)) as pieces,
         ):
             for piece, values, reasons in pieces:
                 for array, column in zip(arrays, values.T, strict=True):
                     array.flat[piece] = column
-                for scene, reason in zip(piece, reasons, strict=True):
+                for scene, reason in zip(piece.tolist(), reasons, strict=True):
                     if reason:
                         line = f"scene {scene} ({_named(axes, scene)}): {reason}"
                         kind = _numberless(line)

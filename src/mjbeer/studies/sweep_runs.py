@@ -123,11 +123,11 @@ def _in_a_line(error: Exception) -> str:
 
 
 def run_all(
-    work: Work, scenes: np.ndarray, varied: Callable[[int], dict[str, float]], executor: Executor
-) -> Generator[tuple[list[int], np.ndarray, list[str]]]:
+    work: Work, scenes: np.ndarray, varied: Callable[[np.ndarray], list[dict[str, float]]], executor: Executor
+) -> Generator[tuple[np.ndarray, np.ndarray, list[str]]]:
     """Yield the numbers of some scenes with what was measured on them, piece by piece, as the pieces come back.
 
-    `varied` returns the parameters of a scene. Pieces grow as long as they are quick; what is measured on a scene does
+    `varied` returns the parameters of scenes. Pieces grow as long as they are quick; what is measured on a scene does
     not depend on that. If the generator is closed, pieces that have not begun are cancelled.
 
     Raises:
@@ -144,13 +144,13 @@ def run_all(
             ) from error
     workers = getattr(executor, "_max_workers", None) or _WORKERS
     begun, size, largest = 0, 1, min(_LARGEST_PIECE, max(1, len(scenes) // (4 * workers)))
-    out: dict[Future[Any], list[int]] = {}
+    out: dict[Future[Any], np.ndarray] = {}
     try:
         while begun < len(scenes) or out:
             while begun < len(scenes) and len(out) < 2 * workers:
-                piece = scenes[begun : begun + size].tolist()
+                piece = scenes[begun : begun + size]
                 begun += size
-                out[executor.submit(measure, work, [varied(scene) for scene in piece])] = piece
+                out[executor.submit(measure, work, varied(piece))] = piece
             for future in wait(out, return_when=FIRST_COMPLETED).done:
                 piece = out.pop(future)
                 values, reasons, seconds = future.result()
