@@ -109,6 +109,28 @@ def test_what_the_parent_spoils_is_said(can: Scene, options: dict[str, object], 
         assert np.array_equal(getattr(spec.option, name), value)
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "reason"),
+    [
+        ("settotalmass", 5.0, "settotalmass scales its masses"),
+        ("boundmass", 0.1, r"boundmass raises what is less, from 0\.0086 on, once the world is saved and read again"),
+        ("boundinertia", 1e-6, r"boundinertia raises what is less, from 1\.7e-14 on, once the world is saved"),
+    ],
+)
+def test_what_the_parent_s_compiler_spoils_is_said(name: str, value: float, reason: str) -> None:
+    spec = world()
+    setattr(spec.compiler, name, value)
+    with pytest.warns(UntrustedWarning, match=f"^the parent's options spoil the can: {reason}"):
+        attach(spec, standing())
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "compiler attribute 'settotalmass'")
+        model = mujoco.MjModel.from_xml_string(spec.to_xml())
+    of_the_can = build(standing())
+    assert not all(
+        np.allclose(getattr(model, each), getattr(of_the_can, each)) for each in ("body_mass", "body_inertia")
+    )
+
+
 def test_what_spoils_nothing_is_not_warned_of() -> None:
     """A load without damping needs no damper; level ground is no incline on which a liquid would get fast."""
     with warnings.catch_warnings():

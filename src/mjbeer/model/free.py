@@ -106,7 +106,7 @@ def attach(
         option.impratio = child.option.impratio
     if lying and option.integrator == mujoco.mjtIntegrator.mjINT_EULER:
         option.integrator = child.option.integrator
-    reasons = _spoiling_options(parent.option, can)
+    reasons = _spoiling_options(parent.option, can) + _mass_bounds(parent.compiler, child)
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
     if isinstance(can, Scene):
@@ -206,6 +206,19 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
             flag != "DAMPER" or decay > 0
         ):
             reasons.append(f"with the flag {flag.lower()} disabled it {told}")
+    return reasons
+
+
+def _mass_bounds(compiler: mujoco.MjsCompiler, child: mujoco.MjSpec) -> list[str]:
+    """Return what a parent's compiler does to the masses of a can."""
+    moving = [body for body in child.bodies if body.mass > 0]
+    reasons = ["settotalmass scales its masses"] if compiler.settotalmass > 0 else []
+    for name, least in (
+        ("boundmass", min(body.mass for body in moving)),
+        ("boundinertia", min(min(body.inertia) for body in moving)),
+    ):
+        if getattr(compiler, name) > least:
+            reasons.append(f"{name} raises what is less, from {least:.2g} on, once the world is saved and read again")
     return reasons
 
 
