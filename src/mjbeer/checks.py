@@ -1,5 +1,6 @@
 """Checks of models, of the paper and of how runs end: a measured error, its bound, and the reason for the bound."""
 
+import json
 import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
@@ -59,6 +60,11 @@ def json_values(content: Any) -> Any:
     if isinstance(content, (list, tuple)):
         return [json_values(value) for value in content]
     return None if isinstance(content, float) and not math.isfinite(content) else content
+
+
+def line(content: Any) -> str:
+    """Return content as a line of JSON."""
+    return json.dumps(json_values(content), allow_nan=False) + "\n"
 
 
 @dataclass(frozen=True)

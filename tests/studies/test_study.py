@@ -1,29 +1,34 @@
-"""Checks: judged by their bounds, and measured by several processes."""
+"""Checks: judged by their bounds, kept one by one, resumed after an interruption, measured by several processes."""
 
 import contextlib
 import json
 import math
 import multiprocessing
 import os
+import pathlib
 import signal
 import socket
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import pytest
 
 from mjbeer.checks import Check, Result
+from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.studies import study as studies
+from mjbeer.studies.study import Study
 from tests.support.processes import PATIENCE, fall, interrupt, start, where
 
 ALONE = """
 import sys
 from functools import partial
+import pathlib
 from mjbeer.checks import Check
 from mjbeer.studies.study import run
 from tests.support.processes import call_and_sleep
 checks = [Check("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place in range(4)]
-run(checks, None, "mjbeer test", {})
+run(checks, None, pathlib.Path(sys.argv[2]), "mjbeer test", {})
 """
 
 
@@ -44,26 +49,76 @@ def test_a_deviation_has_a_sign_and_an_error_none() -> None:
     assert Check("g", "n", dict).result().error is None
 
 
+def counting(done: list[str], names: str = "abc") -> list[Check]:
+    """Rows of which the second is interrupted the first time."""
+
+    def measure(name: str) -> dict[str, Any]:
+        done.append(name)
+        if done == ["a", "b"]:
+            raise KeyboardInterrupt
+        return {"error": 0.5, "of": name}
+
+    return [Check("g", name, partial(measure, name), "by", 1.0, "rad", "why") for name in names]
+
+
+@pytest.mark.parametrize("torn", ["", '{"group": "g", "na'])
+def test_an_interrupted_study_goes_on(torn: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
+    done: list[str] = []
+    study, path = counting(done), tmp_path / "study.jsonl"
+    with pytest.raises(KeyboardInterrupt):
+        studies.run(study, None, path, "mjbeer test", {"quick": True})
+    assert [result.name for result in Study.load(path, "mjbeer test").results] == ["a"]
+    path.write_text(path.read_text() + torn)
+    found = studies.run(study, None, path, "mjbeer test", {"quick": True})
+    assert done == ["a", "b", "b", "c"]
+    assert Study.load(path, "mjbeer test") == found
+    assert [(result.name, result.values["of"]) for result in found.results] == [(name, name) for name in "abc"]
+    studies.run(study, None, path, "mjbeer test", {"quick": False})
+    assert done == ["a", "b", "b", "c", "a", "b", "c"]
+
+
+@pytest.mark.parametrize("text", ["", "{}\n", "[]\n", '{"command": "mjbeer else", "settings": {}, "machine": {}}\n'])
+def test_what_is_no_study_is_refused_and_stays(text: str, tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "study.jsonl"
+    path.write_text(text)
+    with pytest.raises(ParameterError, match=r"study\.jsonl was not written by `mjbeer test`"):
+        studies.run([], None, path, "mjbeer test", {})
+    assert path.read_text() == text
+
+
+def test_a_result_that_cannot_be_kept_is_an_error(tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "study.jsonl"
+
+    def replace_by_folder() -> float:
+        path.unlink()
+        path.mkdir()
+        return 0.0
+
+    with pytest.raises(OutputError, match=r"cannot write .*study\.jsonl: Is a directory"):
+        studies.run([Check("g", "a", replace_by_folder)], None, path, "mjbeer test", {})
+
+
 def places(count: int, measure: Callable[[], dict[str, Any]] = where) -> list[Check]:
     return [Check("g", str(place), measure) for place in range(count)]
 
 
 @pytest.mark.slow
 def test_processes_measure_elsewhere_and_the_order_stays(
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    together = studies.run(places(3), None, "mjbeer test", {})
+    together = studies.run(places(3), None, tmp_path / "study.jsonl", "mjbeer test", {})
     assert where()["process"] not in {result.values["process"] for result in together.results}
     assert [result.name for result in together.results] == ["0", "1", "2"]
     assert not multiprocessing.active_children()
 
 
 @pytest.mark.slow
-def test_a_process_that_is_killed_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_that_is_killed_is_an_error(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(OSError, match="ended from outside"):
-        studies.run(places(2, fall), None, "mjbeer test", {})
+        studies.run(places(2, fall), None, tmp_path / "study.jsonl", "mjbeer test", {})
     assert not multiprocessing.active_children()
 
 
@@ -71,7 +126,9 @@ def test_a_process_that_is_killed_is_an_error(monkeypatch: pytest.MonkeyPatch) -
 @pytest.mark.parametrize(
     ("number", "everybody"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGKILL, False)]
 )
-def test_no_process_outlives_the_one_that_started_it(number: signal.Signals, everybody: bool) -> None:
+def test_no_process_outlives_the_one_that_started_it(
+    number: signal.Signals, everybody: bool, tmp_path: pathlib.Path
+) -> None:
     """Ctrl-C reaches all of them, and the others are told by the first; of its being killed they hear as well.
 
     Each of the two calls this process when it is at work, and the system hangs up for it when it has ended.
@@ -79,7 +136,7 @@ def test_no_process_outlives_the_one_that_started_it(number: signal.Signals, eve
     with socket.create_server(("127.0.0.1", 0)) as server:
         server.settimeout(PATIENCE)
         with (
-            start([str(server.getsockname()[1])], ALONE) as process,
+            start([str(server.getsockname()[1]), str(tmp_path / "study.jsonl")], ALONE) as process,
             contextlib.ExitStack() as lines,
         ):
             calls = [lines.enter_context(server.accept()[0]) for _ in range(2)]

@@ -23,10 +23,11 @@ if TYPE_CHECKING:
     from mjbeer.studies.validation.validate import Validation
 
 _FAILED = 1
+_KEPT = "folder to write to; an interrupted study in it is continued"
 
 
-def _folder(name: str) -> Option:
-    return Option("output", "folder to write to", pathlib.Path(name), pathlib.Path)
+def _folder(name: str, told: str = "folder to write to") -> Option:
+    return Option("output", told, pathlib.Path(name), pathlib.Path)
 
 
 _flag = functools.partial(Option, kind=bool)
@@ -144,7 +145,7 @@ def benchmark(given: Namespace) -> int:
 
 
 @command(
-    _folder("stability"),
+    _folder("stability", _KEPT),
     _flag("long", "run the whole study: all integrators, finer maps, 20000 random runs; takes forty minutes"),
     _flag("quick", "make 250 random runs instead of 3000; takes two minutes"),
     _flag("maps", "make only the maps of timestep and stiffness or damping, but all 22, and fine; takes three minutes"),
@@ -159,7 +160,7 @@ def stability(given: Namespace) -> int:
         raise ParameterError(f"--{' and --'.join(extents)} exclude each other: take one of them, or neither")
     extent = extents[0] if extents else "usual"
     with files.locked(given.output):
-        study = stability.conduct(extent, STDERR)
+        study = stability.conduct(given.output, extent, STDERR)
         stability.write(study, given.output)
     if given.json:
         terminal.write(stability.to_json(study))

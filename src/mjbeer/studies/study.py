@@ -1,4 +1,4 @@
-"""A study: checks that are measured on all cores, with the machine that measured them, and shown in tables."""
+"""A study: checks that are measured, kept on disk one by one, resumed after an interruption, and shown in tables."""
 
 import json
 import os
@@ -9,14 +9,15 @@ from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
-from dataclasses import dataclass
-from importlib.metadata import version
-from importlib.util import find_spec
+from dataclasses import dataclass, field
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result, json_values
+from mjbeer.checks import Check, Result, json_values, line
+from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.output import files
 from mjbeer.output.processes import pool
 from mjbeer.output.terminal import Table, progress_bar
 
@@ -27,7 +28,7 @@ FAILED = " **FAIL**"
 _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
-@dataclass(frozen=True)
+@dataclass
 class Study:
     """Results with the settings and the machine that they belong to."""
 
@@ -35,7 +36,25 @@ class Study:
     """The command that makes such a study."""
     settings: dict[str, Any]
     machine: dict[str, Any]
-    results: list[Result]
+    """What `machine()` returned when the study began."""
+    results: list[Result] = field(default_factory=list)
+
+    @classmethod
+    def load(cls, path: pathlib.Path, command: str) -> "Study":
+        """Return the study in a file that `run` wrote; a last line that was torn by an interruption is dropped.
+
+        Raises:
+          ParameterError: if the file is missing, or is no study of that command.
+        """
+        try:
+            head, *lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+            study = cls(**json.loads(head))
+            study.results = [Result(**json.loads(each)) for each in lines if each.endswith("\n")]
+            if study.command != command:
+                raise ValueError(f"it is of `{study.command}`")
+        except (OSError, ValueError, TypeError) as error:
+            raise ParameterError(f"{path} was not written by `{command}`: {error}") from error
+        return study
 
     def of(self, group: str) -> list[Result]:
         """Return the results of a group."""
@@ -51,18 +70,44 @@ class Study:
         """Command, settings and machine."""
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
+    def lines(self) -> str:
+        """Return the study as lines of JSON: what it is of, and a line each result."""
+        return line(self.about) + "".join(line(result.as_json()) for result in self.results)
 
-def run(checks: Sequence[Check], console: Console | None, command: str, settings: dict[str, Any]) -> Study:
+
+def run(
+    checks: Sequence[Check], console: Console | None, path: pathlib.Path, command: str, settings: dict[str, Any]
+) -> Study:
     """Measure checks on all cores and return them as a study; `console` shows a progress bar.
 
-    Functions that measure must be ones that can be pickled.
+    Every result is appended to the file at `path` as soon as it is there, and a study of the same settings on the same
+    machine that is in it is gone on with. Functions that measure must be ones that can be pickled.
 
     Raises:
       OSError: if the system ends one of the processes.
+      OutputError: if the file cannot be written.
+      ParameterError: if the file is there, but is no study of this command.
     """
-    with progress_bar(console, len(checks)) as begin, closing(measured(checks, begin)) as results:
-        found = {(result.group, result.name): result for result in results}
-    return Study(command, settings, machine(), [found[check.group, check.name] for check in checks])
+    study = Study(command, settings, machine())
+    if path.exists():
+        stored = Study.load(path, command)
+        if (stored.settings, stored.machine) == (study.settings, study.machine):
+            study = stored
+            if console is not None:
+                console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
+    files.write(path, study.lines())
+    done = {(result.group, result.name): result for result in study.results}
+    missing = [check for check in checks if (check.group, check.name) not in done]
+    with progress_bar(console, len(missing)) as begin, closing(measured(missing, begin)) as results:
+        for result in results:
+            done[result.group, result.name] = result
+            try:
+                with path.open("a", encoding="utf-8") as file:
+                    file.write(line(result.as_json()))
+            except OSError as error:
+                raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+    study.results = [done[check.group, check.name] for check in checks]
+    return study
 
 
 def measured(checks: Sequence[Check], begin: Callable[[str], None]) -> Generator[Result]:
@@ -94,17 +139,12 @@ def _in_silence(check: Check) -> Result:
 
 def machine() -> dict[str, Any]:
     """Return what run times and rounding depend on: processor, system, and versions of packages."""
-    try:
-        lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    names = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     return {
-        "processor": next(names, platform.processor() or platform.machine()),
+        "processor": _processor(),
         "cores": os.cpu_count(),
         "system": platform.platform(terse=True),
         "python": platform.python_version(),
-        "versions": {name: version(name) for name in _PACKAGES if find_spec(name)},
+        "versions": {name: number for name in _PACKAGES if (number := _version(name))},
     }
 
 
@@ -125,3 +165,20 @@ def table(title: str, results: Sequence[Result], document: bool = False) -> Tabl
         rows.append((result.name, result.by, error + failed, f"{result.bound:.1e} {result.unit}".strip(), last))
     last = "what dominates the error" if document else "verdict"
     return Table(title, ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))
+
+
+def _processor() -> str:
+    """Return the name of the processor, or at least its architecture."""
+    try:
+        lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or platform.machine()
+    names = (each.partition(":")[2].strip() for each in lines if each.startswith("model name"))
+    return next(names, platform.machine())
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None

@@ -1,6 +1,5 @@
 """Maps of stability: MuJoCo against linear theory on a sample, a wrong theory is seen; and the study as a whole."""
 
-import dataclasses
 import datetime
 import json
 import math
@@ -70,13 +69,13 @@ def test_the_study_is_written(
     told = json.loads(capsys.readouterr().out)
     assert told["failed"] == []
     assert sum(told["totals"]["kinds"]["all"].get(verdict, 0) for verdict in ("right", "refused", "doubted")) == 4
-    assert {result["group"] for result in told["results"]} == {"maps", "cases", "search"}
+    found = Study.load(tmp_path / "stability.jsonl", "mjbeer stability")
+    assert {result.group for result in found.results} == {"maps", "cases", "search"}
     assert "All came out as they must." in (tmp_path / "summary.md").read_text()
     assert [each.stem for each in tmp_path.glob("*.svg")] == ["stability-solref"]
     assert [each["name"] for each in stability_maps.load(tmp_path / "maps.json")["maps"]] == ["solref, Euler"]
-    results = [Result(**each) for each in told["results"]]
-    results[0] = dataclasses.replace(results[0], error=1.0)
-    stability_study.write(Study("", {}, {}, results), tmp_path)
+    found.results[0] = Result("maps", "a map", bound=0.05, error=0.1, values=found.results[0].values)
+    stability_study.write(found, tmp_path)
     assert "**1 did not come out as they must.**" in (tmp_path / "summary.md").read_text()
 
 

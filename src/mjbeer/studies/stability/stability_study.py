@@ -32,13 +32,18 @@ def plan(extent: str) -> list[Check]:
     return maps if extent == "maps" else [*maps, *search.checks(extent)]
 
 
-def conduct(extent: str, console: Console) -> Study:
-    """Measure a study of this extent, one of `EXTENTS`, on all cores.
+def conduct(folder: pathlib.Path, extent: str, console: Console) -> Study:
+    """Measure what the study in `folder` lacks, on all cores, and return the study, kept as stability.jsonl.
+
+    The summary of an earlier study is removed first.
 
     Raises:
+      OutputError: if the folder cannot be written to.
       OSError: if the system ends one of the processes.
+      ParameterError: if stability.jsonl is there but is not such a study.
     """
-    return studies.run(plan(extent), console, COMMAND, {"extent": extent})
+    (folder / "summary.md").unlink(missing_ok=True)
+    return studies.run(plan(extent), console, folder / "stability.jsonl", COMMAND, {"extent": extent})
 
 
 def tables(study: Study) -> list[Table]:
@@ -59,12 +64,9 @@ def to_json(study: Study) -> str:
 def write(study: Study, folder: pathlib.Path) -> None:
     """Write maps.json, totals.json, the plots of the maps, and at the end summary.md into a folder.
 
-    An earlier summary is removed first.
-
     Raises:
       OutputError: if a file cannot be written.
     """
-    (folder / "summary.md").unlink(missing_ok=True)
     maps = stability_maps.to_json(study, datetime.date.today())
     files.write(folder / "maps.json", maps)
     totals = study.about | search.totals(study.results)
