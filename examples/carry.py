@@ -1,4 +1,4 @@
-"""Move two cans by 0.4 m in a second with the same gripper: one with beer that sloshes, one as rigid as most models.
+"""Move two cans 0.4 m in a second with the same gripper: one with beer that sloshes, one as rigid as most models.
 
 python examples/carry.py
 """

@@ -29,7 +29,7 @@ def draw(path: pathlib.Path) -> None:
     peaks = [np.array([peak(run, 0.0, move) for run, move in zip(of, MOVES, strict=False)]) for of in (beer, rigid)]
     after = np.array([peak(run, move, math.inf) for run, move in zip(beer, MOVES, strict=False)])
     highest = np.array([np.abs(run.rise).max() for run in beer[:-1]])
-    title, subtitle = "A can on its gripper", "half a 12-oz can of beer, moved by 0.4 m with the least jerk"
+    title, subtitle = "A can on its gripper", "half a 12-oz can of beer, moved 0.4 m with the least jerk"
     with plots.chart(path, columns=2, width=10, height=4.2, title=title, subtitle=subtitle) as (left, right):
         for name, of, colour in zip(MODES, (beer, rigid), plots.COLOURS, strict=False):
             left.plot(of[-1].time, of[-1].force, color=colour, label=name)

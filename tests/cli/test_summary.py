@@ -52,7 +52,7 @@ def test_text_and_json_have_what_a_run_says_about_itself() -> None:
         "equations solved": not run.solver_warnings,
         "model holds": False,
         "warnings": list(run.warnings),
-        "notes": [],  # a contact slips of itself, and a warning says so
+        "notes": [],  # in contact the can simply slips, and a warning says so
     }
     text = lines(run, 0.05)
     assert text["phi at the end"] == f"{math.degrees(run.phi[-1]):.9g} degrees"

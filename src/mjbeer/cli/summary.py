@@ -47,7 +47,7 @@ class Summary:
     def notes(self) -> tuple[str, ...]:
         """Return what a real can would do otherwise although the run is right: a sentence, or none.
 
-        A contact slips of itself, and the run's own warnings say so.
+        In contact the can simply slips, and the run's own warnings say so.
         """
         slips = {friction: until for friction, until in self.rolls_until.items() if math.isfinite(until)}
         if self.trajectory.rolling == "contact" or not slips:

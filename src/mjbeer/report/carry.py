@@ -86,13 +86,13 @@ QUICK, GENTLE = Move(1.0, "in 1 s", (0.80, 0.15, 0.20)), Move(1.6, "in 1.6 s", (
 
 @dataclass(frozen=True)
 class Carry:
-    """The film of two cans that are moved by 0.4 m, one quickly and one gently; it is a `drawing.film.Film`."""
+    """The film of two cans that are moved 0.4 m, one quickly and one gently; it is a `drawing.film.Film`."""
 
     title: str = "Two grippers carry beer: which of them feels it slosh?"
     speed: float = 0.5
     still: float = 0.25
     caption: str = (
-        "Two cans, half full of beer, are carried by 0.4 m: the near one in 1 s, the far one in 1.6 s. The chart has "
+        "Two cans, half full of beer, are carried 0.4 m: the near one in 1 s, the far one in 1.6 s. The chart has "
         "the force of each gripper, and in grey what it would be if the beer were solid, as in other simulators. In "
         "the gentle move the surface rises by less than 0.1 R at the wall, where linear theory gives numbers, and the "
         "beer hardly rings after the stop. In the quick move it rises by 0.28 R, which is beyond that: the extra force "
@@ -113,7 +113,7 @@ class Carry:
         points = [cans.outline(number, np.array([x])).reshape(-1, 3) for number in (0, 1) for x in (_LEFT, _DISTANCE)]
         view = View.towards(_EYE, np.concatenate(points), (width, height - top - below), 0.02)
         strip = Strip([Chart("force [N]", _lines(moves))], width, below)
-        words = self.title, f"half a 12-oz can of beer, carried by {_DISTANCE:g} m"
+        words = self.title, f"half a 12-oz can of beer, carried {_DISTANCE:g} m"
         scenery = Scenery(ground, cans.model, (0.0, _DISTANCE))
         with closing(Painter(cans, scenery, *view.pixels, still=True)) as painter:
             for time in times:

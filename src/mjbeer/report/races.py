@@ -44,13 +44,12 @@ def of_beer() -> Sequence[Runner]:
 def told_of_beer() -> str:
     """Return what is seen in the race of beer."""
     return (
-        "Four equal cans are let go together on an incline of 5 degrees, and race over one metre. The can wins whose "
-        "beer slides: the beer only goes downhill and does not turn, so that almost nothing is spent on turning. What "
-        "is frozen must turn with its can: the full one is as slow as a solid cylinder, with two thirds of the "
-        "winner's acceleration. The frozen one that is three quarters full starts with its beer on top, for with its "
-        "beer below it would stay where it is; that gives it a lead of two centimetres, which the winner takes back "
-        "before half-way. The empty can comes last, since all of its mass is in its wall. Theory has the same "
-        "times, to all digits."
+        "Four equal cans are let go together on an incline of 5 degrees, and race over one metre. The can whose beer "
+        "slides wins: its beer swings to and fro by 30 degrees but does not turn with the can, so that almost nothing "
+        "is spent on turning. Frozen beer must turn with its can: the full can is as slow as a solid cylinder, with "
+        "two thirds of the winner's acceleration. The frozen can that is three quarters full starts with its beer on "
+        "top, for with its beer below it would stay where it is; that gives it a lead of two centimetres, which the "
+        "winner takes back before half-way. The empty can comes last, since most of its mass is in its wall."
     )
 
 

@@ -39,7 +39,7 @@ def checks() -> Iterator[Check]:
         for rolling, (bound, reason) in rests.items():
             quantity, by = f"equilibrium, {name}, 5 s at rest", f"frozen, {rolling}, RK4, 1 ms"
             yield Check("rest", quantity, partial(_creep, scene, rolling), by, bound, "rad", reason)
-    quantity, reason = "full can, let go at 1 rad: how far it comes in 10 s", "b = 0, so that the torque is 0 as well"
+    quantity, reason = "full can, let go at 1 rad: how far it comes in 10 s", "no torque: its load is centred"
     for scene, by in ((sliding(fill=1.0), "sliding"), (frozen(0.0, fill=1.0), "frozen, on the level")):
         measure = partial(_creep, scene, "reduced", 10, 1.0)
         yield Check("rest", quantity, measure, f"{by}, reduced, RK4, 1 ms", 0.0, "rad", reason)
@@ -114,13 +114,13 @@ def drifts() -> Iterator[Check]:
     """Yield the checks of energy over very many swings."""
     check, free = partial(Check, "drift"), sliding(0.0, can=Can.hoop(mass=1e5))
     width = "growth of the energy's largest deviation within a swing, over 1000 swings"
-    falling = "samples fall differently: a period is not quite 32 steps; the method is symplectic"
+    falling = "sampling phase: a period is not quite 32 steps; the method is symplectic"
     for integrator in ("Euler", "implicit", "implicitfast", "discrete"):
         by = f"can too heavy to move, {integrator}, T/32"
         measure = lambda of=integrator: (_drift(free, of, 32)[1] - 1).max()  # noqa: E731
         yield check(width, measure, by, 0.05, "relative", falling)
     quantity = "energy lost over 1000 swings: exponent of their number, less 1"
-    reason = "a swing that has lost a fourteenth is another one"
+    reason = "the swing changes meanwhile: up to 1/14 of its energy is lost"
     heavy = "can too heavy to move"
     for name, scene, integrator, steps in (
         (heavy, free, "RK4", 32),
