@@ -126,6 +126,7 @@ class Parser(argparse.ArgumentParser):
         metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
         for name, meaning, default, kind, otherwise in options:
             taken = otherwise or (f"{default:g}" if isinstance(default, float) else default)
+            taken = " ".join(taken) if isinstance(taken, list) else taken
             how: dict[str, Any] = {"choices": kind}
             if callable(kind):
                 how = {"type": kind, "metavar": metavars.get(kind, "NAME")}

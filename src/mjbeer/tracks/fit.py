@@ -240,8 +240,8 @@ def _names(
         raise ParameterError(f"damping is a factor on the scene's own, which has none, got {scene!r}")
     if "drag" in names and scene.attachment == "frozen":
         raise ParameterError(f"drag is for sliding loads only, got {scene!r}")
-    if "fill" in names:
-        scene.replace(fill=scene.load.fill)  # or an error that says what the scene has
+    if "fill" in names and (scene.made_by is None or scene.load.fill is None):
+        raise ParameterError(f"a fill is sought of what sliding, frozen or liquid makes, got {scene!r}")
     priors = {"bend": (0.0, bend)} if bend else {}
     for name, pair in known.items():
         require.choice("known", name, names)

@@ -1,8 +1,10 @@
 """The least squares behind a fit: a track's distances from a simulated motion, their derivatives, and starts."""
 
+import inspect
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
@@ -45,6 +47,15 @@ _WAVES = 4, 8, 16, 32
 """Numbers of slow waves in which what is left is looked for."""
 
 
+def remade(scene: Scene, changes: Mapping[str, float]) -> Scene:
+    """Return a scene made anew with other arguments, such as a fill; what is none of them is a field."""
+    make, given = scene.made_by or (Scene, {})
+    own: dict[str, Any] = {name: changes[name] for name in changes if scene.made_by and name in inspect.signature(make).parameters}
+    others: dict[str, Any] = {name: changes[name] for name in changes if name not in own}
+    scene = make(**given | own) if own else scene
+    return replace(scene, **others) if others else scene
+
+
 @dataclass
 class Problem:
     """What a solver needs: residuals over their noise, and their derivatives, by the values over their `SIZES`."""
@@ -70,7 +81,7 @@ class Problem:
 
     def scene_of(self, values: Mapping[str, float]) -> tuple[Scene, float]:
         """Return the scene and phi0 [rad] of some values."""
-        scene = self.scene.replace(**{name: values[name] for name in ("incline", "fill", "drag") if name in values})
+        scene = remade(self.scene, {name: values[name] for name in ("incline", "fill", "drag") if name in values})
         if "damping" in values:
             law, factor = scene.damping_law, math.exp(values["damping"])
             terms = dict(

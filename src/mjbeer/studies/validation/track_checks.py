@@ -13,6 +13,7 @@ from mjbeer.theory.liquid import liquid, liquid_in
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.tracks.fit import BEND, Fit, fit
+from mjbeer.tracks.problem import remade
 from mjbeer.tracks.track import Track
 
 _METAL, _GENTLE = Can.sheet_metal(), math.radians(2)
@@ -55,7 +56,7 @@ def filmed(scene: Scene, phi0: float | None, rng: np.random.Generator | None = N
 
 def fitted(track: Track, scene: Scene, phi0: float | None, other: str, bend: float | None = None) -> Fit:
     """Return the fit that begins from half a degree more."""
-    guess = scene.replace(incline=scene.incline + math.radians(0.5))
+    guess = remade(scene, {"incline": scene.incline + math.radians(0.5)})
     return fit(track, guess, ("incline", other), None, "level" if phi0 is None else phi0, bend, progress=False)
 
 
