@@ -167,7 +167,7 @@ def fit(
     require.instance("scene", scene, Scene)
     console = terminal.STDERR if require.boolean("progress", progress) else None
     with warnings.catch_warnings(action="ignore"):  # they are about guesses, and the fit has those of its own run
-        names, priors = _names(track, scene, free, dict(known or {}), phi0, bend)
+        names, priors = _names(track, scene, free, {} if known is None else known, phi0, bend)
         problem = Problem(track, scene, names, priors, phi0)
         guesses = {"incline": scene.incline, "fill": scene.load.fill or 0.5, "drag": scene.drag, "scale": 1.0}
         guess = {name: guesses.get(name, 0.0) for name in names} | {name: priors[name][0] for name in priors}
@@ -188,6 +188,8 @@ def _begins(scene: Scene, guess: dict[str, float], known: Mapping[str, object]) 
     fine = frozen and "phi0" not in tried  # the swings of ice are to be in phase with the track's
     if "fill" in tried and "fill" not in known:
         tried["fill"] += np.linspace(0.05, 0.95, 19 if fine else 6).tolist()
+    if "damping" in tried and "damping" not in known:  # near the steady speed an incline looks like a damping
+        tried["damping"] += [-0.7, 0.7]
     if "phi0" in tried:
         tried["phi0"] = np.linspace(-3, 3, 13).tolist()
     if "incline" in tried and frozen:
@@ -219,12 +221,15 @@ def _names(
     track: Track,
     scene: Scene,
     free: Collection[str],
-    known: dict[str, tuple[float, float]],
+    known: Mapping[str, tuple[float, float]],
     phi0: float | str,
     bend: float | None,
 ) -> tuple[list[str], dict[str, tuple[float, float]]]:
     """Return the names of what is sought, and what is known of it as the solver counts, after checks."""
+    if not isinstance(free, Collection):
+        raise ParameterError(f"free must be names, of {', '.join(FREE)}, got {require.format_value(free)}")
     free = {require.choice("free", name, FREE) for name in ([free] if isinstance(free, str) else free)}
+    require.instance("known", known, dict)
     names = [name for name in FREE if name in free or name in known]
     if not isinstance(phi0, str):
         require.start(phi0, 0.0)
@@ -245,7 +250,7 @@ def _names(
     priors = {"bend": (0.0, bend)} if bend else {}
     for name, pair in known.items():
         require.choice("known", name, names)
-        if len(pair) != 2:
+        if not isinstance(pair, (tuple, list)) or len(pair) != 2:
             raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
         value = require.number(f"known {name}", pair[0])
         error = require.positive(f"error of the known {name}", pair[1])

@@ -50,7 +50,8 @@ _WAVES = 4, 8, 16, 32
 def remade(scene: Scene, changes: Mapping[str, float]) -> Scene:
     """Return a scene made anew with other arguments, such as a fill; what is none of them is a field."""
     make, given = scene.made_by or (Scene, {})
-    own: dict[str, Any] = {name: changes[name] for name in changes if scene.made_by and name in inspect.signature(make).parameters}
+    usual = inspect.signature(make).parameters if scene.made_by else ()
+    own: dict[str, Any] = {name: changes[name] for name in changes if name in usual}
     others: dict[str, Any] = {name: changes[name] for name in changes if name not in own}
     scene = make(**given | own) if own else scene
     return replace(scene, **others) if others else scene

@@ -77,13 +77,13 @@ def read_track(
     Raises:
       ParameterError: if it cannot be read so; the message has line and column.
     """
-    source = require.path(path)
+    source, columns = require.path(path), require.instance("columns", {} if columns is None else columns, dict)
     cells, comma = _cells(source)
     numbers = {line: [_number(cell, comma) for cell in row] for line, row in cells.items()}
     first = next((line for line, row in numbers.items() if sum(map(math.isfinite, row)) > 1), 0)
     if not (above := [line for line in cells if line < first]):
         raise ParameterError(f"{source} is no table: there must be a heading above two columns of numbers or more")
-    used = _used(source, above[-1], cells[above[-1]], dict(columns or {}))
+    used = _used(source, above[-1], cells[above[-1]], columns)
     if "frame" in used:
         used["frame"] = used["frame"][0], 1 / require.positive("rate of the frames", rate, "1/s")
     rows: dict[int, list[float]] = {}
