@@ -29,7 +29,7 @@ def test_help_states_the_unit_of_every_number(
 ) -> None:
     monkeypatch.setenv("COLUMNS", "250")
     with pytest.raises(SystemExit):
-        main([command, name, "--help"])
+        main([command, *["can.csv"] * bool(COMMANDS[command].file), name, "--help"])
     numbers = {each["name"]: each["text"] for each in NUMBER.finditer(capsys.readouterr().out)}
     expected = {each.replace("_", "-") for each in defaults(name)} - {"can", "liquid"}
     expected |= set() if command == "fit" else {"phi0", "phi-dot0", "timestep", "friction"}

@@ -97,7 +97,7 @@ def test_a_missing_file_and_a_column_that_is_not_there_are_refused(tmp_path: pat
         read_track(tmp_path / "none.csv")
     with pytest.raises(ParameterError, match="no columns may be x"):
         read_track(written(tmp_path, GOOD), {"x": "place"})
-    with pytest.raises(ParameterError, match="what a column has"):
+    with pytest.raises(ParameterError, match="columns are those of time"):
         read_track(written(tmp_path, GOOD), {"place": "x"})
 
 

@@ -188,8 +188,8 @@ def _begins(scene: Scene, guess: dict[str, float], known: Mapping[str, object]) 
     fine = frozen and "phi0" not in tried  # the swings of ice are to be in phase with the track's
     if "fill" in tried and "fill" not in known:
         tried["fill"] += np.linspace(0.05, 0.95, 19 if fine else 6).tolist()
-    if "damping" in tried and "damping" not in known:  # near the steady speed an incline looks like a damping
-        tried["damping"] += [-0.7, 0.7]
+    if "damping" in tried and "damping" not in known:  # a late track: incline, damping and release look alike
+        tried["damping"] += [-0.6, -0.3, 0.3, 0.6]
     if "phi0" in tried:
         tried["phi0"] = np.linspace(-3, 3, 13).tolist()
     if "incline" in tried and frozen:
@@ -226,7 +226,7 @@ def _names(
     bend: float | None,
 ) -> tuple[list[str], dict[str, tuple[float, float]]]:
     """Return the names of what is sought, and what is known of it as the solver counts, after checks."""
-    if not isinstance(free, Collection):
+    if not isinstance(free, (str, list, tuple, set)):
         raise ParameterError(f"free must be names, of {', '.join(FREE)}, got {require.format_value(free)}")
     free = {require.choice("free", name, FREE) for name in ([free] if isinstance(free, str) else free)}
     require.instance("known", known, dict)
@@ -248,8 +248,9 @@ def _names(
     if "fill" in names and (scene.made_by is None or scene.load.fill is None):
         raise ParameterError(f"a fill is sought of what sliding, frozen or liquid makes, got {scene!r}")
     priors = {"bend": (0.0, bend)} if bend else {}
+    if not set(known) <= set(names):
+        raise ParameterError(f"known must be one of {', '.join(names)}, got {require.format_value(known)}")
     for name, pair in known.items():
-        require.choice("known", name, names)
         if not isinstance(pair, (tuple, list)) or len(pair) != 2:
             raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
         value = require.number(f"known {name}", pair[0])

@@ -107,7 +107,7 @@ def _cells(source: pathlib.Path) -> tuple[dict[int, list[str]], bool]:
     try:
         raw = source.read_bytes()
     except OSError as error:
-        raise ParameterError(f"cannot read {source}: {error.strerror or error}") from None
+        raise ParameterError(f"cannot read {require.format_value(str(source))}: {error.strerror or error}") from None
     text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
     lines = {number: line for number, line in enumerate(text.splitlines(), start=1) if line.strip(" \t;,")}
     mark = next((each for each in "\t;," if 2 * sum(each in line for line in lines.values()) > len(lines)), None)
@@ -127,8 +127,8 @@ def _used(
 ) -> dict[str, tuple[int, float]]:
     """Return which column has what, and its unit; `titles` are the headings in a line."""
     names = [_AROUND.sub("", _AROUND.sub("", title.lower()).strip()).strip() for title in titles]
-    for name in columns:
-        require.choice("what a column has", name, _COLUMNS)
+    if not set(columns) <= set(_COLUMNS):
+        raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {require.format_value(columns)}")
     used = {}
     for name, (units, usual) in _COLUMNS.items():
         asked = str(columns.get(name, ""))
