@@ -41,6 +41,8 @@ VALUES: dict[str, Callable[[], object]] = {
 MOTION = exact(frozen(), np.linspace(0, 0.1, 11), 1.0)
 RUN = simulate(frozen(), 0.01, 1.0)
 MODEL = build(frozen())
+TABLE = pathlib.Path(__file__).parents[1] / "examples" / "synthetic_track.csv"
+ROLLED = exact(mjbeer.sliding(), np.linspace(0, 0.5, 30), 0.0)
 GOOD: dict[str, Any] = {
     **{name: getattr(MOTION, name) for name in inspect.signature(Trajectory).parameters},
     **{"can": Can(), "load": Load(0.2, 0.01, 1e-5), "mass": 0.2, "offset": 0.01, "amplitude": 0.3, "omega": 1.0},
@@ -48,6 +50,8 @@ GOOD: dict[str, Any] = {
 }
 """Good arguments, by the names of the parameters."""
 GOOD_HERE: dict[str, dict[str, Any]] = {
+    "Track": {"time": ROLLED.time, "along": ROLLED.u}, "read_track": {"path": TABLE},
+    "fit": {"track": mjbeer.Track(ROLLED.time, ROLLED.u), "scene": mjbeer.sliding()},
     "frame": {"time": 0.1}, "export": {"path": "can.xml"},
     "reset": {"model": MODEL, "data": mujoco.MjData(MODEL)}, "attach": {"can": mjbeer.standing()},
     "refill": {"model": build(mjbeer.standing()), "can": mjbeer.standing()},
@@ -65,7 +69,7 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
     """Everything that is called: public names, their class methods, the methods of what they return, and some more."""
     for name in mjbeer.__all__:
         thing = getattr(mjbeer, name)
-        if not (inspect.isclass(thing) and issubclass(thing, Exception)):
+        if not (inspect.isclass(thing) and issubclass(thing, (Exception, mjbeer.Fit))):  # `fit` alone makes a Fit
             yield name, thing
         if inspect.isclass(thing):
             yield from methods(name, thing, thing)

@@ -26,25 +26,31 @@ if TYPE_CHECKING:
     from mjbeer.model.joints import reset
     from mjbeer.simulation.simulate import simulate
     from mjbeer.studies.sweep import sweep
+    from mjbeer.tracks.fit import Fit, fit
+    from mjbeer.tracks.track import Track, read_track
 
 __all__ = [
     "AngleWarning",
     "Can",
     "Damping",
+    "Fit",
     "LiquidWarning",
     "Load",
     "MjbeerError",
     "Scene",
+    "Track",
     "Trajectory",
     "UntrustedWarning",
     "attach",
     "build",
     "exact",
     "export",
+    "fit",
     "frozen",
     "hoop",
     "liquid",
     "pendulum",
+    "read_track",
     "refill",
     "render",
     "reset",
@@ -66,6 +72,10 @@ _LAZY = {
     "simulate": "mjbeer.simulation.simulate",
     "render": "mjbeer.drawing.video",
     "sweep": "mjbeer.studies.sweep",
+    "Fit": "mjbeer.tracks.fit",
+    "fit": "mjbeer.tracks.fit",
+    "Track": "mjbeer.tracks.track",
+    "read_track": "mjbeer.tracks.track",
 }
 load_drawing[:] = [lambda: import_module("mjbeer.drawing.notebook")]
 

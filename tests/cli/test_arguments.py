@@ -16,7 +16,7 @@ UNITS = {
     "phi0": "degrees", "phi-dot0": "degrees/s", "incline": "degrees", "duration": "s", "timestep": "s",
     "tolerance": "rad", "radius": "m", "length": "m", "offset": "m", "gravity": "m/s^2", "density": "kg/m^3",
     "hoop-mass": "kg", "wheel-mass": "kg", "load-mass": "kg", "width": "pixels", "height": "pixels",
-    "damping": "N m s", "drag": "kg/m", "viscosity": "m^2/s",
+    "damping": "N m s", "drag": "kg/m", "viscosity": "m^2/s", "bend": "m", "rate": "1/s",
 }  # fmt: skip
 PURE_NUMBERS = {"fill", "friction", "speed"}
 NUMBER = re.compile(r"--(?P<name>[\w-]+) (?:NUMBERS?|PIXELS)\s(?P<text>.*?)\(default", re.DOTALL)
@@ -29,10 +29,11 @@ def test_help_states_the_unit_of_every_number(
 ) -> None:
     monkeypatch.setenv("COLUMNS", "250")
     with pytest.raises(SystemExit):
-        main([command, name, "--help"])
+        main([command, *["can.csv"] * bool(COMMANDS[command].file), name, "--help"])
     numbers = {each["name"]: each["text"] for each in NUMBER.finditer(capsys.readouterr().out)}
     expected = {each.replace("_", "-") for each in defaults(name)} - {"can", "liquid"}
-    assert {"phi0", "phi-dot0", "timestep", "friction"} | expected <= set(numbers)
+    expected |= set() if command == "fit" else {"phi0", "phi-dot0", "timestep", "friction"}
+    assert expected <= set(numbers)
     assert set(numbers) <= set(UNITS) | PURE_NUMBERS
     for each in set(numbers) - PURE_NUMBERS:
         assert f"[{UNITS[each]}]" in numbers[each], each

@@ -11,7 +11,7 @@ from types import FrameType
 from typing import Any, NoReturn, cast
 
 import mjbeer
-from mjbeer.cli import motions, studies
+from mjbeer.cli import fit, motions, studies
 from mjbeer.cli.arguments import SCENE_MEANINGS, STANDING, STANDING_OPTIONS, Command, Parser, scene_options
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
@@ -24,7 +24,7 @@ _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be t
 
 _NAMES = "sweep", "validate", "benchmark", "stability", "paper", "report"
 COMMANDS: dict[str, Command] = {name: getattr(motions, name) for name in ("simulate", "render", "view", "export")}
-COMMANDS |= {name: getattr(studies, name) for name in _NAMES}
+COMMANDS |= {"fit": fit.fit} | {name: getattr(studies, name) for name in _NAMES}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -76,6 +76,8 @@ def parse(words: Sequence[str]) -> Namespace:
         if command.numbers is None:
             at.add_options(command.options)
         else:
+            if command.file:
+                at.add_argument("file", metavar="FILE", help=command.file)
             scenes = SCENE_MEANINGS | ({"standing": STANDING} if command.standing else {})
             for scene, below in at.add_words("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
                 if scene == "standing":

@@ -68,7 +68,7 @@ def several(text: str) -> float | np.ndarray:
 
 
 class Option(NamedTuple):
-    """An option; or words without one, if its default is several.
+    """An option, of several words if its default is a list; or words without one, if its default is several.
 
     Where the default is no value, `otherwise` says in words what is taken, or is REQUIRED.
     """
@@ -89,6 +89,8 @@ class Command(NamedTuple):
     """How the numbers of its scene are read, which is its first argument; None if it has no scene."""
     standing: tuple[Option, ...] = ()
     """The options beside those of a standing can, if the command takes one instead of a scene."""
+    file: str = ""
+    """What the file is that it reads, whose name comes before the scene."""
 
 
 def command(*options: Option, **more: Any) -> Callable[[Callable[[Namespace], int]], Command]:
@@ -124,7 +126,10 @@ class Parser(argparse.ArgumentParser):
         metavars = {float: "NUMBER", several: "NUMBERS", int: "PIXELS", pathlib.Path: "PATH"}
         for name, meaning, default, kind, otherwise in options:
             taken = otherwise or (f"{default:g}" if isinstance(default, float) else default)
-            how: dict[str, Any] = {"type": kind, "metavar": metavars[kind]} if kind in metavars else {"choices": kind}
+            taken = " ".join(taken) if isinstance(taken, list) else taken
+            how: dict[str, Any] = {"choices": kind}
+            if callable(kind):
+                how = {"type": kind, "metavar": metavars.get(kind, "NAME")}
             if isinstance(default, tuple):
                 self.usage += " [NAME ...]"
                 self.add_argument(name, nargs="*", metavar="NAME", help=f"{meaning} (default: {', '.join(default)})")
@@ -133,6 +138,7 @@ class Parser(argparse.ArgumentParser):
             else:
                 how |= {"help": f"{meaning} ({taken if taken == REQUIRED else f'default: {taken}'})"}
                 how |= {"default": default, "required": taken == REQUIRED}
+                how |= {"nargs": "+"} if isinstance(default, list) else {}
                 self.add_argument("--" + name.replace("_", "-"), **how)
 
 

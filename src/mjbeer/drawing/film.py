@@ -110,7 +110,7 @@ def _pictures(
     under = _BELOW if "normal" in look.marks else max(around, _BOARD)
     motion = fine, positions[:, 0], positions[:, 3]
     path = CameraPath.fit(scene, look.camera, *motion, plane, (width, seen - spare), around, under)
-    marks = Marks(trajectory, look.marks, plane, fine, positions)
+    marks = Marks(trajectory, look.marks, plane, fine, positions, look.measured)
     board = Board.of(scene, display.model, float(trajectory.u[0]))
     notes = {name: spans(trajectory, name) for name in look.notes}
     shown, marked = charts(trajectory, look.strips[: 1 if sheet.small else None]), next(iter(notes.values()), ())

@@ -19,9 +19,10 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-Mark = Literal["phi", "paths", "normal", "friction", "ghost", "skid", "gap"]
+Mark = Literal["phi", "paths", "normal", "friction", "ghost", "skid", "gap", "measured"]
 """phi: the angle of the load. paths: of a point on the rim and of the load's centre of mass. normal, friction: N and F.
-ghost: a can that accelerates evenly. skid: the track on the incline where the can slips. gap: how high it flies."""
+ghost: a can that accelerates evenly. skid: the track on the incline where the can slips. gap: how high it flies.
+measured: where a film has had the axis so far."""
 _TITLES = {
     "sliding": "Beer that slides in its can without friction",
     "frozen": "Beer frozen to its can",
@@ -41,6 +42,7 @@ class Look:
     camera: Camera = "auto"  # how the camera moves
     facts: str = ""  # what is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title
     notes: tuple[str, ...] = ()  # what is said while it happens; the charts mark when the first one is
+    measured: np.ndarray | None = None  # times [s] and places u [m] of a filmed axis, shape (points, 2)
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
@@ -76,6 +78,7 @@ _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
     "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
     "skid": (("—", _SKID, "where the {} slips"),),
     "gap": (),
+    "measured": (("•", _SKID, "where the filmed {} was"),),
 }
 """What the marks are: a sign, its colour, and its meaning."""
 
@@ -147,12 +150,22 @@ class Marks:
     plane: float  # coordinate y of the can's near end [m]
     fine: np.ndarray  # times [s] at which the paths are drawn
     positions: np.ndarray  # u, phi, roll and lift at these times, shape (times, 4)
+    measured: np.ndarray | None = None  # as a look has them
 
     def draw(self, sheet: Sheet, view: View, top: int, time: float, now: np.ndarray) -> None:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
         sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        marks = (self._skid, self._gap, self._ghost, self._paths, self._normal, self._friction, self._phi)
+        marks = (
+            self._skid,
+            self._gap,
+            self._ghost,
+            self._paths,
+            self._normal,
+            self._friction,
+            self._phi,
+            self._measured,
+        )
         for draw in (each for each in marks if each.__name__[1:] in self.kinds):
             draw(pen, time, now)
         sheet.clip(None)
@@ -215,6 +228,12 @@ class Marks:
         largest = np.percentile(np.hypot(normal, friction), _RARE) / weight
         length = min(1.0, LONGEST / max(largest, _FAINT)) / weight
         return length * normal, length * friction
+
+    def _measured(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+        assert self.measured is not None
+        seen, radius = self.measured[self.measured[:, 0] <= time], self.trajectory.scene.can.radius
+        for _, u in [*seen[:: max(1, len(self.measured) // 60)], *seen[-1:]]:
+            pen.disc(np.array([u / radius, 1.0]), 0.08, _SKID)
 
     def _phi(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
         """Draw phi outside the rim: from the incline to the beer's surface, or from under the axle to over a bob."""

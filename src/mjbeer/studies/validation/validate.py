@@ -10,7 +10,7 @@ from mjbeer.checks import Check, Result, json_values
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.paper.claim import CONFIRMED, CORRECTED, LIMIT
 from mjbeer.studies.study import FAILED, PASSED, machine, table
-from mjbeer.studies.validation import motion_checks, standing_checks
+from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
 
 _WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
 """The verdicts of the audit, short enough for a terminal."""
@@ -59,7 +59,7 @@ class Validation:
 def checks() -> list[Check]:
     """Return all checks of the validation, in the order of its table."""
     motions = motion_checks.checks, motion_checks.damped, motion_checks.orders, motion_checks.drifts
-    return [check for chapter in (*motions, standing_checks.checks) for check in chapter()]
+    return [check for chapter in (*motions, standing_checks.checks, track_checks.checks) for check in chapter()]
 
 
 def validate(console: Console | None) -> Validation:

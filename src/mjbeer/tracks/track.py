@@ -1,0 +1,164 @@
+"""The track of a filmed can, and the tables of Tracker, Logger Pro, Capstone and phyphox in which people have it."""
+
+import math
+import os
+import pathlib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mjbeer import require
+from mjbeer.exceptions import ParameterError
+
+_LENGTHS, _DEGREE = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, math.pi / 180
+_ANGLES = {"rad": 1.0, "deg": _DEGREE, "°": _DEGREE, "degrees": _DEGREE}
+_COLUMNS: dict[str, tuple[dict[str, float], str]] = {
+    "time": ({"s": 1.0, "ms": 1e-3, "min": 60.0}, "t|time"),
+    "frame": ({}, "frames?|steps?"),
+    "x": (_LENGTHS, "x|along|distance|position|position x|x position"),
+    "y": (_LENGTHS, "y|position y|y position"),
+    "roll": (_ANGLES, "roll"),
+    "phi": (_ANGLES, "phi|φ"),
+}
+"""What is read: the units that it may have, and its usual headings."""
+_AROUND = re.compile(r"^(latest|run ?#?\d+)\s*[:|]|run #?\d+$|[\[(].*?[\])]")
+"""What stands around the name in a heading: which run it was, and the unit."""
+_CROOKED = 0.02
+"""Largest distance of places from a straight line (rms), over their range: a mark on the rim, whose path is a cycloid,
+has more than that within a metre."""
+_LEAST = 12
+"""Least number of points: there are half as many unknowns."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """Where a filmed can was, and when; all arrays have the shape (points,).
+
+    Raises:
+      ParameterError: if an array is not finite, they differ in length, the times do not increase, there are fewer than
+        12 points, or all are in one place.
+    """
+
+    time: np.ndarray
+    """Times by any clock [s]."""
+    along: np.ndarray
+    """Place of the axis along the incline, from anywhere [m]; it grows downhill."""
+    roll: np.ndarray | None = None
+    """Angle by which a mark on the can has turned, from anywhere [rad]; it grows with `along`."""
+    phi: np.ndarray | None = None
+    """Angle of the load to the incline [rad]."""
+
+    def __post_init__(self) -> None:
+        for name in ("time", "along", "roll", "phi"):
+            if name in ("time", "along") or getattr(self, name) is not None:
+                require.set_fields(self, **{name: require.samples(name, getattr(self, name))})
+                if (count := len(getattr(self, name))) != len(self.time):
+                    raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
+        if len(self.time) < _LEAST or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:
+            raise ParameterError(
+                f"a track has {_LEAST} points or more, in the order of time and not all in one place, got "
+                f"{len(self.time)} from {self.time[0]:g} s to {self.time[-1]:g} s"
+            )
+
+
+def read_track(
+    path: str | os.PathLike[str], columns: Mapping[str, str | int] | None = None, rate: float | None = None
+) -> Track:
+    """Return the track in a table: a text with tabs, semicolons, commas or spaces between its columns.
+
+    Numbers may have decimal commas. Lines above the last heading are passed over, rows with an empty cell are left out.
+    Units stand in the headings, in brackets; without them they are s, m and rad. `columns` says which column is "time",
+    "frame", "x", "y", "roll" or "phi", by its heading or its number from 1; usual headings are found without. `rate`
+    [1/s] is that of the pictures, where frames are numbered instead of times. With x and y the places are those along
+    the straight line through all of them, counted as the can went.
+
+    Raises:
+      ParameterError: if it cannot be read so; the message has line and column.
+    """
+    source, columns = require.path(path), require.instance("columns", {} if columns is None else columns, dict)
+    cells, comma = _cells(source)
+    numbers = {line: [_number(cell, comma) for cell in row] for line, row in cells.items()}
+    first = next((line for line, row in numbers.items() if sum(map(math.isfinite, row)) > 1), 0)
+    if not (above := [line for line in cells if line < first]):
+        raise ParameterError(f"{source} is no table: there must be a heading above two columns of numbers or more")
+    used = _used(source, above[-1], cells[above[-1]], columns)
+    if "frame" in used:
+        used["frame"] = used["frame"][0], 1 / require.positive("rate of the frames", rate, "1/s")
+    rows: dict[int, list[float]] = {}
+    for line, row in cells.items():
+        if line >= first and all(at < len(row) and row[at] for at, _ in used.values()):
+            for at, _ in used.values():
+                if not math.isfinite(numbers[line][at]):
+                    raise ParameterError(f"{source}, line {line}, column {at + 1}: {row[at]!r} is no number")
+            rows[line] = [numbers[line][at] * scale for at, scale in used.values()]
+    data = dict(zip(used, np.array([*rows.values()]).reshape(-1, len(used)).T, strict=True))
+    clock = "frame" if "frame" in data else "time"
+    if len(back := np.flatnonzero(np.diff(data[clock]) <= 0)):
+        at = f"line {[*rows][back[0] + 1]}, column {used[clock][0] + 1}"
+        raise ParameterError(f"{source}, {at}: this time is not later than the one before")
+    along = _straight(source, data["x"], data["y"]) if "y" in data else data["x"]
+    return Track(data[clock], along, data.get("roll"), data.get("phi"))
+
+
+def _cells(source: pathlib.Path) -> tuple[dict[int, list[str]], bool]:
+    """Return the cells of the lines that are not empty, by their numbers, and whether commas stand between them."""
+    try:
+        raw = source.read_bytes()
+    except OSError as error:
+        raise ParameterError(f"cannot read {require.format_value(str(source))}: {error.strerror or error}") from None
+    text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
+    lines = {number: line for number, line in enumerate(text.splitlines(), start=1) if line.strip(" \t;,")}
+    mark = next((each for each in "\t;," if 2 * sum(each in line for line in lines.values()) > len(lines)), None)
+    return {number: [cell.strip(' "') for cell in line.split(mark)] for number, line in lines.items()}, mark == ","
+
+
+def _number(cell: str, comma: bool) -> float:
+    """Return the number in a cell, NaN if there is none; a comma that does not stand between cells is a decimal one."""
+    try:
+        return float(cell if comma else cell.replace(",", "."))
+    except ValueError:
+        return math.nan
+
+
+def _used(
+    source: pathlib.Path, line: int, titles: list[str], columns: Mapping[str, str | int]
+) -> dict[str, tuple[int, float]]:
+    """Return which column has what, and its unit; `titles` are the headings in a line."""
+    names = [_AROUND.sub("", _AROUND.sub("", title.lower()).strip()).strip() for title in titles]
+    if not set(columns) <= set(_COLUMNS):
+        raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {require.format_value(columns)}")
+    used = {}
+    for name, (units, usual) in _COLUMNS.items():
+        asked = str(columns.get(name, ""))
+        if asked:
+            meant = [at for at, title in enumerate(titles) if asked in (title, str(at + 1))]
+        else:
+            meant = [at for at in range(len(titles)) if re.fullmatch(usual, names[at])]
+        if len(meant) > 1 or (asked and not meant):
+            found = f"{len(meant) or 'no'} columns may be {name}"
+            raise ParameterError(f"{source}, line {line}: {found}; say which by its number from 1, of {titles}")
+        if meant and not (name == "frame" and "time" in used):
+            title = titles[meant[0]]
+            unit = re.search(r"[\[(]\s*(.*?)\s*[\])]", title)
+            if unit and unit[1] and unit[1].lower() not in units:
+                place = f"{source}, line {line}, column {meant[0] + 1}"
+                raise ParameterError(f"{place}: the unit of {name} is one of {', '.join(units)}, got {title!r}")
+            used[name] = meant[0], units[unit[1].lower()] if unit and unit[1] else 1.0
+    if "x" not in used or not ("time" in used or "frame" in used):
+        raise ParameterError(f"{source}, line {line}: time and x are needed; say which columns they are, of {titles}")
+    return used
+
+
+def _straight(source: pathlib.Path, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the places along the straight line through points, from their middle, counted as they went."""
+    places = np.stack([x - x.mean(), y - y.mean()], axis=1)
+    _, sizes, ways = np.linalg.svd(places, full_matrices=False)
+    along = places @ ways[0]
+    if (aside := sizes[1] / math.sqrt(len(x))) > _CROOKED * np.ptp(along):
+        raise ParameterError(
+            f"{source}: x and y are no straight line but {1e3 * aside:.2g} mm beside it (rms); track the can's axis, "
+            "not a mark on its rim"
+        )
+    return along * math.copysign(1.0, -along[0])

@@ -1,0 +1,106 @@
+"""Tables of tracks are read as people have them, and what cannot be read is refused by line and column."""
+
+import math
+import pathlib
+import re
+
+import numpy as np
+import pytest
+
+from mjbeer import Track, read_track
+from mjbeer.exceptions import ParameterError
+
+TIME, PLACE = 17 + np.arange(20) / 60, 0.1 + 0.5 * (np.arange(20) / 60) ** 2
+
+
+def written(folder: pathlib.Path, text: str, encoding: str = "utf-8") -> pathlib.Path:
+    path = folder / "can.txt"
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+def table(heading: str, mark: str, *columns: np.ndarray, comma: bool = False) -> str:
+    lines = [mark.join(f"{value:.9f}" for value in row) for row in np.column_stack(columns)]
+    return "\n".join([heading, *(line.replace(".", ",") if comma else line for line in lines)]) + "\n"
+
+
+TABLES = {
+    "Tracker 5": table("multi:\t\t\nmass A\t\t\nt\tx\ty", "\t", TIME, PLACE, 0 * PLACE),
+    "Tracker 6, commas": table('"multi:",,\nt,x', ",", TIME, PLACE),
+    "decimal commas": table("t (s);x (cm)", ";", TIME, 100 * PLACE, comma=True),
+    "decimal commas, tabs": table("t\tx", "\t", TIME, PLACE, comma=True),
+    "Logger Pro": table("Latest: Time (s)\tLatest: X (mm)", "\t", TIME, 1000 * PLACE),
+    "Capstone": table('"Time (s) Run #1","Position (m) Run #1"', ",", TIME, PLACE),
+    "phyphox": table('"Time (ms)","Distance (m)"', ",", 1000 * TIME, PLACE),
+    "spaces": table("t x", " ", TIME, PLACE),
+    "from Excel": "\ufeff" + table("t;x;note", ";", TIME, PLACE, 0 * TIME).replace("0.000000000\n", "\n"),
+}
+
+
+@pytest.mark.parametrize("text", TABLES.values(), ids=TABLES)
+def test_tables_as_people_have_them(text: str, tmp_path: pathlib.Path) -> None:
+    track = read_track(written(tmp_path, text))
+    assert track.time == pytest.approx(TIME)
+    assert track.along - track.along[0] == pytest.approx(PLACE - PLACE[0], abs=1e-8)
+
+
+def test_excel_also_writes_two_bytes_a_letter(tmp_path: pathlib.Path) -> None:
+    assert read_track(written(tmp_path, TABLES["decimal commas"], "utf-16")).time == pytest.approx(TIME)
+
+
+def test_points_that_were_lost_are_left_out(tmp_path: pathlib.Path) -> None:
+    lines = TABLES["spaces"].replace(" ", ";").splitlines()
+    lines[5], lines[9] = lines[5].split(";")[0] + ";", ""
+    track = read_track(written(tmp_path, "\n".join(lines)))
+    assert track.time == pytest.approx(np.delete(TIME, [4, 8]))
+
+
+def test_places_on_a_tilted_board_are_those_along_it(tmp_path: pathlib.Path) -> None:
+    """To the left and down, as the picture has it; the way counts as the can went."""
+    x, y = -PLACE * math.cos(0.1), 0.3 - PLACE * math.sin(0.1)
+    track = read_track(written(tmp_path, table("t x y", " ", TIME, x, y)))
+    assert np.diff(track.along) == pytest.approx(np.diff(PLACE), abs=1e-8)
+
+
+def test_frames_with_a_rate_and_columns_by_name(tmp_path: pathlib.Path) -> None:
+    text = table("frame,A,B,roll (deg)", ",", np.arange(20) + 3, 0 * PLACE, PLACE, np.degrees(PLACE / 0.033))
+    path = written(tmp_path, text)
+    for column in ("B", 3, "3"):
+        track = read_track(path, {"x": column}, rate=60)
+        assert track.time == pytest.approx((np.arange(20) + 3) / 60)
+        assert track.along == pytest.approx(PLACE)
+        assert track.roll == pytest.approx(PLACE / 0.033)
+
+
+GOOD = TABLES["spaces"].replace(" ", ",")
+WRONG = {
+    "line 1: 2 columns may be x; say which": table("t,x,X", ",", TIME, PLACE, PLACE),
+    "line 1: time and x are needed": table("t,z", ",", TIME, PLACE),
+    "line 1, column 2: the unit of x is one of m, cm, mm, got 'x (px)'": GOOD.replace("t,x", "t,x (px)"),
+    "line 3, column 2: 'lost' is no number": re.sub(r"(?m)^(17.0166\d*),.*$", r"\1,lost", GOOD),
+    "line 4, column 1: this time is not later": re.sub(r"(?m)^17.033\d*", "17.01", GOOD),
+    "is no table": "nothing here\n",
+    "rate of the frames must be": table("frame,x", ",", TIME, PLACE),
+    "12 points or more": "\n".join(GOOD.splitlines()[:8]),
+    "x and y are no straight line": table("t,x,y", ",", TIME, PLACE, 0.03 * np.sin(60 * PLACE)),
+}
+
+
+@pytest.mark.parametrize(("message", "text"), WRONG.items(), ids=WRONG)
+def test_what_cannot_be_read_is_refused(message: str, text: str, tmp_path: pathlib.Path) -> None:
+    with pytest.raises(ParameterError, match=re.escape(message)):
+        read_track(written(tmp_path, text))
+
+
+def test_a_missing_file_and_a_column_that_is_not_there_are_refused(tmp_path: pathlib.Path) -> None:
+    with pytest.raises(ParameterError, match="cannot read"):
+        read_track(tmp_path / "none.csv")
+    with pytest.raises(ParameterError, match="no columns may be x"):
+        read_track(written(tmp_path, GOOD), {"x": "place"})
+    with pytest.raises(ParameterError, match="columns are those of time"):
+        read_track(written(tmp_path, GOOD), {"place": "x"})
+
+
+def test_arrays_of_different_lengths_are_refused() -> None:
+    with pytest.raises(ParameterError, match="roll must have as many entries"):
+        Track(TIME, PLACE, PLACE[1:])
