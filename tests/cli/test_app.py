@@ -112,7 +112,7 @@ def test_the_version_and_the_help_of_each_command(capsys: pytest.CaptureFixture[
     for words in (
         [],
         *([name] for name in COMMANDS),
-        *([name, "frozen"] for name in with_scenes),
+        *([name, *["FILE"] * bool(COMMANDS[name].file), "frozen"] for name in with_scenes),
         ["view", "standing"],
     ):
         with pytest.raises(SystemExit) as ended:

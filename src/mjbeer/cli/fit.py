@@ -13,7 +13,6 @@ from mjbeer.cli.arguments import Option, command, scene
 from mjbeer.exceptions import LiquidWarning, ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
-from mjbeer.tracks.problem import FREE
 
 _ENDINGS = ".svg", ".png", ".mp4"
 _ANGLES = "incline", "phi0", "turned"
@@ -36,7 +35,9 @@ def column(text: str) -> tuple[str, str]:
 
 
 @command(
-    Option("free", f"what is sought, of {', '.join(FREE)}; the scene's options are a guess of it", ["incline"], str),
+    Option(
+        "free", "what is sought, of incline, fill, damping, drag; the scene's options are guesses", ["incline"], str
+    ),
     Option("known", "measured values with their errors, as fill=0.5±0.005 [incline in degrees]", [], known, "none"),
     Option("phi0", "the load's angle when it is let go: level, free, or a number [degrees]", "level", str),
     Option("bend", "bend of the track by a lens; 0 is none [m]", None, float, "5 mm, or 1/400 of a short way"),
