@@ -220,8 +220,10 @@ class ToleranceLoop:
             return states
 
         local = max(min(_FIRST * tolerance, _COARSEST), _FIRST_RATIO * self._smallest)
-        smooth = _ASYMPTOTIC[0] < tolerance <= _ASYMPTOTIC[1] and not self._rounded
-        safety = 1.0 if smooth else _SAFETY_BY_CHANCE  # the distance is the error of the coarser run, and much larger
+        smooth = _ASYMPTOTIC[0] < tolerance <= _ASYMPTOTIC[1] and not (self._rounded or self._model.neq)
+        # What Gauss-Jackson has not reached is beside a separatrix or near rounding, where errors are alike by chance.
+        by_chance = _SAFETY_BY_CHANCE * (1 if self._gauss_jackson is None else 2)
+        safety = 1.0 if smooth else by_chance  # the distance is the error of the coarser run, and much larger
         coarse, stalled, estimate = run(start + self._nudge, local), 0, math.inf
         distances, ratios = [0.0], [1.0, _FIRST_RATIO]
         while True:
@@ -245,7 +247,7 @@ class ToleranceLoop:
                 else:
                     reason = f"two runs {end} differ by {distances[-1]:.2g} rad, which may be a third of their error"
                 raise _not_reached(tolerance, f"{reason}; the motion is not smooth, or rounding has the upper hand")
-            coarse, estimate, safety = fine, max(error, drift), _SAFETY_BY_CHANCE
+            coarse, estimate, safety = fine, max(error, drift), by_chance
         rounding = _ROUNDING_OVER_NUDGE * distances[1] if distances[2:] else 0.0  # the first one includes the nudge
         if rounding > tolerance:
             # On either side of the start, because from one side of a barrier's top all motions fall the same way.

@@ -59,20 +59,19 @@ def stored() -> Benchmark:
 
 @pytest.mark.slow
 def test_the_study_that_comes_with_mjbeer_is_of_this_code(stored: Benchmark) -> None:
-    """On a few of its points, to the digits that rounding leaves; some are of an earlier one (see its page)."""
+    """On a few of its points, to the digits that rounding leaves."""
     assert set(stored.cases) <= set(CASES)
     compared = 0
     for old in stored.points[:: len(stored.points) // 72]:
-        if old.failure or not 1e-10 < old.error < 1e-2 or old.method in ("", "GaussJackson"):
-            continue
-        if (old.method, old.parameter) == ("mjbeer", "tolerance") or old.model == "contact":
+        if old.failure or not 1e-10 < old.error < 1e-2 or not old.method:  # of another tool
             continue
         case, new = CASES[old.case], Point(old.case, old.model, old.method, old.parameter, old.value)
         measure(case, new, case.truth())
-        assert new.error == pytest.approx(old.error, rel=1e-3)
+        # What MuJoCo's solver leaves of a contact's force depends on rounding.
+        assert new.error == pytest.approx(old.error, rel=1e-2 if old.model == "contact" else 1e-3)
         assert new.evaluations == old.evaluations
         compared += 1
-    assert compared > 5
+    assert compared > 10
 
 
 @pytest.mark.costly
