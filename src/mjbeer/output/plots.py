@@ -163,8 +163,9 @@ def _with_tooltips(svg: str) -> str:
     def line(found: re.Match[str]) -> str:
         texts = found[1].split("\n")
         points = iter(texts)
-        return re.sub(
+        told = re.sub(
             "(<use [^>]*)/>", lambda use: f"{use[1]}><title>{next(points)}</title></use>", found[2], count=len(texts)
         )
+        return f"<g>{told}"
 
     return re.sub(rf'(?s)<g id="{_TOOLTIPS}([^"]*)">(.*?)(?=<g id="{_TOOLTIPS}|$)', line, svg)
