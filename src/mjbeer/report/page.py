@@ -76,7 +76,7 @@ def html(
     made = "mjbeer paper" + " --films" * (not quick)
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
     scenes = {name: _scene(name, films.get(name)) for name in FILMS}
-    runs, same, _ = stability_maps.summary(maps["maps"])
+    runs, _, border = stability_maps.summary(maps["maps"])
     wrong, others = _misprints(validation), [name for name in stability_maps.FAMILIES if name not in _MAP]
     return environment.get_template("page.html").render(
         sketch=stories.letters(),
@@ -92,7 +92,7 @@ def html(
         map=plots[_MAP],
         other_maps={f"stability-{name}.svg": stability_maps.FAMILIES[name].title for name in others},
         runs=runs,
-        same=same,
+        border=border,
         misprints=wrong,
         kinds=Counter(claim.misprint.kind for _, claim in wrong if claim.misprint),
         quoted=[claim for claim in paper.claims() if claim.quote and not claim.misprint],
