@@ -20,9 +20,9 @@ T = TypeVar("T")
 Name = TypeVar("Name", bound=str)
 
 # The domain: the smallest and the largest value.
-SIZE = 1e-4, 1e2  # of radius and length of a can [m]
-MASS = 1e-9, 1e9  # that is not 0 [kg]
-RATIO = 1e6  # of two masses, or of inertias compared with masses at the radius, either way
+SIZE = 1e-3, 1e2  # of radius and length of a can [m]
+MASS = 1e-9, 1e4  # that is not 0 [kg]
+RATIO = 1e4  # of two masses, or of inertias compared with masses at the radius, either way
 GRAVITY = 1e-3, 1e3  # that is not 0 [m/s^2]
 ANGLE = 1e4  # at the start, either way [rad]
 RATE = 1e6  # at the start, either way [rad/s]

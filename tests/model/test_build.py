@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model import check
 from mjbeer.model.build import ReusableModel, compile_spec, rolling_spec
 from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics
@@ -26,13 +25,13 @@ from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
 ROUNDING = 1e-11
 EXTREMES = [
     *(each(fill=fill) for each in (sliding, frozen) for fill in (1e-2, 1 - 1e-6, 1.0)),
-    *(pendulum(wheel_mass=mass) for mass in (1e-7, 1e5)),
-    *(hoop(hoop_mass=mass) for mass in (2e-7, 2e5)),
-    *(each(can=Can.massless(size, size)) for each in (sliding, frozen) for size in (1e-4, 50.0)),
+    *(pendulum(wheel_mass=mass) for mass in (1e-5, 1e3)),
+    *(hoop(hoop_mass=mass) for mass in (2e-5, 2e3)),
+    *(each(can=Can.massless(size, size)) for each in (sliding, frozen) for size in (1e-3, 1.0)),
     Scene(Can(0.03, 0.1, 0.1, 9e-5), Load(0.2, 0.0, 1e-4), 0.2, "sliding"),
-    Scene(Can(0.03, 0.1, 1e4, 9.0), Load(0.2, 0.01, 1e-4), 0.2, "sliding"),
+    Scene(Can(0.03, 0.1, 1e3, 0.9), Load(0.2, 0.01, 1e-4), 0.2, "sliding"),
 ]
-"""Point loads, balanced ones, thin ones, cans 1e-6 and 1e6 of the load's mass, of 0.1 mm and of 50 m."""
+"""Point loads, balanced ones, thin ones, cans 1e-4 and 1e4 of the load's mass, of 1 mm and of 1 m."""
 
 
 @st.composite
@@ -235,12 +234,3 @@ def test_reset_finds_the_joints_in_another_world_and_says_where_there_are_none()
     empty = mujoco.MjSpec().compile()
     with pytest.raises(ParameterError, match="the model must have the joints of a scene"):
         mjbeer.reset(empty, mujoco.MjData(empty), frozen(), 0.3)
-
-
-def test_what_rounding_takes_from_a_model_is_found() -> None:
-    """As a mass 1e13 times that of the load does, beyond any can; and what a wrong mass would do."""
-    run = simulate(frozen(), 1.0, 1.0)
-    model = build(frozen())
-    assert check.rounding_error(model, run.scene, run.checkpoints, run.record, exact_constraint=True) < 1e-13
-    model.body_mass *= 1 + 1e-4
-    assert check.rounding_error(model, run.scene, run.checkpoints, run.record, exact_constraint=True) > 1e-4

@@ -123,7 +123,7 @@ def test_a_portable_export_has_damping_as_one_number(rolling: Rolling, tmp_path:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rolling", ROLLINGS)
-@pytest.mark.parametrize("radius", [1e-3, 10.0])
+@pytest.mark.parametrize("radius", [1e-3, 1.0])
 @pytest.mark.parametrize("make", [sliding, frozen])
 def test_cans_of_every_size(
     make: Callable[..., Scene], radius: float, rolling: Rolling, tmp_path: pathlib.Path

@@ -31,15 +31,15 @@ def shell(inertia: float) -> Scene:
 
 
 EDGES = [
-    ("can radius", 1e-4, 1e2, lambda value: Can(radius=value)),
-    ("can length", 1e-4, 1e2, lambda value: Can(length=value)),
-    ("can mass", 1e-9, 1e9, lambda value: Can(mass=value)),
-    ("can inertia", None, 1e6 * 0.1 * 0.033**2, lambda value: Can(mass=0.1, inertia=value)),
-    ("load mass", 1e-9, 1e9, lambda value: Load(value, 0.01)),
+    ("can radius", 1e-3, 1e2, lambda value: Can(radius=value)),
+    ("can length", 1e-3, 1e2, lambda value: Can(length=value)),
+    ("can mass", 1e-9, 1e4, lambda value: Can(mass=value)),
+    ("can inertia", None, 1e4 * 0.1 * 0.033**2, lambda value: Can(mass=0.1, inertia=value)),
+    ("load mass", 1e-9, 1e4, lambda value: Load(value, 0.01)),
     ("load offset", 0.0, 1e2, lambda value: Load(1.0, value)),
     ("load offset", 1e-14, 1.0, lambda value: wheel(offset=value)),
-    ("load inertia", None, 2e5, shell),
-    ("mass of the can over that of the load", 1e-6, 1e6, lambda value: wheel(value, 1.0)),
+    ("load inertia", None, 2e3, shell),
+    ("mass of the can over that of the load", 1e-4, 1e4, lambda value: wheel(value / 8, 1 / 8)),
     ("gravity", 1e-3, 1e3, lambda value: sliding(gravity=value)),
     ("phi0", -1e4, 1e4, lambda value: exact(sliding(), 0.0, value)),
     ("phi_dot0", -1e6, 1e6, lambda value: exact(sliding(), 0.0, 0.0, value)),
@@ -78,7 +78,7 @@ REFUSED = [
     ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got 1.57", lambda: sliding(math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
     ("a can without mass has no inertia, got mass 0 kg and inertia 1e-05 kg m^2", lambda: Can(inertia=1e-5)),
-    ("load mass must be between 1e-09 and 1e+09 [kg], got 0.0", lambda: sliding(fill=1e-300)),
+    ("load mass must be between 1e-09 and 10000 [kg], got 0.0", lambda: sliding(fill=1e-300)),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
 ]

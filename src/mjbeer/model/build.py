@@ -56,9 +56,9 @@ def build(
     `mjbeer.reset`: a new MjData is at zero coordinates, where a can in contact hardly touches.
 
     The joints are "slide" (u), "lift" (contact only), "roll" and, for a sliding load, "swing" relative to
-    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. In a scene so light that
-    MuJoCo's smallest mass would matter, all masses are multiplied by the same power of two, which does not
-    change the motion; so they are in a reduced model with damping under "discrete", which would not see small forces.
+    the can; a reduced model has "slide" and "phi", or "phi" alone for a frozen load. With damping
+    under "discrete" all masses of a reduced model are multiplied by the same power of two, which does not change the
+    motion: MuJoCo would not see small forces.
 
     A `standing` can stands on a floor, on a free joint; without `free` it is held by the world. It has no other
     parameters than `visuals`, `integrator`, `timestep` and `mjcf`, and a free joint only a standing can may have.

@@ -1,16 +1,12 @@
 """What a compiled model does: its accelerations beside those of theory.
 
 A model that is right accelerates as theory says, at some states. One from an edited file may not.
-One of a scene with unequal masses may have lost something in rounding: MuJoCo adds masses, and multiplies arms by
-forces, in double precision and in the coordinates of the world. All runs of such a model are wrong alike, so that no
-comparison of runs can show it.
 """
 
 import copy
 import functools
 import math
 import pathlib
-from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -23,9 +19,8 @@ from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import Rolling, Setting
 from mjbeer.theory.can import Can
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import Coordinates, accelerations, relaxation_rate, select_samples
+from mjbeer.theory.equations import Coordinates, accelerations
 from mjbeer.theory.load import Load
-from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Attachment, Scene
 
 _PROBES = {
@@ -83,8 +78,10 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
     rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
     lift = zeros - START_DEPTH * radius
     states = to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
-    difference, _ = residual(model, scene, states, exact_constraint=False)
-    size = np.abs(accelerations(scene, phi, phi_dot, rates["u_dot"])[1]).max() + rate**2
+    slopes = np.concatenate([states[:, model.nq :], _accelerations(model, scene, states)], axis=1)
+    _, right = accelerations(scene, phi, phi_dot, rates["u_dot"])
+    difference = np.abs(to_coordinates(model, scene, slopes, zeros).phi_dot - right).max()
+    size = np.abs(right).max() + rate**2
     if not difference <= _ALLOWED * size:
         return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
     data = mujoco.MjData(model)
@@ -99,47 +96,11 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
     return None
 
 
-def rounding_error(
-    model: mujoco.MjModel, scene: Scene, way: Coordinates, record: Record, exact_constraint: bool
-) -> float:
-    """Return the error of phi [rad], relative beyond 1 rad, that a model's residual along the way of a run implies.
+def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray) -> np.ndarray:
+    """Return the accelerations of the model's joints at `states`, shape (states, nv).
 
-    Like a relative error of the energy it is a relative error of the rate, and so of the path of phi. It is no more
-    than what the missing acceleration gives from rest, which is lost where a motion ought to begin, but does not.
+    A constraint, which may be soft, is replaced by that of rolling.
     """
-    chosen = np.linspace(0, len(way.time) - 1, min(9, len(way.time))).astype(int)  # states, evenly spread
-    difference, relative = residual(model, scene, to_states(model, select_samples(way, chosen)), exact_constraint)
-    missing = min(relative * max(record.angle_covered, 1.0), difference * float(way.time[-1]) ** 2 / 2)
-    return missing / max(1.0, record.largest_turn)
-
-
-def residual(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> tuple[float, float]:
-    """Return the largest difference of phi_ddot from theory's at `states` [rad/s^2], and relative to phi_ddot.
-
-    `states` has shape (states, nq + nv). Softness is no loss, and shows as slip: the slip of the states is taken away,
-    and a constraint that is not exact is replaced by that of rolling.
-    """
-    times, radius = np.zeros(len(states)), scene.can.radius
-    motion = to_coordinates(model, scene, states, times)
-    motion = replace(motion, u=radius * motion.roll, u_dot=radius * motion.roll_dot)
-    states = to_states(model, motion)
-    slopes = np.concatenate([states[:, model.nq :], _accelerations(model, scene, states, exact_constraint)], axis=1)
-    found = to_coordinates(model, scene, slopes, times).phi_dot
-    _, right = accelerations(scene, motion.phi, motion.phi_dot, motion.u_dot)
-    oscillator = scene.oscillator
-    # A motion that hardly swings would divide rounding by nearly nothing: the least is a tenth of what gravity gives.
-    small = float((0.1 * oscillator.depth / oscillator.inertia(motion.phi)).min())
-    differences = np.abs(found - right)
-    if scene.dissipates:  # the rounding of a slip rate makes a torque that brings can and load together, and so is gone
-        rates = np.abs(motion.phi_dot) + np.abs(motion.u_dot) / radius
-        together = relaxation_rate(scene, motion.phi, motion.phi_dot, motion.u_dot)
-        differences = np.maximum(differences - 8 * np.finfo(float).eps * together * rates, 0.0)
-    largest, difference = max(float(np.abs(right).max()), small), float(differences.max())
-    return difference, difference / largest if largest > 0 else 0.0
-
-
-def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exact_constraint: bool) -> np.ndarray:
-    """Return the accelerations of the model's joints at `states`, shape (states, nv)."""
     if model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4:  # "discrete" has changes over a whole step
         model = copy.copy(model)
         model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
@@ -156,7 +117,7 @@ def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray, exac
             data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = *np.split(state, 2), 0.0
             mujoco.mj_forward(model, data)
             found[place] = data.qacc
-            if "roll" in joints and not exact_constraint:
+            if "roll" in joints:
                 mujoco.mj_fullM(model, data, inertia)
                 reduced = rolling @ inertia @ rolling.T
                 found[place] = rolling.T @ np.linalg.solve(reduced, rolling @ data.qfrc_smooth)

@@ -18,10 +18,6 @@ from mjbeer.theory.scene import Scene
 Structure: TypeAlias = tuple[Hashable, ...]
 """What decides which elements and flags a model has."""
 
-_UNSCALED = 1e-9, 1e3
-"""Smallest mass [kg] and inertia [kg m^2], and largest mass, that are not scaled. MuJoCo's smallest value (mjMINVAL,
-1e-15), a million times smaller, changes no sum noticeably; as its smallest softness, 1e-15 /kg, it is 1e-12 of the
-inverse of the largest."""
 _FORCES_SEEN = 2.0**60
 """Factor of all masses where "discrete" meets the damping of a tendon. It then iterates, and takes forces below 3e-8
 [N, N m] for none: a load let go 1e-6 rad beside the top would stay there for ever."""
@@ -71,9 +67,9 @@ class Mechanics:
             bodies, forces = _constrained(scene)
         else:
             bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
-        unit, damped = _mass_unit(scene.oscillator.base, bodies), bool(scene.damping_law)
-        if setting.rolling == "reduced" and setting.integrator == "discrete" and damped and not visuals:
-            unit *= _FORCES_SEEN
+        damped = bool(scene.damping_law)
+        iterated = setting.rolling == "reduced" and setting.integrator == "discrete" and damped and not visuals
+        unit = _FORCES_SEEN if iterated else 1.0
         return cls(
             scene=scene,
             setting=setting,
@@ -149,21 +145,6 @@ class Mechanics:
         else:
             found[rolling, "polycoef"] = 0, radius, 0, 0, 0
         return found
-
-
-def _mass_unit(base: float, bodies: list[tuple[str, Inertial]]) -> float:
-    """Return the power of two by which all masses of a scene are multiplied: 1 unless they are tiny or huge.
-
-    Only ratios of masses enter the motion, and a power of two causes no rounding. In a scene with both tiny and huge
-    masses the tiny ones decide: MuJoCo's smallest value would otherwise hide them. `base` is the least inertia of phi
-    [kg m^2].
-    """
-    values = base, *(value for _, (mass, _, inertia) in bodies for value in (mass, inertia))
-    largest = max(values)
-    smallest = min(value for value in values if value > 1e-30 * largest)  # what is less adds nothing to any sum
-    heaviest = max(mass for _, (mass, _, _) in bodies)
-    up, down = math.ceil(math.log2(_UNSCALED[0] / smallest)), math.floor(math.log2(_UNSCALED[1] / heaviest))
-    return 2.0 ** max(up, min(0, down))
 
 
 def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:

@@ -19,7 +19,7 @@ LENGTH = 1.0  # distance from start to finish [m]
 _GENTLE = math.radians(5)
 """Incline of the race of beer [rad]: gentle enough for the frozen can to finish without leaving the board."""
 _FILL = 0.75  # how full the cans are that are neither full nor empty
-_EMPTY = 1e-5  # fill of the empty can: its beer weighs some millionths of the can
+_EMPTY = 2e-4  # fill of the empty can: its beer weighs less than a thousandth of the can
 _STEEPER = math.radians(7.1)
 """Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
 honey, the thickest of the liquids, from 7.38."""

@@ -11,7 +11,6 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model import check
 from mjbeer.model.build import ReusableModel
 from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics, Structure
@@ -213,10 +212,10 @@ class Run(Trajectory):
         It rests on the largest distance from a second run. With a tolerance that was made already. Otherwise the first
         access makes the uneven run, which takes twice as long as this one; the error is infinite if it diverges.
         """
-        return self._uneven[0] if self.error is None else self.error
+        return self._uneven if self.error is None else self.error
 
     @cached_property
-    def _uneven(self) -> tuple[float, float]:
+    def _uneven(self) -> float:
         return compare_uneven(self)
 
     @cached_property
@@ -242,12 +241,6 @@ class Run(Trajectory):
     @cached_property
     def solver_warnings(self) -> tuple[str, ...]:
         """Return the reasons to doubt that the equations of the model were solved, one sentence for each."""
-        if self.error is None and (lost := self._uneven[1]) > ERROR:
-            return (
-                *self.failed_checks,
-                "the sums of MuJoCo lose in rounding what moves the load: its accelerations differ from theory's, as "
-                f"by an error of {lost:.2g} rad",
-            )
         if (error := self.error_estimate) <= ERROR:
             return self.failed_checks
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
@@ -259,28 +252,25 @@ class Run(Trajectory):
         return (*self.failed_checks, found)
 
 
-def compare_uneven(run: Run) -> tuple[float, float]:
-    """Return the error of phi and u/a [rad] that an uneven run shows, and that which rounding in MuJoCo's sums implies.
+def compare_uneven(run: Run) -> float:
+    """Return the error of phi and u/a [rad] that an uneven run shows, relative beyond 1 rad; infinite if that diverges.
 
-    Both are relative beyond 1 rad; the first is infinite if the uneven run diverges. This begins a little aside.
-    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
-    effect of their softness; that of the starts includes the effect of rounding, and of the depth at which a can in
-    contact starts.
+    It begins a little aside. Constraints that are tuned to the timestep are harder in it, so that its distance from the
+    first run includes the effect of their softness; that of the starts includes the effect of rounding, and of the
+    depth at which a can in contact starts.
     """
     scene, setting, motion = run.scene, run.setting, run.checkpoints
     simulator, soft = Simulator(scene, setting, uneven=True), setting.rolling == "contact"
-    lost = check.rounding_error(simulator.model, scene, motion, run.record, exact_constraint=not soft)
-    start_offset = max(_START_OFFSET, min(lost, 1.0))  # an error of 1 rad fails anyway
-    start = simulator.initial_state(run.phi0 + start_offset, run.phi_dot0)
+    start = simulator.initial_state(run.phi0 + _START_OFFSET, run.phi_dot0)
     if soft:
         start[joint_addresses(simulator.model)["lift"]] *= _DEPTH
     try:
         states = simulator.solve(start, motion.time).states
     except DivergenceError:
-        return math.inf, lost
+        return math.inf
     begin = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
     uneven = simulator.coordinates(states, motion.time)
-    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, begin), lost
+    return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, begin)
 
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:

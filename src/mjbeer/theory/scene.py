@@ -77,7 +77,7 @@ class Scene:
                 f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
                 f"got damping={require.format_value(self.damping)} and drag={require.format_value(self.drag)}"
             )
-        a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e6 may round up
+        a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e4 may round up
         # A can is not balanced by less of a gap than a billionth of its height.
         require.within("load offset", load.offset, 1e-14 * a, a, "m", zero=True)
         require.within("mass of the can over that of the load", can.mass / load.mass, 1 / most, most, zero=True)

@@ -89,11 +89,11 @@ def test_regions_reach_their_extremes() -> None:
     spans = {
         "fast rotation": ([abs(run.phi_dot0) * run.timestep for run in of("fast rotation")], 0.1, 10),
         "contact friction": ([run.friction for run in of("contact friction")], 0.02, 5),
-        "mass ratios": ([run.scene.can.mass / run.scene.load.mass for run in of("mass ratios")], 1e-5, 1e5),
+        "mass ratios": ([run.scene.can.mass / run.scene.load.mass for run in of("mass ratios")], 1e-3, 1e3),
         "steep": ([math.degrees(run.scene.incline) for run in of("steep")], -89.99, 89.99),
         "far angles": ([abs(run.phi0) for run in of("far angles")], 200, 5e3),
         "weak or strong gravity": ([run.scene.gravity for run in of("weak or strong gravity")], 1e-9, 5e2),
-        "anything": ([run.scene.can.radius for run in of("anything")], 1e-3, 10),
+        "anything": ([run.scene.can.radius for run in of("anything")], 3e-3, 10),
         "long": ([run.timestep * run.steps for run in of("long")], 20, 150),
     }  # fmt: skip
     assert [name for name, (reached, low, high) in spans.items() if min(reached) > low or max(reached) < high] == []

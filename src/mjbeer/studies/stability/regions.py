@@ -103,14 +103,14 @@ class Parts:
         return Scene(can, beer, math.radians(pick(self.incline)), pick.one(*ATTACHMENTS), pick(self.gravity))
 
 
-_STEADY = Parts([(0.01, 0.3)], 0.1, (1, 1e7), [0.5, 1.0], [1.0, (1e-3, 1)], [0.0, 0.1], [0.0, Even(-20, 20)])
+_STEADY = Parts([(0.01, 0.3)], 0.1, (1, 1e5), [0.5, 1.0], [1.0, (1e-3, 1)], [0.0, 0.1], [0.0, Even(-20, 20)])
 """A can so heavy that the inertia hardly depends on the angle."""
 _RATIOS = Parts(
-    [0.033, (1e-3, 10)], [0.1, (1e-6, 1e3)], (1e-6, 1e6), [0.5, 1.0, (1e-12, 1)],
+    [0.033, (1e-3, 10)], [0.1, (1e-4, 1e3)], (1e-4, 1e4), [0.5, 1.0, (1e-12, 1)],
     [1.0, Even(0, 1), Beside(1, (1e-15, 1)), (1e-12, 1)], [0.0, 0.3, (1e-12, 1)], Even(-20, 20),
 )  # fmt: skip
 _ANYTHING = Parts(
-    (1e-4, 33), (1e-9, 1e6), [0.0, (1e-6, 1e6)], [0.0, 0.5, 1.0, Even(0, 1)], [0.0, 1.0, (1e-9, 1), Even(0, 1)],
+    (1e-3, 33), (1e-6, 1e4), [0.0, (1e-4, 1e4)], [0.0, 0.5, 1.0, Even(0, 1)], [0.0, 1.0, (1e-9, 1), Even(0, 1)],
     [0.0, (1e-12, 1), Even(0, 1)], [0.0, 1e-8, 10.0, 89.9, Even(-30, 30), Even(-89.9, 89.9)],
     [GRAVITY, GRAVITY, GRAVITY, 0.0, (1e-3, 1e3)],
 )  # fmt: skip
@@ -131,7 +131,7 @@ def _ordinary(pick: Pick) -> Scene:
 
 def _fills(pick: Pick) -> Scene:
     """Return a scene with a film of beer, or with a can that is nearly full."""
-    fill, can = pick([(1e-5, 0.1), Beside(1, (1e-9, 0.1))]), pick.one(Can.massless, Can.sheet_metal)()
+    fill, can = pick([(1e-4, 0.1), Beside(1, (1e-9, 0.1))]), pick.one(Can.massless, Can.sheet_metal)()
     return pick.one(sliding, frozen)(math.radians(pick(Even(-20, 20))), fill, can)
 
 
