@@ -194,7 +194,7 @@ EDITS = {
     "further sensors": (REDUCED, "<sensor>", '<sensor><clock/><framepos objtype="body" objname="can"/>', SAME),
     "further keyframe": (REDUCED, "<keyframe>", '<keyframe><key name="mine" qpos="1 2"/>', SAME),
     "geom that touches nothing": (EQUALITY, CAN, f'{CAN}<geom size="0.01" contype="0" conaffinity="0"/>', SAME),
-    "motor that nobody turns": (REDUCED, "<actuator>", '<actuator><motor joint="phi" gear="3"/>', SAME),
+    "motor that nobody turns": (FROZEN, "<actuator>", '<actuator><motor joint="phi" gear="3"/>', SAME),
     "damped joint": (REDUCED, PHI, f'{PHI} damping="1e-4"', ERROR),
     "spring": (REDUCED, PHI, f'{PHI} stiffness="1e-3"', ERROR),
     "spring and damper": (EQUALITY, SWING, f'{SWING} springdamper="1 1"', ERROR),

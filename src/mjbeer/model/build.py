@@ -158,11 +158,7 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     mjcf_file.write(root, mechanics.parameters, path)
     mjcf_file.remove(root, "keyframe")  # of the file's own scene
     if visuals:
-        if not mechanics.force:  # a viewer would show a slider for it
-            mjcf_file.remove(root, "general[@name='weight']")
         looks.include_looks(root, looks.name(scene))
-        if mechanics.force or mechanics.unit != 1:
-            mjcf_file.remove_energies(root)
     elif check.file_fault(folder, scene.attachment, setting.rolling) is None:
         mjcf_file.remove_unused(root, mechanics.acting, scene.dissipates)
     spec = mjcf_file.to_spec(root, path)

@@ -29,7 +29,7 @@ _PROBES = {
     ),
     "frozen": Scene(Can(0.05, 0.1, 4.0, 6e-3), Load(0.3, 0.02, 1e-4), 0.3, "frozen", 5.0),
 }
-"""Scenes that need all that is in a file, with other numbers than the paper's; the can is heavy enough for a weight."""
+"""Scenes that need all that is in a file, with other numbers than the paper's."""
 _ALLOWED = 1e-9
 """Largest difference of phi_ddot from theory's that a model may have, over the accelerations at those rates. With
 the can above the origin and a board that is tilted, rounding takes up to 1e-13 in random scenes of all sizes."""

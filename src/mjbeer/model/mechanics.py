@@ -37,7 +37,7 @@ class Inertial(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Mechanics:
-    """The numbers of a scene in a setting; masses and forces are multiplied by `unit`."""
+    """The numbers of a scene in a setting."""
 
     scene: Scene
     setting: Setting
@@ -46,16 +46,9 @@ class Mechanics:
     tilted: bool
     """Whether gravity is tilted instead of the incline."""
     unit: float
+    """Factor of all masses and forces."""
     bodies: Mapping[str, Inertial]
     """The bodies that have mass, by name."""
-    armature: float = 0.0
-    """Mass that only the joint "slide" moves [kg]."""
-    force: float = 0.0
-    """Constant force [N] or torque [N m] on the first joint, by the actuator "weight"."""
-    chord: float = 0.0
-    """Armature of the tendon "chord" [kg]."""
-    damped: bool = False
-    """Whether a torque brings can and load together."""
 
     @classmethod
     def of(cls, scene: Scene, setting: Setting, visuals: bool = False, timestep: float | None = None) -> "Mechanics":
@@ -63,22 +56,21 @@ class Mechanics:
 
         A `timestep` [s] is instead of the setting's.
         """
-        if setting.rolling != "reduced":
-            bodies, forces = _constrained(scene)
-        else:
-            bodies, forces = _sliding(scene) if scene.attachment == "sliding" else _frozen(scene)
-        damped = bool(scene.damping_law)
-        iterated = setting.rolling == "reduced" and setting.integrator == "discrete" and damped and not visuals
+        reduced = setting.rolling == "reduced"
+        iterated = reduced and setting.integrator == "discrete" and scene.damping_law and not visuals
         unit = _FORCES_SEEN if iterated else 1.0
+        if not reduced:
+            found = _constrained(scene)
+        else:
+            # Of a sliding load the can's mass is on the same body, as a point on the axis: eqs. (39) and (44).
+            found = {"can": _load_with(scene, scene.can.mass) if scene.attachment == "sliding" else _frozen(scene)}
         return cls(
             scene=scene,
             setting=setting,
             timestep=timestep or setting.timestep,
             tilted=not visuals,
             unit=unit,
-            bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in bodies},
-            **{name: unit * force for name, force in forces.items()},
-            damped=damped,
+            bodies={name: Inertial(unit * each.mass, each.offset, unit * each.inertia) for name, each in found.items()},
         )
 
     @property
@@ -88,15 +80,15 @@ class Mechanics:
 
     @property
     def acting(self) -> tuple[str, ...]:
-        """Return the names of the tendons and the actuators that exert a force."""
-        damped = self.damped and self.setting.rolling == "reduced"  # else joints are
-        acting = {"weight": self.force != 0, "chord": self.chord > 0, "damper": damped}
-        return tuple(name for name, acts in acting.items() if acts)
+        """Return the names of the tendons and the actuators that exert a force, which reduced models alone have."""
+        oscillator = self.scene.oscillator
+        acting = {"weight": oscillator.ramp, "chord": oscillator.chord, "damper": self.scene.damping_law}
+        return tuple(name for name, acts in acting.items() if acts) if self.setting.rolling == "reduced" else ()
 
     @cached_property
     def structure(self) -> Structure:
         """Return what decides which elements and flags the model has."""
-        return self.setting.folder, self.file, self.acting, self.damped or self.scene.drag > 0
+        return self.setting.folder, self.file, self.acting, self.scene.dissipates
 
     @cached_property
     def parameters(self) -> Parameters:
@@ -123,12 +115,12 @@ class Mechanics:
             damper = "fixed damper" if setting.rolling == "reduced" else "joint swing"
             found[damper, "damping"] = tuple(self.unit * each for each in scene.damping_law.coefficients)
         if setting.rolling == "reduced":
-            found["general weight", "biasprm"] = (self.force,)
             if scene.attachment == "sliding":
-                found["joint slide", "armature"] = (self.armature,)
+                found["joint slide", "armature"] = (self.unit * scene.can.inertia / radius**2,)
                 found["fixed damper/slide", "coef"] = (-1 / radius,)
             else:
-                found["spatial chord", "armature"] = (self.chord,)
+                found["general weight", "biasprm"] = (scene.oscillator.ramp,)
+                found["spatial chord", "armature"] = (scene.oscillator.chord,)
                 found["site chord_top", "pos"] = 0, 0, height + 1.0
                 found["fixed u/phi", "coef"] = (radius,)
             return found
@@ -159,26 +151,8 @@ def stiffest(integrator: str, timestep: float, contact: bool = False) -> float:
     return timestep if contact else timestep / 2
 
 
-_Parts: TypeAlias = tuple[list[tuple[str, Inertial]], dict[str, float]]
-"""Bodies, and armature, force and chord."""
-
-
-def _sliding(scene: Scene) -> _Parts:
-    """Put the load on a slide (u) and a hinge (phi), with the kinetic energy of eqs. (39) and (44).
-
-    The can's mass is on the same body, as a point on the axis, and its inertia I_can/a^2 is the slide's armature.
-    If it is over 10 times as heavy as its load, their common centre of mass is so near the axis that the distance would
-    be lost in the rounding of u. Then most of the can's mass becomes armature too, and a constant force its weight.
-    """
-    can = scene.can
-    moved = can.mass if can.mass <= 10 * scene.load.mass else _moved_to_point(scene)
-    left = can.mass - moved
-    armature, force = left + can.inertia / can.radius**2, left * scene.gravity * math.sin(scene.incline)
-    return [("can", _load_with(scene, moved))], {"armature": armature, "force": force}
-
-
-def _frozen(scene: Scene) -> _Parts:
-    """Put can and load on one hinge, phi, whose inertia J(phi) = base + chord sin^2(phi/2) is that of rolling.
+def _frozen(scene: Scene) -> Inertial:
+    """Return can and load as one body on a hinge, phi, whose inertia base + chord sin^2(phi/2) is that of rolling.
 
     The file says how. The arms of the chord are 1 m long; any length gives the same inertia.
     """
@@ -189,41 +163,29 @@ def _frozen(scene: Scene) -> _Parts:
     offset = moment / mass
     if mass * offset**2 > oscillator.base / 2:
         mass, offset = 2 * moment**2 / oscillator.base, oscillator.base / (2 * moment)
-    body = Inertial(mass, offset, oscillator.base - mass * offset**2)
-    return [("can", body)], {"force": oscillator.ramp, "chord": oscillator.chord}
+    return Inertial(mass, offset, oscillator.base - mass * offset**2)
 
 
-def _constrained(scene: Scene) -> _Parts:
+def _constrained(scene: Scene) -> dict[str, Inertial]:
     """Return can and load as they are, which a constraint makes roll."""
-    can = scene.can
+    can, load = scene.can, scene.load
     if scene.attachment == "frozen":
-        inertia = _frozen_inertia(scene)
+        inertia = load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2
         if inertia == 0:
             raise UnsupportedError(
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
                 'use rolling="reduced", or give the can mass'
             )
-        return [("can", Inertial(scene.mass, scene.centre_of_mass, inertia))], {}
-    for lacking, value, remedy in (
-        ("a massless can with", can.mass, "mass, as can=Can.sheet_metal() or, on the command line, --can metal"),
-        ("a can without inertia around", can.inertia, "inertia"),
-    ):
-        if value == 0:
-            raise UnsupportedError(
-                f'{lacking} a sliding load exists only in rolling="reduced": MuJoCo moves no body without mass and '
-                f"inertia; give the can {remedy}"
-            )
-    moved = _moved_to_point(scene)
-    return [("can", Inertial(can.mass - moved, 0.0, can.inertia)), ("load", _load_with(scene, moved))], {}
-
-
-def _moved_to_point(scene: Scene) -> float:
-    """Return the mass [kg] to move from the can to a load that is a point, as MuJoCo moves no body without inertia.
-
-    A point on the axis moves with the load exactly as with the can, and gives a point load an inertia.
-    """
-    load = scene.load
-    return min(scene.can.mass / 2, load.mass) if load.inertia < 1e-6 * load.mass * load.offset**2 else 0.0
+        return {"can": Inertial(scene.mass, scene.centre_of_mass, inertia)}
+    if can.inertia == 0:
+        raise UnsupportedError(
+            f"a {'massless can' if can.mass == 0 else 'can without inertia'} with a sliding load exists only in "
+            'rolling="reduced": MuJoCo moves no body without mass and inertia; give the can some, as '
+            "can=Can.sheet_metal() or, on the command line, --can metal"
+        )
+    # MuJoCo moves no point load. A mass on the axis moves with it exactly as with the can, and gives it an inertia.
+    moved = min(can.mass / 2, load.mass) if load.inertia < 1e-6 * load.mass * load.offset**2 else 0.0
+    return {"can": Inertial(can.mass - moved, 0.0, can.inertia), "load": _load_with(scene, moved)}
 
 
 def _load_with(scene: Scene, moved: float) -> Inertial:
@@ -231,9 +193,3 @@ def _load_with(scene: Scene, moved: float) -> Inertial:
     load = scene.load
     mass = load.mass + moved
     return Inertial(mass, load.moment / mass, load.inertia + load.moment * load.offset * moved / mass)
-
-
-def _frozen_inertia(scene: Scene) -> float:
-    """Return the moment of inertia of can and frozen load about their common centre of mass [kg m^2]."""
-    can, load = scene.can, scene.load
-    return load.inertia + can.inertia + load.mass * can.mass / scene.mass * load.offset**2

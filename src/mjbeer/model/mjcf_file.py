@@ -90,19 +90,12 @@ def remove_unused(root: ET.Element, acting: Collection[str], damped: bool) -> No
     Of tendons and actuators those stay that are `acting`, by their names.
     """
     ET.SubElement(root, "compiler", fusestatic="true", discardvisual="true")
-    remove_energies(root)
     remove(root, "sensor")
     for section in (*root.iterfind("tendon"), *root.iterfind("actuator")):
         section[:] = [each for each in section if each.get("name") in acting]
     stages = {"sensor": False, "spring": False, "damper": damped, "actuation": bool(root.findall("actuator/*"))}
     idle = {stage: "disable" for stage, needed in stages.items() if not needed}
-    ET.SubElement(ET.SubElement(root, "option"), "flag", idle)
-
-
-def remove_energies(root: ET.Element) -> None:
-    """Disable energies in a tree: MuJoCo counts no constant force that stands for a weight as potential."""
-    for flag in root.iter("flag"):
-        flag.attrib.pop("energy", None)
+    ET.SubElement(ET.SubElement(root, "option"), "flag", idle, energy="disable")
 
 
 def to_spec(root: ET.Element, path: pathlib.Path) -> mujoco.MjSpec:
