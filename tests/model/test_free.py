@@ -139,7 +139,7 @@ def test_a_standing_can_is_exported(portable: bool, tmp_path: pathlib.Path) -> N
         mujoco.mj_step(model, data, 1500)
         assert -1e-3 < data.body("can").xpos[2] < highest
         assert (data.body("can").xmat[8] < 0.1) == (key == "fall")
-    assert (model.dof_dampingpoly.any(), "frame " in text) == (not portable, not portable)
+    assert model.dof_dampingpoly.any() == (not portable)
     export(standing(modes=0), tmp_path / "held.xml", free=False)
     assert mujoco.MjModel.from_xml_path(str(tmp_path / "held.xml")).nq == 0
 

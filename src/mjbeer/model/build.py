@@ -158,7 +158,7 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     mjcf_file.write(root, mechanics.parameters, path)
     mjcf_file.remove(root, "keyframe")  # of the file's own scene
     if visuals:
-        looks.include_looks(root, looks.name(scene))
+        looks.include_looks(root, looks.name(scene), folder)
     elif check.file_fault(folder, scene.attachment, setting.rolling) is None:
         mjcf_file.remove_unused(root, mechanics.acting, scene.dissipates)
     spec = mjcf_file.to_spec(root, path)

@@ -8,7 +8,6 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
-from mjbeer.model import looks
 from mjbeer.model.build import (
     START,
     add_start,
@@ -108,8 +107,6 @@ def viewer_spec(scene: Scene, setting: Setting, phi0: float, phi_dot0: float) ->
     The errors are those of `build` with `visuals`.
     """
     spec = rolling_spec(scene, setting, visuals=True)
-    u, far = scene.start(phi0, phi_dot0)[0], 1e4 * scene.can.radius  # a can of 33 mm takes 20 s for it on 10 degrees
-    looks.lengthen_board(spec, scene, u - far, u + far)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec)
     if fault := mechanics_fault(scene, setting, model):
@@ -174,7 +171,7 @@ def _soften(spec: mujoco.MjSpec, scene: Scene) -> None:
 
 
 def _portable(text: str, model: mujoco.MjModel) -> str:
-    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3 does not know, and without frames."""
+    """Return MJCF as MuJoCo 4 writes it, without what MuJoCo 3.3 does not know, and with the incline in the world."""
     root = ET.fromstring(text, ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))
     for texture in root.iter("texture"):
         if texture.get("colorspace") == "auto":  # what a texture without it has
@@ -183,22 +180,12 @@ def _portable(text: str, model: mujoco.MjModel) -> str:
         if light.get("type") == "directional":
             del light.attrib["type"]
             light.set("directional", "true")
-    _dissolve_frames(root, model)
-    ET.indent(root)
-    return ET.tostring(root, encoding="unicode") + "\n"
-
-
-def _dissolve_frames(parent: ET.Element, model: mujoco.MjModel) -> None:
-    """Replace frames, down the tree, by what is in them, at the places in its body that the compiled model has."""
-    for child in list(parent):
-        _dissolve_frames(child, model)
-        if child.tag == "frame":
-            for element in child:
+    for world in root.iter("worldbody"):  # in which a fused body is a frame, which dm_control does not know
+        for frame in world.findall("frame"):
+            for element in frame:
                 there = getattr(model, element.tag)(element.get("name"))
                 for name in ("pos", "quat"):
                     element.set(name, " ".join(repr(float(each)) for each in getattr(there, name)))
-                if "childclass" in child.attrib:
-                    kind = "childclass" if element.tag == "body" else "class"
-                    element.set(kind, element.get(kind, child.attrib["childclass"]))
-            place = list(parent).index(child)
-            parent[place : place + 1] = list(child)
+            world[:] = [each for child in world for each in (child if child is frame else [child])]
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode") + "\n"

@@ -270,7 +270,7 @@ def _standing_spec(
             parent.remove(each)
     mjcf_file.write(root, standing_parameters(can), path)
     if visuals:
-        looks.include_looks(root, "standing")
+        looks.include_looks(root, "standing", path.parents[1])
     spec = mjcf_file.to_spec(root, path)
     if visuals:
         looks.fit_to_standing(spec, can, path.parents[1])
@@ -287,7 +287,7 @@ def _lying_spec(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
     values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
     mjcf_file.write(root, values, path)
     if visuals:
-        looks.include_looks(root, looks.name(scene))
+        looks.include_looks(root, looks.name(scene), path.parents[1])
     spec = mjcf_file.to_spec(root, path)
     if visuals:
         looks.fit_to_scene(spec, scene, path.parents[1])

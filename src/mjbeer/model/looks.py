@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 
 from mjbeer.exceptions import TemplateError
+from mjbeer.model import mjcf_file
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.load import segment
 from mjbeer.theory.scene import Scene
@@ -28,12 +29,10 @@ INCLUDES = {
 """What is included in each body, by the name of what is seen; a load that is no body of its own is in the can."""
 _NEEDED = (("camera", "side"), ("camera", "quarter"), ("camera", "overview"), ("mesh", "can"), ("material", "grid"))
 _ROLLING = (("geom", "load"), ("geom", "board"), ("geom", "wall"), ("material", "planks"))
-_UPRIGHT = (("geom", "beer"), ("frame", "upright"))
+_UPRIGHT = (("geom", "beer"), ("geom", "can_wall"), ("geom", "can_end"))
 """The elements that mjbeer addresses by name: in all looks, in those of a can that rolls, and of one that stands."""
 TURNING = ("can_mark", "can_spot", "can_tab", "can_mouth", "can_spokes")
 """The geoms that show how far the can has turned."""
-OF_THE_LOAD = ("load", "foam")
-"""The geoms of a load that may be in the body of its can."""
 WALL = 0.06
 """Thickness of the drawn wall of the can, in radii. It lies outside the radius, so that the beer fills the inside."""
 FOAM = 0.025
@@ -41,8 +40,6 @@ FOAM = 0.025
 EDGES = 256
 """Number of edges around the arc of the beer. The error of the polygon falls as its square; with 256 edges mass,
 centroid and inertia are within 6e-4 for every fill up to 0.95."""
-_HALF_TURNS = (-20, 980)
-"""Where the board of the looks begins and ends, in half turns of the can from u = 0. A half turn is two stripes."""
 
 Mesh = tuple[np.ndarray, np.ndarray]
 """Vertices (n, 3) [m] and faces (k, 3), closed and oriented outwards. Where two surfaces meet at an edge that is to
@@ -56,11 +53,10 @@ def name(scene: Scene) -> str:
     return "hoop" if scene.load.fill is None else "frozen"
 
 
-def include_looks(root: ET.Element, what: str, looks: str = "looks") -> None:
-    """Include the looks of PARTS in the bodies of a mechanics file, whose own geoms are then in group 3.
+def include_looks(root: ET.Element, what: str, folder: pathlib.Path) -> None:
+    """Include the looks of INCLUDES in the bodies of a mechanics file of a folder; its own geoms are then in group 3.
 
-    A geom without a name, which shows where the load is in a file without looks, goes. `looks` is the folder of their
-    files, as an include is to name it.
+    A geom without a name, which shows where the load is in a file without looks, goes.
     """
     for body in root.iter("body"):
         for geom in body.findall("geom"):
@@ -68,7 +64,7 @@ def include_looks(root: ET.Element, what: str, looks: str = "looks") -> None:
                 body.remove(geom)
     for geom in root.iter("geom"):
         geom.attrib |= {"group": "3", "class": "main"}
-    root.insert(0, ET.Element("include", file=f"{looks}/world.xml"))
+    root.insert(0, ET.Element("include", file="looks/world.xml"))
     for body, files in INCLUDES[what].items():
         parent = root.find(f".//body[@name='{body}']")
         if parent is None and body == "load":
@@ -77,15 +73,26 @@ def include_looks(root: ET.Element, what: str, looks: str = "looks") -> None:
             continue
         parent.set("childclass", "visual")
         place = next((place for place, each in enumerate(parent) if each.tag == "body"), len(parent))
-        parent[place:place] = [ET.Element("include", file=f"{looks}/{file}.xml") for file in files]
+        parent[place:place] = [ET.Element("include", file=f"looks/{file}.xml") for file in files]
     can, incline = (root.find(f".//body[@name='{name}']") for name in ("can", "incline"))
-    if can is not None and incline is not None:  # the cameras at the can are level
-        angle = float(incline.get("euler", "0 0 0").split()[1])
-        level = ET.SubElement(can, "frame", name="level", euler=f"0 {0 - angle:.17g} 0")
-        level.append(ET.Element("include", file=f"{looks}/cameras.xml"))
+    if can is not None and incline is not None:
+        can.extend(_level_cameras(folder / "looks" / "cameras.xml", float(incline.get("euler", "0 0 0").split()[1])))
     if what == "standing":
         floor = ET.SubElement(root, "worldbody")
-        floor.append(ET.Element("include", file=f"{looks}/floor.xml"))
+        floor.append(ET.Element("include", file="looks/floor.xml"))
+
+
+def _level_cameras(path: pathlib.Path, angle: float) -> ET.Element:
+    """Return the cameras of a file, for a body that is turned by an `angle` [degrees] about the y axis."""
+    cameras, along, up = mjcf_file.read(path), math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    back = np.array([[along, 0, -up], [0, 1, 0], [up, 0, along]])
+    for camera in cameras:
+        for name in ("pos", "xyaxes"):
+            if name not in camera.attrib:
+                raise TemplateError(f"{path} has a camera without {name}, which mjbeer turns with the incline")
+            vectors = np.array(camera.attrib[name].split(), float).reshape(-1, 3) @ back.T
+            camera.set(name, " ".join(f"{each:.12g}" for each in vectors.ravel()))
+    return cameras
 
 
 def fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
@@ -111,7 +118,8 @@ def fit_to_standing(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Pat
     """
     top = (("geom", "beer_top"),) * (standing.modes > 0)
     _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *top))
-    spec.frame("upright").pos = [0, 0, standing.can.length / 2]
+    for each in ("can_wall", "can_end"):
+        spec.geom(each).pos = [0, 0, standing.can.length / 2]
     for each, (low, high, radius) in beer_column(standing).items():
         spec.geom(each).pos = [0, 0, (low + high) / 2]
         spec.geom(each).size = [radius, (high - low) / 2, 0]
@@ -172,17 +180,6 @@ def _shape(path: pathlib.Path, _changed: int) -> tuple[np.ndarray, np.ndarray, n
     mujoco.mju_quat2Mat(turned, model.mesh_quat[0])  # MuJoCo keeps it along its principal axes
     vertices = model.mesh_vert @ turned.reshape(3, 3).T + model.mesh_pos[0]
     return vertices, model.mesh_face.copy(), model.mesh_texcoord.astype(float).ravel()
-
-
-def lengthen_board(spec: mujoco.MjSpec, scene: Scene, low: float, high: float) -> None:
-    """Make the board long enough for a motion from u = `low` to `high` [m], and for ten turns more at its ends."""
-    turn = math.pi * scene.can.radius
-    first = min(_HALF_TURNS[0], math.floor(low / turn) - 20)
-    last = max(_HALF_TURNS[1], math.ceil(high / turn) + 20)
-    board, planks = spec.geom("board"), spec.material("planks")
-    board.pos = [(first + last) / 2 * turn, *board.pos[1:]]
-    board.size = [(last - first) / 2 * turn, *board.size[1:]]
-    planks.texrepeat = [last - first, planks.texrepeat[1]]
 
 
 def _reshape(element: mujoco.MjsMesh, shape: Mesh) -> None:
