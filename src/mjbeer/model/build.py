@@ -74,9 +74,8 @@ def build(
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    spec = _specification(scene, setting, visuals, free)
+    spec = _specification(scene, setting, visuals, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
-        require_defaults(phi0=phi0, phi_dot0=phi_dot0)
         return compile_spec(spec)
     add_start(spec, scene, phi0, phi_dot0)
     model = compile_spec(spec, rigid=setting.rolling == "equality")
@@ -108,12 +107,13 @@ def specify(
     return spec
 
 
-def _specification(scene: Scene | Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
+def _specification(
+    scene: Scene | Standing, setting: Setting, visuals: bool, free: bool, phi0: float = 0.0, phi_dot0: float = 0.0
+) -> mujoco.MjSpec:
     visuals = require.boolean("visuals", visuals)
+    require_meaningful(scene, setting, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
-        require_defaults(rolling=setting.rolling, friction=setting.friction)
-        return standing_spec(scene, setting, visuals, require.boolean("free", free))
-    require_rolling(scene, free)
+        return standing_spec(scene, setting, visuals, free)
     return rolling_spec(scene, setting, visuals)
 
 
@@ -132,18 +132,18 @@ def mechanics_fault(scene: Scene, setting: Setting, seen: mujoco.MjModel | None 
     return None
 
 
-def require_defaults(**given: object) -> None:
-    """Refuse what is said of a standing can that has a meaning for a can that rolls on an incline only."""
-    for name, value in given.items():
-        if value != {"rolling": "reduced", "friction": FRICTION}.get(name, 0.0):
+def require_meaningful(scene: Scene | Standing, setting: Setting, free: bool, phi0: float, phi_dot0: float) -> None:
+    """Refuse what is said of a can that stands and has a meaning for one that rolls only, or the other way round."""
+    require.boolean("free", free)
+    if not isinstance(scene, Standing):
+        require.instance("scene", scene, Scene)
+        if not free:
+            raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
+        return
+    given = {"rolling": setting.rolling, "friction": setting.friction, "phi0": phi0, "phi_dot0": phi_dot0}
+    for (name, value), usual in zip(given.items(), ("reduced", FRICTION, 0.0, 0.0), strict=True):
+        if value != usual:
             raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
-
-
-def require_rolling(scene: Scene, free: bool) -> None:
-    """Check that what is no standing can is a scene, and that it is not to be held: its can always rolls."""
-    require.instance("scene", scene, Scene)
-    if not require.boolean("free", free):
-        raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
 
 
 def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:

@@ -69,8 +69,11 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
         joints = ("slide", "phi") if sliding else ("phi",)
     else:
         joints = ("slide", *(("lift",) if rolling == "contact" else ()), "roll", *(("swing",) if sliding else ()))
-    if (found := tuple(joint_addresses(model))) != joints:
-        return f"gives the joints {', '.join(found)}, not {', '.join(joints)}"
+    if (there := tuple(joint_addresses(model))) != joints:
+        return f"gives the joints {', '.join(there)}, not {', '.join(joints)}"
+    if model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4:  # "discrete" has changes over a whole step
+        model = copy.copy(model)
+        model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     rate = math.sqrt(max(scene.gravity, 1.0) / radius)
     phi = np.array([-2.6, -0.7, 0.3, 1.1, 2.2])  # no two are each other's mirror image, or a quarter turn apart
     phi_dot, zeros = rate * np.array([2.0, -1.0, 0.5, 3.0, -2.0]), np.zeros(len(phi))
@@ -78,47 +81,37 @@ def model_fault(model: mujoco.MjModel, scene: Scene, setting: Setting) -> str | 
     rates = {"u_dot": radius * roll_dot, "phi_dot": phi_dot, "roll_dot": roll_dot, "lift_dot": zeros}
     lift = zeros - START_DEPTH * radius
     states = to_states(model, Coordinates(time=zeros, u=radius * roll, phi=phi, roll=roll, lift=lift, **rates))
-    slopes = np.concatenate([states[:, model.nq :], _accelerations(model, scene, states)], axis=1)
+    found, data = np.empty((len(states), model.nv)), mujoco.MjData(model)
+    for place, state in enumerate(states):
+        found[place] = _accelerations(model, data, scene, state)
+        if (data.ne, data.ncon > 0, data.nf + data.nl) != (int(rolling == "equality"), rolling == "contact", 0):
+            return f"gives {data.nefc} rows of constraints, not only those of rolling"
+    slopes = np.concatenate([states[:, model.nq :], found], axis=1)
     _, right = accelerations(scene, phi, phi_dot, rates["u_dot"])
     difference = np.abs(to_coordinates(model, scene, slopes, zeros).phi_dot - right).max()
     size = np.abs(right).max() + rate**2
     if not difference <= _ALLOWED * size:
         return f"accelerates phi by up to {difference:.3g} rad/s^2 (of {size:.3g}) otherwise than theory"
-    data = mujoco.MjData(model)
-    with quiet():
-        for state in states:
-            data.qpos[:], data.qvel[:] = np.split(state, 2)
-            mujoco.mj_forward(model, data)
-            if (data.ne, data.ncon > 0, data.nf + data.nl) != (int(rolling == "equality"), rolling == "contact", 0):
-                return f"gives {data.nefc} rows of constraints, not only those of rolling"
-    if np.any(data.warning.number):
-        return "makes MuJoCo warn of a state of rolling"
-    return None
+    return "makes MuJoCo warn of a state of rolling" if np.any(data.warning.number) else None
 
 
-def _accelerations(model: mujoco.MjModel, scene: Scene, states: np.ndarray) -> np.ndarray:
-    """Return the accelerations of the model's joints at `states`, shape (states, nv).
+def _accelerations(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, state: np.ndarray) -> np.ndarray:
+    """Return the accelerations of the joints in a state, shape (nv,); a soft constraint is replaced by that of rolling.
 
-    A constraint, which may be soft, is replaced by that of rolling.
+    The data then have what MuJoCo computes for that state.
     """
-    if model.opt.integrator != mujoco.mjtIntegrator.mjINT_RK4:  # "discrete" has changes over a whole step
-        model = copy.copy(model)
-        model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
-    data, found, inertia = mujoco.MjData(model), np.empty((len(states), model.nv)), np.empty((model.nv, model.nv))
-    joints, rolling = joint_addresses(model), np.zeros((2, model.nv))
-    if "roll" in joints:  # the motions that roll without slipping: of the axis, and of phi alone
-        rolling[0, [joints["slide"], joints["roll"]]] = scene.can.radius, 1.0
-        if "swing" in joints:
-            rolling[:, joints["swing"]] = -1.0, 1.0
-        else:
-            rolling = rolling[:1]
+    joints = joint_addresses(model)
+    data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = *np.split(state, 2), 0.0
     with quiet():
-        for place, state in enumerate(states):
-            data.qpos[:], data.qvel[:], data.qacc_warmstart[:] = *np.split(state, 2), 0.0
-            mujoco.mj_forward(model, data)
-            found[place] = data.qacc
-            if "roll" in joints:
-                mujoco.mj_fullM(model, data, inertia)
-                reduced = rolling @ inertia @ rolling.T
-                found[place] = rolling.T @ np.linalg.solve(reduced, rolling @ data.qfrc_smooth)
-    return found
+        mujoco.mj_forward(model, data)
+    if "roll" not in joints:
+        return data.qacc
+    rolling = np.zeros((2, model.nv))  # the motions that roll without slipping: of the axis, and of phi alone
+    rolling[0, [joints["slide"], joints["roll"]]] = scene.can.radius, 1.0
+    if "swing" in joints:
+        rolling[:, joints["swing"]] = -1.0, 1.0
+    else:
+        rolling = rolling[:1]
+    inertia = np.empty((model.nv, model.nv))
+    mujoco.mj_fullM(model, data, inertia)
+    return rolling.T @ np.linalg.solve(rolling @ inertia @ rolling.T, rolling @ data.qfrc_smooth)

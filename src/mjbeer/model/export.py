@@ -13,8 +13,7 @@ from mjbeer.model.build import (
     add_start,
     compile_spec,
     mechanics_fault,
-    require_defaults,
-    require_rolling,
+    require_meaningful,
     rolling_spec,
 )
 from mjbeer.model.free import standing_spec
@@ -63,16 +62,13 @@ def export(
       TemplateError: if a file of MJCF is missing, lacks an element, or moves otherwise than the scene.
       OutputError: if the file cannot be written.
     """
-    if isinstance(scene, Standing):
-        require_defaults(rolling=rolling, phi0=phi0, phi_dot0=phi_dot0, friction=friction)
-    else:
-        require_rolling(scene, free)
     target, (phi0, phi_dot0) = require.path(path), require.start(phi0, phi_dot0)
     if target.suffix != ".xml":  # MuJoCo takes a .urdf for URDF, and its MjSpec reads no .mjcf
         raise ParameterError(
             f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
         )
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
+    require_meaningful(scene, setting, free, phi0, phi_dot0)
     if setting.integrator in OWN:
         raise UnsupportedError(
             f"{setting.integrator} is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(INTEGRATORS)}"
