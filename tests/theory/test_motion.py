@@ -59,11 +59,11 @@ def period(scene: Scene, amplitude: float | Any) -> Any:
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 def test_period(scene: Scene) -> None:
     low, high = (end - scene.equilibrium() for end in scene.separatrix())
-    for amplitude in (-1.3, 3):
+    for amplitude in (-1.3, 3.0):
         if low < amplitude < high:
             assert abs(scene.period(amplitude) / period(scene, amplitude) - 1) < PERIOD
             continue
-        message = "amplitude {:.6g} rad is not inside the separatrix: .* between {:.6g} and {:.6g} rad"
+        message = "amplitude {} rad is not inside the separatrix, or too near it .* between {:.6g} and {:.6g} rad"
         with pytest.raises(NoLibrationError, match=message.format(amplitude, low, high)):
             scene.period(amplitude)
         with pytest.raises(NoLibrationError, match=message.format(-amplitude, -high, -low)):

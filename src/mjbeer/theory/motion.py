@@ -58,23 +58,19 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     """Return the period [s] of a swing of an `amplitude` [rad], with the errors of `Scene.period`."""
     rest = oscillator.equilibrium()
     low, high = (end - rest for end in oscillator.separatrix())
-    if not low < amplitude < high:
-        raise NoLibrationError(
-            f"amplitude {amplitude:.6g} rad is not inside the separatrix: released from rest, the load swings about "
-            f"its equilibrium only for amplitudes between {low:.6g} and {high:.6g} rad"
-        )
     sign, potential = oscillator.sign, oscillator.potential
-    start = Start(oscillator, potential, sign, *potential.distances_by_rest(sign * amplitude), 0.0, 0.0)
-    if start.still:
-        return math.tau / oscillator.frequency()
-    if start.energy_above_next_crest < 0:
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-            found = _period(_arcs_of_swing(start))
-            if start.rounding_delay(-start.energy_above_next_crest, found) <= UNCERTAIN * found:
-                return found
+    if low < amplitude < high:
+        start = Start(oscillator, potential, sign, *potential.distances_by_rest(sign * amplitude), 0.0, 0.0)
+        if start.still:
+            return math.tau / oscillator.frequency()
+        if start.energy_above_next_crest < 0:
+            with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+                found = _period(_arcs_of_swing(start))
+                if start.rounding_delay(-start.energy_above_next_crest, found) <= UNCERTAIN * found:
+                    return found
     raise NoLibrationError(
-        f"amplitude {amplitude!r} rad is too near the separatrix: rounding of the scene may change the period "
-        f"by more than {UNCERTAIN:g} of itself"
+        f"amplitude {amplitude!r} rad is not inside the separatrix, or too near it for doubles: released from rest, "
+        f"the load swings about its equilibrium only for amplitudes between {low:.6g} and {high:.6g} rad"
     )
 
 
@@ -269,8 +265,8 @@ def _arc_to(start: Start, side: int) -> Arc:
     potential = start.potential
     well = potential.well if side > 0 else math.tau - potential.well
 
-    def height(distance: float) -> float:
-        return float(potential.below(-side * distance))
+    def height(distance: np.ndarray | float) -> np.ndarray:
+        return potential.below(-side * distance)
 
     if start.kinetic == 0 and side * start.angle_past_rest > 0:
         distance = min(abs(start.angle_past_rest), abs(start.angle_past_crest))
@@ -309,7 +305,7 @@ def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]
         end = potential.turn_begins + math.tau
         lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, end)
         at_rest = start.kinetic == 0
-        stop = start.angle_past_crest if at_rest else root(lambda x: float(potential.below(x)) + energy, lower, upper)
+        stop = start.angle_past_crest if at_rest else root(lambda x: potential.below(x) + energy, lower, upper)
         yield Arc(start, stop, end), turn, min(abs(energy), ahead)
         energy, turn = ahead, turn + 1
     while left:

@@ -202,7 +202,7 @@ class Oscillator:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
         potential = self.potential
         barrier = float(potential.below(-potential.well))  # above the equilibrium, as V is at an angle behind it
-        behind = root(lambda angle: float(potential.below(angle)) - barrier, 0, math.tau - potential.well)
+        behind = root(lambda angle: potential.below(angle) - barrier, 0, math.tau - potential.well)
         low, high = potential.rest - behind, math.pi + potential.crest_past_pi
         return (low, high) if self.sign > 0 else (-high, -low)
 
@@ -227,34 +227,16 @@ def sinc_gap(x: np.ndarray | float) -> np.ndarray:
     return np.where(np.abs(x) < 1, series, 1 - np.sinc(np.divide(x, math.pi)))
 
 
-def root(function: Callable[[float], float], lower: float, upper: float) -> float:
-    """Return where a function is 0 between `lower`, where it is not positive, and `upper`, to full relative precision.
+def root(function: Callable[[np.ndarray], np.ndarray], lower: float, upper: float) -> float:
+    """Return where a function of an array is 0 between `lower`, where it is not positive, and `upper`, to rounding.
 
-    If it is not positive at `upper` it should be 0 there, and is only rounded. Inverse quadratic interpolation where
-    that is safe, bisection elsewhere: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997).
+    If it is not positive at `upper` it should be 0 there, and is only rounded.
     """
-    # As safe as SciPy's brentq, whose import takes longer than that of all the theory.
-    near, far, here, there = lower, upper, function(lower), function(upper)
-    if there <= 0:
-        return upper
-    assert here <= 0
-    part = 0.5
-    while here != 0:
-        place = near + part * (far - near)
-        value = function(place)
-        if (value > 0) == (here > 0):
-            last, before = near, here
-        else:
-            last, before, far, there = far, there, near, here
-        near, here = place, value
-        best = near if abs(here) < abs(there) else far
-        least = math.ulp(best) / abs(far - near)
-        if least > 0.5:
-            return best
-        way, rise = (near - far) / (last - far), (here - there) / (before - there)
-        part = 0.5
-        if rise**2 < way and (1 - rise) ** 2 < 1 - way:
-            part = here / (there - here) * before / (there - before)
-            part += (last - near) / (far - near) * here / (before - here) * there / (before - there)
-        part = min(1 - least, max(least, part))
-    return near
+    while True:
+        points = np.linspace(lower, upper, 65)
+        positive = function(points) > 0
+        positive[-1] = True
+        first = max(1, int(np.argmax(positive)))
+        if points[first - 1] <= lower and points[first] >= upper:
+            return upper
+        lower, upper = float(points[first - 1]), float(points[first])
