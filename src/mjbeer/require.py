@@ -123,12 +123,6 @@ def path(value: Any) -> pathlib.Path:
     return pathlib.Path(name)
 
 
-def format_above(value: float, bound: float, digits: int = 2) -> str:
-    """Return a number above a bound in so many digits, or in more if it would be rounded to the bound otherwise."""
-    texts = (f"{value:.{each}g}" for each in range(digits, 18))
-    return next((text for text in texts if float(text) > bound), f"{value:g}")  # NaN is above nothing
-
-
 def boolean(name: str, value: Any) -> bool:
     """Return `value` as True or False; a text such as "no" would count as true."""
     if not isinstance(value, (bool, np.bool_)):

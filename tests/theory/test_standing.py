@@ -9,7 +9,7 @@ import pytest
 from mjbeer import Can, LiquidWarning, standing
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.liquid import liquid_in
-from mjbeer.theory.standing import MOST_MODES, Standing
+from mjbeer.theory.standing import MOST_MODES, SERIES, Standing
 from tests.support.laplace import Volume
 
 METAL = Can.sheet_metal()
@@ -65,7 +65,7 @@ def test_the_polynomials_tell_wrong_forms_from_right_ones() -> None:
 @pytest.mark.parametrize("depth", [0.05, 1.0, 50.0])
 def test_sums_over_all_modes(depth: float) -> None:
     """The metacentre; the sum of 2/(xi^2 - 1), whose rest after n terms is 2/(pi^2 n); and slow motion is a solid's."""
-    can, many = water(depth), 4000
+    can, many = water(depth), SERIES
     lengths = GRAVITY / can.frequencies(many) ** 2
     metacentre = DENSITY * math.pi * RADIUS**4 / 4
     assert can.slosh_masses(many) @ lengths == pytest.approx(metacentre, rel=1e-10)

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from mjbeer import require
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, select_samples, slip_rate
 from mjbeer.theory.liquid import centrifugal_ratio
@@ -166,8 +165,8 @@ def failed_checks(record: Record, rolling: str) -> list[str]:
     error = float(np.maximum(record.swing_error, record.axis_error))  # NaN if one is
     if not error <= ERROR:
         reasons.append(
-            f"energy or momentum drift like an error of {require.format_above(error, ERROR)} rad of phi or u/a "
-            f"(trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
+            f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a (trusted up to {ERROR:g}): "
+            "take a smaller timestep or a better integrator"
         )
     return reasons
 
@@ -184,18 +183,17 @@ def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -
         return [pulls] if math.isfinite(record.rolling_ends_at) else []
     reasons = _slip_reasons(record)
     if not record.needed_friction <= friction:
-        needed = require.format_above(record.needed_friction, friction, digits=3)
-        reasons.append(f"rolling needs a friction coefficient of {needed}, and the contact has {friction:g}: it slides")
+        needed = f"a friction coefficient of {record.needed_friction:.3g}"
+        reasons.append(f"rolling needs {needed}, and the contact has {friction:g}: it slides")
     return reasons
 
 
 def _slip_reasons(record: Record) -> list[str]:
     reasons, slip, lift = [], record.slip / record.scene.can.radius, record.lift / record.scene.can.radius
     if not slip <= SLIP:
-        reasons.append(f"the can slips by {require.format_above(slip, SLIP)} radii (trusted up to {SLIP:g})")
+        reasons.append(f"the can slips by {slip:.3g} radii (trusted up to {SLIP:g})")
     if not lift <= LIFT:
-        by = require.format_above(lift, LIFT)
-        reasons.append(f"the can parts from the incline, or sinks in, by {by} radii (trusted up to {LIFT:g})")
+        reasons.append(f"the can parts from the incline, or sinks in, by {lift:.3g} radii (trusted up to {LIFT:g})")
     return reasons
 
 
