@@ -1,7 +1,5 @@
-"""The domain of mjbeer, and checks of arguments, which refuse what lies outside.
-
-Each check returns the valid value, or raises a `ParameterError` that names what came and what is allowed.
-"""
+"""The domain of mjbeer, and checks of arguments: each returns the valid value, or raises a `ParameterError` that names
+what came and what is allowed."""
 
 import math
 import numbers
@@ -76,12 +74,8 @@ def start(phi0: Any, phi_dot0: Any) -> tuple[float, float]:
 def warn_of_degrees(phi0: float) -> None:
     """Warn, where the calling function is called, of a start angle [rad] beyond a whole turn, as one in degrees is."""
     if abs(phi0) > 2 * math.pi:
-        warnings.warn(
-            f"phi0 = {phi0:.6g} is taken as radians, {phi0 / (2 * math.pi):.4g} turns: if degrees are meant, write "
-            f"math.radians({phi0:.6g})",
-            AngleWarning,
-            stacklevel=3,
-        )
+        meant = f"phi0 = {phi0:.6g} is taken as radians: if degrees are meant, write math.radians({phi0:.6g})"
+        warnings.warn(meant, AngleWarning, stacklevel=3)
 
 
 def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
@@ -109,9 +103,9 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
 
 def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
     """Return `value` if it is one of the `allowed` names."""
-    names = {str(each): each for each in allowed}
-    if isinstance(value, str) and value in names:
-        return names[value]
+    for each in (names := tuple(allowed)):
+        if isinstance(value, str) and value == each:
+            return each
     raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {format_value(value)}")
 
 
@@ -161,5 +155,5 @@ def _float(value: Any) -> float:
         value = value[()]
     try:
         return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
-    except (TypeError, OverflowError):  # an integer of 400 digits
+    except OverflowError:  # an integer of 400 digits
         return math.nan

@@ -157,17 +157,17 @@ def test_a_hundred_turns_and_swings() -> None:
     compare(swings)
 
 
-@pytest.mark.parametrize("incline", [0.0, 0.1, -0.1])
+@pytest.mark.parametrize("incline", [0.1, -0.1])
 def test_the_domain_has_an_edge(incline: float) -> None:
-    """Ten thousand turns and a million periods are followed, and no more."""
+    """Ten thousand turns of an incline are followed, and swings until rounding shows."""
     scene, fast = frozen(incline), math.copysign(100.0, incline)
     assert abs(exact(scene, 20.0, 0.0, fast).phi[0]) > 1e3
-    with pytest.raises(ParameterError, match=r"an exact motion has at most 10000 turns, which end at .* got 1e\+06 s"):
+    with pytest.raises(ParameterError, match=r"has at most 10000 turns, which end at .* got 1e\+06 s"):
         exact(scene, 1e6, 0.0, fast)
-    latest = 1e6 * scene.period(0.3)
-    assert abs(exact(scene, latest * (1 - 1e-9), scene.equilibrium() + 0.3).phi[0]) < 1
-    with pytest.raises(ParameterError, match=r"an exact motion has at most 1000000 periods, which end at .* time must"):
-        exact(scene, latest * (1 + 1e-9), scene.equilibrium() + 0.3)
+    start, latest = scene.equilibrium() + 0.3, 1e6 * scene.period(0.3)
+    assert exact(scene, latest, start).phi[0] == pytest.approx(start, abs=1e-6)
+    with pytest.raises(NoLibrationError, match="or the motion too long"):
+        exact(scene, 1e6 * latest + 0.1, start)
 
 
 def random_scene(pick: np.random.Generator) -> Scene:

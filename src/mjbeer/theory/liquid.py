@@ -96,10 +96,8 @@ class Liquid:
     damping: Damping
 
     def __str__(self) -> str:
-        return (
-            f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s, damped by {self.law} at a slip rate of "
-            f"{self.slip:.3g} rad/s, with a film of {1e3 * self.film:.2g} mm on the wall"
-        )
+        properties = f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s"
+        return f"{properties}, damped by {self.law} at a slip rate of {self.slip:.3g} rad/s"
 
 
 @remembers_call
@@ -133,10 +131,10 @@ def liquid(
         speed = scene.terminal_speed()
     except NoEquilibriumError:  # none on so steep an incline
         speed = 0.0
-    reasons, ratio, share = [], float(centrifugal_ratio(scene, speed)), _percent(used.carried)
+    reasons, ratio = [], float(centrifugal_ratio(scene, speed))
     if used.carried > _CARRIED:
-        film = f"the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold {share} of the liquid"
-        reasons.append(f"it coats the can: {film}")
+        film = f"a film of {1e3 * used.film:.2g} mm, which can hold {_percent(used.carried)} of the liquid"
+        reasons.append(f"it coats the can: the wall carries round {film}")
     if ratio > 1:
         at = f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times"
         reasons.append(f"{at} g cos(alpha), which spreads it round the can")

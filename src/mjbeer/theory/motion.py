@@ -29,9 +29,7 @@ ROUNDINGS = 4 * EPS
 UNCERTAIN = 1e-4
 """Largest effect of rounding on phi [rad], relative beyond 1 rad: a hundredth of the error of a run that is trusted."""
 MOST_TURNS = 10_000
-"""Most turns of a motion that passes crests."""
-MOST_PERIODS = 1_000_000
-"""Most periods of a swing: after more of them rounding of the period alone is 1e-9 rad and more."""
+"""Most turns of a motion on an incline, where each takes another time."""
 
 
 def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
@@ -48,8 +46,8 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
         effect = math.inf
     if not effect <= UNCERTAIN:
         raise NoLibrationError(
-            f"phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s is too near a separatrix: rounding of start and scene "
-            f"may change phi by more than {UNCERTAIN:g} rad (relative beyond 1 rad) until {latest:g} s"
+            f"phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s is too near a separatrix, or the motion too long: "
+            f"rounding may change phi by more than {UNCERTAIN:g} rad (relative beyond 1 rad) until {latest:g} s"
         )
     return phi0 + start.sign * delta_phi, start.sign * phi_dot
 
@@ -155,14 +153,12 @@ class Start:
         The margin is the least energy by which the motion passes or misses a crest.
         """
         swing = _arcs_of_swing(self) if self.swings else None
-        latest, legs = float(np.max(time, initial=0.0)), cycle(swing) if swing else _paths_over_crests(self)
+        legs = cycle(swing) if swing else _paths_over_crests(self)
         first = next(legs)
         begin = first[0].time(self)
         since, cycles = time + begin, 0
         if swing or self.potential.ramp == 0:  # all periods, or turns, are alike
-            most, lasts = (MOST_PERIODS, _period(swing)) if swing else (MOST_TURNS, first[0].duration)
-            _require_until(latest, most * lasts, f"{most} {'periods' if swing else 'turns'}")
-            cycles, since = np.divmod(since, lasts)
+            cycles, since = np.divmod(since, _period(swing) if swing else first[0].duration)
         last, angle = float(np.max(since, initial=0.0)), self.angle_past_rest if swing else self.angle_past_crest
         delta_phi, phi_dot, margin, ended = np.empty_like(time), np.empty_like(time), math.inf, 0.0
         for path, turn, energy in chain([first], legs):
@@ -174,15 +170,11 @@ class Start:
             if ended > last:
                 break
         else:
-            _require_until(latest, ended - begin, f"{MOST_TURNS} turns")
+            raise ParameterError(
+                f"an exact motion on an incline has at most {MOST_TURNS} turns, which end at {ended - begin:.6g} s: "
+                f"time must be less, got {float(np.max(time)):g} s"
+            )
         return (delta_phi if swing else delta_phi + math.tau * cycles), phi_dot, margin
-
-
-def _require_until(latest: float, end: float, most: str) -> None:
-    if not latest < end:
-        raise ParameterError(
-            f"an exact motion has at most {most}, which end at {end:.6g} s: time must be less, got {latest:g} s"
-        )
 
 
 class Arc:
