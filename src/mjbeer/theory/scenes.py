@@ -38,8 +38,8 @@ def sliding(
 ) -> Scene:
     """Return the scene of beer that slides in a can: sections 2 (massless can, the default) and 3 of the paper.
 
-    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. The beer slides without
-    friction unless `damping` [N m s] is given; `drag` [kg/m] is that of the air. Both are fields of `Scene`.
+    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. `damping` [N m s] and the
+    `drag` of the air [kg/m] are fields of `Scene`.
 
     Raises:
       ParameterError: as `Scene`.

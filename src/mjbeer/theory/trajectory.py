@@ -13,7 +13,7 @@ from mjbeer import require
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, Forces, accelerations, rolling_forces, select_samples
-from mjbeer.theory.liquid import run_warning
+from mjbeer.theory.liquid import lump_warning
 from mjbeer.theory.record import Record, failed_checks, rolling_failures
 from mjbeer.theory.scene import Scene, load_drawing
 
@@ -128,7 +128,9 @@ class Trajectory(Coordinates):
     def liquid_warnings(self) -> tuple[str, ...]:
         """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
         record, turn = self.record, math.tau * self.scene.can.radius
-        warning = run_warning(self.scene, record.largest_slip_rate, record.no_lump_at, record.largest_distance / turn)
+        spread = f"from t = {record.no_lump_at:.6g} s on" if record.no_lump_at < math.inf else ""
+        turns = record.largest_distance / turn
+        warning = lump_warning("the liquid", self.scene, record.largest_slip_rate, spread, turns)
         return (warning,) if warning else ()
 
     @property
