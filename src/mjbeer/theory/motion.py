@@ -7,8 +7,7 @@ Two kinds of path are enough. An arc begins or ends at a turning point, phi = tu
 both smooth and positive, with `energy` = E - V at the crest and x the distance past it. A swing is two arcs that meet
 at the equilibrium. A load that passes crests goes up in turns, each with less energy at its crest, until it cannot pass
 the next one, swings round in an arc, and goes down in turns for ever. What goes the other way is watched in a mirror.
-
-Beside a separatrix rounding decides. A motion that rounding may change noticeably is refused.
+A motion that rounding may change noticeably, as beside a separatrix, is refused.
 """
 
 import math

@@ -6,12 +6,10 @@ With the rolling constraint and the conserved momentum eliminated, each scene ob
     J = base + chord sin^2(phi/2) + coupling sin^2(phi),
     V = -ramp phi - depth cos(phi - bottom).
 
-V is a cosine on a ramp: `ramp` is its steepness, a torque, `depth` the amplitude of the cosine, and `bottom` the angle
-of its minimum. If |ramp| < depth, V has in every turn a minimum (the equilibrium, or rest) and a maximum (the barrier).
-A frozen load gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and eqs. 46 and
-47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
-
-V is needed only as differences, from where nothing cancels: see `Potential`.
+V is a cosine on a ramp. If |ramp| < depth, it has in every turn a minimum (the equilibrium, or rest) and a maximum (the
+barrier). A frozen load gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and
+eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels, and V is needed only as
+differences, from where nothing cancels: see `Potential`.
 """
 
 import math
@@ -31,14 +29,13 @@ _SINC_SERIES = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
 class Potential:
     """The shape of V = -ramp phi - depth cos(phi - bottom) about its crest, for ramp >= 0.
 
-    V falls with growing phi. If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well`
-    before it. On a steeper incline V only falls, and its crest is where it falls least; there the well has no width. In
-    both cases the torque downhill at an angle x past the crest is
+    If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well` before it. On a steeper incline
+    V only falls, and its crest is where it falls least; there the well has no width. In both cases
 
         -V'(crest + x) = excess + 2 balanced sin^2(x/2) + curvature sin(x).
 
-    Every turn is the same, but lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past
-    the equilibrium is that at -y past the crest.
+    Every turn is lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past the equilibrium
+    is that at -y past the crest.
     """
 
     def __init__(self, ramp: float, depth: float, bottom: float) -> None:
@@ -161,11 +158,7 @@ class Oscillator:
         return self.ramp * delta_phi - 2 * self.depth * np.sin(middle) * np.sin(delta_phi / 2)
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
-        """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
-
-        It is large where neither the energy of the start nor that which a turn downhill adds is much more than the
-        depth of the well.
-        """
+        """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates."""
         drive = float(self.inertia(phi0)) * phi_dot0**2 / 2 + abs(self.ramp)
         by_weight = self.depth / drive if drive > 0 else (math.inf if self.depth > 0 else 0.0)
         return (self.chord + self.coupling) / (2 * self.base) + by_weight
@@ -213,10 +206,8 @@ def _past_pi(angle: float) -> float:
 
 
 def reduced(angle: float) -> float:
-    """Return how far `angle` [rad] is past the nearest even multiple of pi, to full relative precision.
-
-    The sine and cosine of the C library reduce angles of any size with as many digits of pi as that needs.
-    """
+    """Return how far `angle` [rad] is past the nearest even multiple of pi, to full relative precision."""
+    # The sine and cosine of the C library have as many digits of pi as that needs.
     return angle if abs(angle) <= math.pi else math.atan2(math.sin(angle), math.cos(angle))
 
 

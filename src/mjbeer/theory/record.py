@@ -16,8 +16,8 @@ SLIP = 1e-3
 LIFT = 1e-3
 """Largest gap or penetration between can and incline, in radii, that is trusted."""
 _SMALL_SWING = 1e-2
-"""Smallest energy with which a drift is compared, relative to the depth m g b of the potential well: that of a swing
-of 0.14 rad. A motion that hardly swings would otherwise divide rounding by nearly nothing."""
+"""Smallest energy with which a drift is compared, over the depth m g b of the well: that of a swing of 0.14 rad. A
+motion that hardly swings would otherwise divide rounding by nearly nothing."""
 
 
 class Record:
@@ -120,7 +120,7 @@ class Record:
         """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
         It includes slip and lift, and what damping and drag take. The denominator is at least `_SMALL_SWING` of the
-        well's depth; a balanced load has no well, and there it is the largest kinetic energy of all that moves.
+        well's depth; for a balanced load it is the largest kinetic energy of all that moves.
         """
         balanced = self.scene.load.offset == 0
         # A thousandth of 1e-11 of the kinetic energy is still many times its rounding.

@@ -2,9 +2,8 @@
 
 The liquid has the inside radius R and the height h. Its modes vary as J1(xi r/R) cos(angle) with J1'(xi) = 0; each acts
 on the can like a pendulum, and what does not slosh acts like a rigid body. Heights z are above the centroid of the
-liquid at rest. For the held can and its forces see H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving
-Containers", NASA SP-106 (1966), chapters 2 and 6; the sums here were derived anew, and are tested against a solution of
-Laplace's equation by polynomials.
+liquid at rest. (H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106, 1966,
+chapters 2 and 6.)
 """
 
 import functools
@@ -125,8 +124,7 @@ class Standing:
     def damping_ratios(self, count: int | None = None) -> np.ndarray:
         """Return the damping of the modes over the critical one, shape (count,).
 
-        It is that of the thin layers on wall and bottom: the mean of rho u^2 sqrt(nu omega/2)/2 over them, with the
-        velocity u of the mode along the wall.
+        Thin layers on wall and bottom take rho u^2 sqrt(nu omega/2)/2 where a mode has the velocity u along them.
         """
         radius, xi = self.can.radius, self._xi(count)
         if self.damping_ratio is not None:
