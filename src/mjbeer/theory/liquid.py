@@ -171,15 +171,15 @@ def liquid_in(
     slip = max(steady, wide)
     drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
     rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0
-    bent = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
-    if bent > 0 and (reynolds := slip * a * arc * a / nu) > 1e6:  # of the layer at its end, whatever the wall
+    curved = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
+    if curved > 0 and (reynolds := slip * a * arc * a / nu) > 1e6:  # of the layer at its end, whatever the wall
         raise ParameterError(
             f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}): the viscosity is too small or the "
             f"can too fast, got {nu:.4g} m^2/s in {free!r}"
         )
-    holds = DECADE[0] * slip * bent / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
+    holds = DECADE[0] * slip * curved / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
     coats_at = (_CARRIED * shape.area * a / FILM_LOAD) ** 2 * free.gravity / (nu * a)
-    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds, coats_at=coats_at)
+    damping = Damping((1 - curved) * drag, curved * drag / slip if curved > 0 else 0.0, holds=holds, coats_at=coats_at)
     law = "swing" if rolled < 1 else "thin layers" if drag > creep else "creep"
     carried = FILM_LOAD * math.sqrt(nu * a * steady / free.gravity) / (shape.area * a)
     return Liquid(name, density, nu, law, steady, carried, damping)

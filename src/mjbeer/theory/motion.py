@@ -129,7 +129,7 @@ class Start:
 
         The motion passes or misses a crest by the energy `margin` [J].
         """
-        potential, beside = self.potential, abs(self.angle_past_crest)
+        potential = self.potential
         if potential.depth == 0:
             return ROUNDINGS * latest
         if potential.curvature == 0:  # the torque at the crest is a difference of ramp and depth
@@ -138,7 +138,7 @@ class Start:
         steep = potential.balanced / potential.curvature
         # Rounding of the scene puts the crest elsewhere. On level ground it is at an odd multiple of pi, and how far a
         # double is from that is known to an eps.
-        shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep) + EPS * beside
+        shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep) + EPS * abs(self.angle_past_crest)
         rounding = ROUNDINGS * (self.kinetic + abs(float(potential.below(self.angle_past_crest))))
         rounding += abs(float(potential.torque(self.angle_past_crest))) * shift + potential.curvature * shift**2
         share = ROUNDINGS * steep**2 + (rounding / margin if margin > 0 else math.inf)

@@ -124,8 +124,7 @@ class Record:
         """
         balanced = self.scene.load.offset == 0
         # A thousandth of 1e-11 of the kinetic energy is still many times its rounding.
-        scale = self._kinetic if balanced else max(self._least_swing, 1e-11 * self._kinetic)
-        return _ratio(self._energy_change, scale)
+        return self._energy_change / max(self._least_swing, (1.0 if balanced else 1e-11) * self._kinetic)
 
     @property
     def swing_error(self) -> float:
@@ -134,7 +133,7 @@ class Record:
         A relative error of the energy is about that of the speed or the period, and so of the angle covered meanwhile.
         Where only the phase is off there is none, nor with damping or drag.
         """
-        return _ratio(self._largest_swing_drift, self._least_swing) / max(1.0, self.largest_turn)
+        return self._largest_swing_drift / self._least_swing / max(1.0, self.largest_turn)
 
     @property
     def swing_error_at_most(self) -> float:
@@ -142,7 +141,7 @@ class Record:
 
         A step that misses a brief event may bring a drift that the next one takes away, and leave the phase wrong.
         """
-        return _ratio(self._swing_change, self._least_swing) * self.angle_covered / max(1.0, self.largest_turn)
+        return self._swing_change / self._least_swing * self.angle_covered / max(1.0, self.largest_turn)
 
     @property
     def axis_error(self) -> float:
@@ -151,7 +150,7 @@ class Record:
 
     @property
     def _least_swing(self) -> float:
-        return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth)
+        return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth, np.finfo(float).tiny)
 
 
 def failed_checks(record: Record, rolling: str) -> list[str]:
@@ -200,7 +199,3 @@ def _slip_reasons(record: Record) -> list[str]:
 def _largest(so_far: float, values: np.ndarray | float) -> float:
     """Return the largest magnitude; NaN if there is one, which `max` would hide."""
     return float(np.maximum(so_far, np.abs(values).max()))
-
-
-def _ratio(change: float, scale: float) -> float:
-    return 0.0 if scale == 0 else change / scale  # NaN stays

@@ -274,8 +274,9 @@ class Scene:
         polynomial = np.array([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)])
         roots = np.roots(polynomial).astype(complex)
         for _ in range(2):  # Newton's method, as an eigenvalue is rounded by the largest one
-            steep = np.polyval(np.polyder(polynomial), roots)
-            roots -= np.divide(np.polyval(polynomial, roots), steep, out=np.zeros_like(roots), where=steep != 0)
+            derivative = np.polyval(np.polyder(polynomial), roots)
+            correction = np.zeros_like(roots)
+            roots -= np.divide(np.polyval(polynomial, roots), derivative, out=correction, where=derivative != 0)
         return np.sort_complex(roots)
 
     def slip_rate(self) -> float:

@@ -18,12 +18,12 @@ def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Sc
     """Return the function with scenes that remember it and its arguments."""
 
     @functools.wraps(make)
-    def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
+    def remembering(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.set_fields(scene, made_by=(made, inspect.signature(make).bind(*arguments, **others).arguments))
+        require.set_fields(scene, made_by=(remembering, inspect.signature(make).bind(*arguments, **others).arguments))
         return scene
 
-    return made
+    return remembering
 
 
 @remembers_call

@@ -177,10 +177,10 @@ class Standing:
 
     def _modes(self, count: int | None) -> Mode:
         radius, height, xi = self.can.radius, self.height, self._xi(count)
-        steep = np.tanh(xi * height / radius)
-        mass = self.mass * 2 * radius * steep / (height * xi * (xi**2 - 1))
+        tanh = np.tanh(xi * height / radius)
+        mass = self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1))
         bob = height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius))
-        return Mode(mass, bob, radius / (xi * steep))
+        return Mode(mass, bob, radius / (xi * tanh))
 
 
 def standing(
@@ -209,13 +209,13 @@ def standing(
         name = require.choice("liquid", liquid, NAMES)
         density, viscosity = LIQUIDS[name]
     can = Can.sheet_metal() if can is None else can
-    made = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
+    standing_can = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
     if modes > 0 and damping_ratio is None:
-        layer = math.sqrt(2 * viscosity / made.frequencies(1)[0]) / made.can.radius
+        layer = math.sqrt(2 * viscosity / standing_can.frequencies(1)[0]) / standing_can.can.radius
         if layer > 0.1:
             thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
             warn_of_liquid(f"{thick}, not 0.1 or less; give a damping_ratio", stacklevel=2)
-    return made
+    return standing_can
 
 
 def _checked_count(name: str, value: object, most: int) -> int:
