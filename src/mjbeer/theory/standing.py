@@ -71,8 +71,8 @@ class Standing:
                 raise ParameterError(f"a can that stands free must have {what}, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            what = "fill (height of the liquid over the can's length) must be between 0 and 1: a full can has no free"
-            raise ParameterError(f"{what} surface, got {require.format_value(self.fill)}")
+            got = require.format_value(self.fill)
+            raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {got}")
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         ratio = self.damping_ratio
