@@ -56,20 +56,6 @@ def test_an_error_lists_the_names(value: str) -> None:
     assert str(caught.value) == f"integrator must be one of 'Euler', 'implicit', 'implicitfast', 'RK4'; got {value!r}"
 
 
-@pytest.mark.parametrize(
-    ("value", "bound", "text"),
-    [
-        (0.0123, 0.01, "0.012"),
-        (0.010001, 0.01, "0.010001"),
-        (math.inf, 1, "inf"),
-        (math.nan, 1, "nan"),
-        (math.nextafter(2.0, 3), 2.0, "2.0000000000000004"),
-    ],
-)
-def test_a_number_above_its_bound_is_shown_above_it(value: float, bound: float, text: str) -> None:
-    assert require.format_above(value, bound) == text
-
-
 @pytest.mark.parametrize("value", ["", "a\0", b"run.csv", None, 1])
 def test_a_path_is_the_name_of_a_file(value: object) -> None:
     with pytest.raises(ParameterError) as caught:

@@ -63,26 +63,23 @@ __all__ = [
 
 # Imported on first use, so that the exact theory works without MuJoCo.
 _LAZY = {
-    "attach": "mjbeer.model.free",
-    "refill": "mjbeer.model.free",
-    "build": "mjbeer.model.build",
-    "specify": "mjbeer.model.build",
-    "export": "mjbeer.model.export",
-    "reset": "mjbeer.model.joints",
-    "simulate": "mjbeer.simulation.simulate",
-    "render": "mjbeer.drawing.video",
-    "sweep": "mjbeer.studies.sweep",
-    "Fit": "mjbeer.tracks.fit",
-    "fit": "mjbeer.tracks.fit",
-    "Track": "mjbeer.tracks.track",
-    "read_track": "mjbeer.tracks.track",
+    "model.free": ("attach", "refill"),
+    "model.build": ("build", "specify"),
+    "model.export": ("export",),
+    "model.joints": ("reset",),
+    "simulation.simulate": ("simulate",),
+    "drawing.video": ("render",),
+    "studies.sweep": ("sweep",),
+    "tracks.fit": ("Fit", "fit"),
+    "tracks.track": ("Track", "read_track"),
 }
 load_drawing[:] = [lambda: import_module("mjbeer.drawing.notebook")]
 
 
 def __getattr__(name: str) -> object:
-    if name in _LAZY:
-        return getattr(import_module(_LAZY[name]), name)
+    for module, names in _LAZY.items():
+        if name in names:
+            return getattr(import_module(f"mjbeer.{module}"), name)
     if name == "__version__":
         return import_module("importlib.metadata").version("mjbeer")
     raise AttributeError(f"module 'mjbeer' has no attribute {name!r}")

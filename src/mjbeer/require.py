@@ -1,7 +1,5 @@
-"""The domain of mjbeer, and checks of arguments, which refuse what lies outside.
-
-Each check returns the valid value, or raises a `ParameterError` that names what came and what is allowed.
-"""
+"""The domain of mjbeer, and checks of arguments: each returns the valid value, or raises a `ParameterError` that names
+what came and what is allowed."""
 
 import math
 import numbers
@@ -76,12 +74,8 @@ def start(phi0: Any, phi_dot0: Any) -> tuple[float, float]:
 def warn_of_degrees(phi0: float) -> None:
     """Warn, where the calling function is called, of a start angle [rad] beyond a whole turn, as one in degrees is."""
     if abs(phi0) > 2 * math.pi:
-        warnings.warn(
-            f"phi0 = {phi0:.6g} is taken as radians, {phi0 / (2 * math.pi):.4g} turns: if degrees are meant, write "
-            f"math.radians({phi0:.6g})",
-            AngleWarning,
-            stacklevel=3,
-        )
+        meant = f"phi0 = {phi0:.6g} is taken as radians: if degrees are meant, write math.radians({phi0:.6g})"
+        warnings.warn(meant, AngleWarning, stacklevel=3)
 
 
 def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
@@ -109,9 +103,9 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
 
 def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
     """Return `value` if it is one of the `allowed` names."""
-    names = {str(each): each for each in allowed}
-    if isinstance(value, str) and value in names:
-        return names[value]
+    for each in (names := tuple(allowed)):
+        if isinstance(value, str) and value == each:
+            return each
     raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {format_value(value)}")
 
 
@@ -121,12 +115,6 @@ def path(value: Any) -> pathlib.Path:
     if not isinstance(name, str) or not name or "\0" in name:
         raise ParameterError(f"path must be the name of a file, got {format_value(value)}")
     return pathlib.Path(name)
-
-
-def format_above(value: float, bound: float, digits: int = 2) -> str:
-    """Return a number above a bound in so many digits, or in more if it would be rounded to the bound otherwise."""
-    texts = (f"{value:.{each}g}" for each in range(digits, 18))
-    return next((text for text in texts if float(text) > bound), f"{value:g}")  # NaN is above nothing
 
 
 def boolean(name: str, value: Any) -> bool:
@@ -167,5 +155,5 @@ def _float(value: Any) -> float:
         value = value[()]
     try:
         return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
-    except (TypeError, OverflowError):  # an integer of 400 digits
+    except OverflowError:  # an integer of 400 digits
         return math.nan

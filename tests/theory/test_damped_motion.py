@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, sliding
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory import damped_motion
 from mjbeer.theory.damping import Damping
 from tests.support import processes, taylor
 from tests.support.scenes import METAL, scenes
@@ -21,8 +20,6 @@ from tests.support.scenes import METAL, scenes
 ANGLE = 1e-12
 # A few roundings.
 ROUNDING = 4e-15
-# Steps that pass four corners take 30, those taken again included; 40 if they do not end there but only get short.
-STEPS_A_PERIOD = 36
 
 
 def natural(scene: Scene) -> tuple[float, float]:
@@ -99,17 +96,6 @@ def test_balanced_load_is_two_inertias() -> None:
     assert motion.u_dot / a - motion.phi_dot == pytest.approx(slip, rel=ROUNDING)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("c", [1e-3, 1e-1])
-def test_steady_rolling_stays(c: float) -> None:
-    """A start at the tilt in a can that is at rest comes to roll at the terminal speed, and stays there."""
-    scene = sliding(can=METAL, damping=c)
-    slowest = -scene.modes().real.max()
-    motion = exact(scene, [50 / slowest, 60 / slowest, 1e3 / slowest], scene.terminal_tilt())
-    assert motion.phi == pytest.approx(np.full(3, scene.terminal_tilt()), abs=ROUNDING)
-    assert motion.u_dot == pytest.approx(np.full(3, scene.terminal_speed()), rel=10 * ROUNDING)
-
-
 def test_motion_seen_from_behind_and_without_damping() -> None:
     scene, time = sliding(0.3, can=METAL, damping=Damping(1e-3, 1e-5), drag=0.01), np.linspace(0, 1, 5)
     motion, behind = exact(scene, time, 1.0, 7.0), exact(replace(scene, incline=-0.3), time, -1.0, -7.0)
@@ -141,16 +127,6 @@ def test_unstable_balance() -> None:
 
 
 @pytest.mark.slow
-def test_a_corner_takes_few_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Four of them in each period on the level, of |w| and |roll_dot|, which the swing passes until it dies away."""
-    scene = sliding(0.0, can=METAL, damping=Damping(0, 1e-6, 0), drag=1e-3)
-    steps, newton = [], damped_motion._solve_stages
-    monkeypatch.setattr(damped_motion, "_solve_stages", lambda *step: steps.append(step) or newton(*step))
-    assert np.isfinite(exact(scene, 2.0, 1.0).phi).all()
-    assert len(steps) < STEPS_A_PERIOD * 2 * scene.frequency() / (2 * math.pi)
-
-
-@pytest.mark.slow
 @taylor.NEEDED
 def test_an_axis_that_hardly_moves_keeps_its_digits_under_a_fast_load() -> None:
     """Its speed changes sign in most turns of a load that is a hundred times as fast, whose steps a corner must end."""
@@ -163,49 +139,26 @@ def test_an_axis_that_hardly_moves_keeps_its_digits_under_a_fast_load() -> None:
 
 
 @pytest.mark.slow
-def test_the_edges_of_the_domain() -> None:
-    """Damping that decays at 1e-9/s and 1e9/s."""
-    unit = sliding().oscillator.base
-    for rate in (1e-9, 3e8):
-        assert np.isfinite(exact(sliding(damping=rate * unit * 0.1), [0.0, 0.5], 1.0, 5.0).u).all()
-
-
-FAST = {
-    "turns": (sliding(damping=1e-3, drag=1e-3), 20.0, 1.0, 1e6),
-    "swings": (sliding(damping=1e-6), 1e4, 1.0, 0.0),
-    "rolls ever faster": (sliding(damping=1e-3, can=METAL), 1e4, 1.0, 100.0),
-    "turns without gravity": (sliding(gravity=0.0, damping=1e-9), 1e3, 0.0, 1e4),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", FAST)
-def test_what_takes_too_long_is_refused_soon_and_until_when_it_can_be_followed(
-    name: str, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("damping", "drag", "phi_dot0"), [(1e-3, 1e-3, 1e6), (1e-6, 0.0, 0.0)])
+def test_what_takes_too_long_is_refused_and_until_when_it_can_be_followed(
+    damping: float, drag: float, phi_dot0: float
 ) -> None:
-    """Half of the work shows it, and the motion can then be followed until the time that was named."""
-    scene, latest, phi0, phi_dot0 = FAST[name]
-    work, newton = [0], damped_motion._solve_stages
-
-    def counted(*step: object) -> tuple:
-        found = newton(*step)
-        work[0] += found[0]
-        return found
-
-    monkeypatch.setattr(damped_motion, "_solve_stages", counted)
-    with pytest.raises(ToleranceError, match=r"too many steps: .* followed until \S* s; it can be followed") as refused:
-        exact(scene, latest, phi0, phi_dot0)
-    assert work[0] < damped_motion._WORK / 2 + 12
+    """Turns and swings, which can then be followed until the time that was named."""
+    scene = sliding(damping=damping, drag=drag)
+    with pytest.raises(ToleranceError, match=r"too many steps: .* it can be followed until") as refused:
+        exact(scene, 1e4, 1.0, phi_dot0)
     until = float(str(refused.value).split()[-2])
-    assert 0 < until < latest
-    assert np.isfinite(exact(scene, until, phi0, phi_dot0).phi).all()
+    assert np.isfinite(exact(scene, until, 1.0, phi_dot0).phi).all()
 
 
 @pytest.mark.slow
-def test_what_dies_away_is_followed_however_long() -> None:
-    """It starts with so many swings in so short a time that as many in the rest could not be followed."""
-    scene = sliding(damping=3e-5)
-    assert exact(scene, 1e4, 1.0).phi[0] == pytest.approx(scene.terminal_tilt(), abs=ANGLE)
+@pytest.mark.parametrize("c", [3e-5, 1e-1])
+def test_what_dies_away_is_followed_to_steady_rolling(c: float) -> None:
+    """The weaker damping starts with so many swings that as many in the rest could not be followed."""
+    scene = sliding(damping=c)
+    motion = exact(scene, 1e4, 1.0)
+    assert motion.phi[0] == pytest.approx(scene.terminal_tilt(), abs=ANGLE)
+    assert motion.u_dot[0] == pytest.approx(scene.terminal_speed(), rel=ANGLE)
 
 
 def test_a_correction_that_does_not_square_the_error_is_made_again() -> None:

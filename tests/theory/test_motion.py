@@ -19,15 +19,12 @@ Case = tuple[Scene, float, float, np.ndarray]
 
 # A quadrature of a smooth function sums roundings of both signs; measured: 4e-15 up to 0.99 of the separatrix.
 PERIOD = 2e-14
-# A hundred periods of some seconds are late by 1e-14 s, at 20 rad/s and with a well ten times as sensitive at 0.9 of
-# the separatrix. Measured: 4e-13 rad.
-ANGLE = 2e-12
+# A few roundings of an angle of up to 70 rad. Measured: 3e-14 rad.
+ANGLE = 2e-13
 # phi_dot is off by phi's error times the frequency, 20/s or less.
 RATE = 20 * ANGLE
 # Sums and products of a few terms each.
 ROUNDING = 2e-15
-# The sum of the times of a hundred turns is right to a few eps, and an angle is as its square. Measured: 1e-15.
-RELATIVE = 1e-14
 # Random motions against series: a few eps, more where J has a narrow minimum, which magnifies the rounding of phi.
 RANDOM, USUAL = 2e-12, 1e-14
 # Beside the steepest incline, what rounding changes is divided by the distance from it. Measured: 5e-12 for 90 %.
@@ -59,11 +56,11 @@ def period(scene: Scene, amplitude: float | Any) -> Any:
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 def test_period(scene: Scene) -> None:
     low, high = (end - scene.equilibrium() for end in scene.separatrix())
-    for amplitude in (-1.3, 3):
+    for amplitude in (-1.3, 3.0):
         if low < amplitude < high:
             assert abs(scene.period(amplitude) / period(scene, amplitude) - 1) < PERIOD
             continue
-        message = "amplitude {:.6g} rad is not inside the separatrix: .* between {:.6g} and {:.6g} rad"
+        message = "amplitude {} rad is not inside the separatrix, or too near it .* between {:.6g} and {:.6g} rad"
         with pytest.raises(NoLibrationError, match=message.format(amplitude, low, high)):
             scene.period(amplitude)
         with pytest.raises(NoLibrationError, match=message.format(-amplitude, -high, -low)):
@@ -93,19 +90,6 @@ def test_small_swings(scene: Scene) -> None:
             assert motion.phi_dot == pytest.approx(sway_dot, abs=20 * ROUNDING)
 
 
-def compare(cases: list[Case], relative: float = 0.0) -> None:
-    for scene, phi0, phi_dot0, time in cases:
-        delta_phi, u, rate, speed = taylor.motion(scene, time, phi0, phi_dot0).astype(float).T
-        motion, radius = exact(scene, time, phi0, phi_dot0), scene.can.radius
-        bound = relative * np.abs(delta_phi[-1]) if relative else ANGLE
-        fastest = 1e-11 * np.abs(rate).max() if relative else RATE
-        # The axis comes down with a constant acceleration, besides what the load does to it.
-        assert np.abs(motion.phi - phi0 - delta_phi).max() < bound
-        assert np.abs(motion.u - u).max() < bound * max(radius, np.abs(u).max())
-        assert np.abs(motion.phi_dot - rate).max() < fastest
-        assert np.abs(motion.u_dot - speed).max() < fastest * max(radius, np.abs(speed).max())
-
-
 ROLLS = [
     (frozen(), math.pi, -1e-9),  # up from the top, pushed a little
     (frozen(), math.pi, -10.0),
@@ -114,6 +98,8 @@ ROLLS = [
     (frozen(0.6, can=METAL), 0.0, -3.0),  # up such a slope
     (hoop(0.3), 11 * math.pi + 0.1, -30.0),
     (frozen(0.0), math.pi - 1e-6, 1e-4),  # past a barrier by a little
+    (sliding(0.3, can=METAL), 0.0, 6.0),
+    (pendulum(-0.3), 2.0, 30.0),
 ]
 
 
@@ -123,51 +109,30 @@ ROLLS = [
 def test_rolls_up_and_down() -> None:
     """And as seen from behind."""
     time = np.array([0.05, 0.3, 1.2])
-    compare([(*each, time) for each in ROLLS])
     for scene, phi0, phi_dot0 in ROLLS:
-        motion, behind = (
-            exact(scene, time, phi0, phi_dot0),
-            exact(replace(scene, incline=-scene.incline), time, -phi0, -phi_dot0),
-        )
+        delta_phi, u, rate, speed = taylor.motion(scene, time, phi0, phi_dot0).astype(float).T
+        motion, radius = exact(scene, time, phi0, phi_dot0), scene.can.radius
+        # The axis comes down with a constant acceleration, besides what the load does to it.
+        assert np.abs(motion.phi - phi0 - delta_phi).max() < ANGLE
+        assert np.abs(motion.u - u).max() < ANGLE * max(radius, np.abs(u).max())
+        assert np.abs(motion.phi_dot - rate).max() < RATE
+        assert np.abs(motion.u_dot - speed).max() < RATE * max(radius, np.abs(speed).max())
+        behind = exact(replace(scene, incline=-scene.incline), time, -phi0, -phi_dot0)
         assert (behind.phi == -motion.phi).all()
         assert (behind.phi_dot == -motion.phi_dot).all()
 
 
-TURNS = [  # and about the time [s] of a hundred of them
-    (frozen(), 0.3, 60.0, 5.2),
-    (frozen(1e-3), 0.3, -200.0, 4.6),
-    (frozen(0.6), 0.0, 5.0, 3.4),
-    (hoop(0.01), 2.0, -1000.0, 0.52),
-    (frozen(0.0), 0.3, -60.0, 16.5),
-    (sliding(0.3, can=METAL), 0.0, 60.0, 13.5),
-    (pendulum(-0.3), 2.0, 70.0, 8.8),
-    (sliding(gravity=0.0), 0.3, 2.0, 350.0),
-]
-
-
-@taylor.NEEDED
-@pytest.mark.slow
-def test_a_hundred_turns_and_swings() -> None:
-    compare([(*each, time * np.array([0.1, 0.77, 1.0])) for *each, time in TURNS], RELATIVE)
-    swings = []
-    for scene in SCENES.values():
-        (low, high), time = scene.separatrix(), np.array([0.3, 49.62, 99.9]) * scene.period(1.0)
-        for share, phi_dot0 in ((0.75, 0.0), (0.05, 0.0), (0.8, 1e-6), (0.5, -3.0)):
-            swings.append((scene, low + share * (high - low), phi_dot0, time))
-    compare(swings)
-
-
-@pytest.mark.parametrize("incline", [0.0, 0.1, -0.1])
+@pytest.mark.parametrize("incline", [0.1, -0.1])
 def test_the_domain_has_an_edge(incline: float) -> None:
-    """Ten thousand turns and a million periods are followed, and no more."""
+    """Ten thousand turns of an incline are followed, and swings until rounding shows."""
     scene, fast = frozen(incline), math.copysign(100.0, incline)
     assert abs(exact(scene, 20.0, 0.0, fast).phi[0]) > 1e3
-    with pytest.raises(ParameterError, match=r"an exact motion has at most 10000 turns, which end at .* got 1e\+06 s"):
+    with pytest.raises(ParameterError, match=r"has at most 10000 turns, which end at .* got 1e\+06 s"):
         exact(scene, 1e6, 0.0, fast)
-    latest = 1e6 * scene.period(0.3)
-    assert abs(exact(scene, latest * (1 - 1e-9), scene.equilibrium() + 0.3).phi[0]) < 1
-    with pytest.raises(ParameterError, match=r"an exact motion has at most 1000000 periods, which end at .* time must"):
-        exact(scene, latest * (1 + 1e-9), scene.equilibrium() + 0.3)
+    start, latest = scene.equilibrium() + 0.3, 1e6 * scene.period(0.3)
+    assert exact(scene, latest, start).phi[0] == pytest.approx(start, abs=1e-6)
+    with pytest.raises(NoLibrationError, match="or the motion too long"):
+        exact(scene, 1e6 * latest + 0.1, start)
 
 
 def random_scene(pick: np.random.Generator) -> Scene:

@@ -70,7 +70,7 @@ def test_damping_and_drag_have_rates() -> None:
     refuses("rate of drag must be 0, or between 1e-12 and 1e+09 [1/s], got 1050000000.0", wheel, drag=0.21e9)
 
 
-FILL = "fill (height of the beer over the can's diameter) must be in (0, 1], got {!r}"
+FILL = "fill must be between 0 and 1, got {!r}"
 REFUSED = [
     ("sheet thickness must be greater than 0", lambda: Can.sheet_metal(thickness=0.0)),
     ("load density must be greater than 0", lambda: sliding(density=0.0)),

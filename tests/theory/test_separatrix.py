@@ -129,7 +129,7 @@ def test_on_the_top() -> None:
 def test_period_beside_the_separatrix_of_a_slope(gap: float) -> None:
     scene = frozen()
     amplitude = scene.separatrix()[1] - scene.equilibrium() - gap
-    with pytest.raises(NoLibrationError, match=rf"amplitude {amplitude!r} rad is (too near|not inside) the separatrix"):
+    with pytest.raises(NoLibrationError, match=rf"amplitude {amplitude!r} rad is not inside the separatrix"):
         scene.period(amplitude)
     for end in scene.separatrix():
         with pytest.raises(NoLibrationError):

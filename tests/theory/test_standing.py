@@ -9,7 +9,7 @@ import pytest
 from mjbeer import Can, LiquidWarning, standing
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.liquid import liquid_in
-from mjbeer.theory.standing import MOST_MODES, Standing
+from mjbeer.theory.standing import MOST_MODES, SERIES, Standing
 from tests.support.laplace import Volume
 
 METAL = Can.sheet_metal()
@@ -65,7 +65,7 @@ def test_the_polynomials_tell_wrong_forms_from_right_ones() -> None:
 @pytest.mark.parametrize("depth", [0.05, 1.0, 50.0])
 def test_sums_over_all_modes(depth: float) -> None:
     """The metacentre; the sum of 2/(xi^2 - 1), whose rest after n terms is 2/(pi^2 n); and slow motion is a solid's."""
-    can, many = water(depth), 4000
+    can, many = water(depth), SERIES
     lengths = GRAVITY / can.frequencies(many) ** 2
     metacentre = DENSITY * math.pi * RADIUS**4 / 4
     assert can.slosh_masses(many) @ lengths == pytest.approx(metacentre, rel=1e-10)
@@ -106,15 +106,11 @@ def test_a_thick_liquid_warns() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"fill": 1.0}, r"fill .* must be between 0 and 1: a full can has no free surface, got 1\.0"),
+        ({"fill": 1.0}, r"fill must be between 0 and 1: a full can has no free surface, got 1\.0"),
         ({"fill": 0.001}, r"height of the liquid over the radius must be between 0\.05 and 50"),
         ({"can": Can()}, r"a can that stands free must have mass, as Can\.sheet_metal\(\)"),
-        ({"can": "tin"}, "can must be a Can, got 'tin'"),
         ({"modes": 6}, r"modes must be one of 0, 1, \.\.\. 5, got 6"),
-        ({"modes": True}, "modes must be one of"),
-        ({"damping_ratio": -0.1}, "damping_ratio must be between 0 and 1"),
         ({"liquid": "bear"}, "liquid must be one of .*'beer', .*; got 'bear'$"),
-        ({"liquid": METAL}, "liquid must be one of"),
         ({"gravity": 0.0}, "gravity must be between"),
     ],
 )

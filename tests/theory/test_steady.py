@@ -144,5 +144,5 @@ def test_what_has_no_answer_says_so() -> None:
         with pytest.raises(NoEquilibriumError, match="nothing restores the load"):
             scene.terminal_speed()
     heavy = Scene(Can.hoop(mass=100.0), Load(0.3, 0.01, 1e-6), 0.0, damping=1e-2)
-    with pytest.raises(NoLibrationError, match="no frequency: the load creeps back without a swing, with rates"):
+    with pytest.raises(NoLibrationError, match="no frequency: the load creeps back without a swing"):
         heavy.frequency()

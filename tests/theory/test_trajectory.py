@@ -118,16 +118,10 @@ def test_a_lost_momentum_is_noticed(scene: Scene) -> None:
         assert ahead.record.axis_drift == pytest.approx(abs(share) * ERROR * way, rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("estimate", "warning"),
-    [
-        (1.2 * ERROR, "phi and u/a are off by 0.012 rad (trusted up to 0.01), as a run at other timesteps shows"),
-        (math.nan, "a run at other timesteps diverges: take a much smaller timestep or a better integrator"),
-    ],
-)
-def test_a_second_run_that_differs_is_a_warning(estimate: float, warning: str) -> None:
+def test_a_second_run_that_differs_is_a_warning() -> None:
     motion = exact(frozen(), TIME, 0.8)
-    assert simulated(motion, Setting(), estimate).warnings == (warning,)
+    (warning,) = simulated(motion, Setting(), 1.2 * ERROR).warnings
+    assert warning == "phi and u/a are off by 0.012 rad (trusted up to 0.01), as a run at other timesteps shows"
     assert simulated(motion, Setting(), 0.8 * ERROR).trusted
 
 
@@ -205,11 +199,12 @@ def test_frequency_is_that_of_the_period(scene: Scene) -> None:
         assert abs(measured * period / (2 * math.pi) - 1) < (2 * math.pi / samples) ** 4 / 384 + ROUNDING
 
 
-@pytest.mark.parametrize("rolling", ["reduced", "equality", "contact"])
-def test_a_load_at_rest_has_no_frequency(rolling: str) -> None:
-    """Rounding moves it, and the ringing of a contact: 2.81, 692 and 13.76 rad/s were measured for 13.04."""
+@pytest.mark.parametrize("beside", [1e-13, 1e-6])
+@pytest.mark.parametrize("rolling", ["reduced", "contact"])
+def test_a_load_at_rest_has_no_frequency(rolling: str, beside: float) -> None:
+    """Rounding moves it, and the ringing of a contact: 2.81, 13.76 and 13.07 rad/s were measured for 12.26."""
     scene = frozen(can=METAL)
-    run = simulate(scene, 4.0, scene.equilibrium() + 1e-13, rolling=rolling)
+    run = simulate(scene, 4.0, scene.equilibrium() + beside, rolling=rolling)
     with pytest.raises(MjbeerError, match="no frequency: "):
         run.frequency()
 

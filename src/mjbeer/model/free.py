@@ -190,8 +190,8 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
             reasons.append("with another integrator than RK4 the error of rolling is of the order of the timestep")
     elif can.modes > 0 and (turned := option.timestep * float(can.frequencies()[-1])) > _COARSE:
         reasons.append(
-            f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by "
-            f"{require.format_above(turned, _COARSE)} rad in it, not {_COARSE:g} or less"
+            f"the timestep of {option.timestep:g} s is coarse: the fastest mode turns by {turned:.3g} rad in it, not "
+            f"{_COARSE:g} or less"
         )
     if explicit and option.timestep * decay > _RK4:
         remedy = "" if isinstance(can, Scene) else ", or another integrator"

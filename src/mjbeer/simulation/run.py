@@ -228,8 +228,8 @@ class Run(Trajectory):
             rate = min(abs(self.phi_dot0), _MAX_TURN_PER_STEP / timestep) if self.scene.dissipates else self.phi_dot0
             if self.scene.oscillator.unevenness(self.phi0, rate) > ERROR:
                 found.append(
-                    f"the load turns by {require.format_above(turn, _MAX_TURN_PER_STEP)} rad in a timestep (trusted up "
-                    f"to {_MAX_TURN_PER_STEP:g}), in which its weight and inertia change unseen"
+                    f"the load turns by {turn:.3g} rad in a timestep (trusted up to {_MAX_TURN_PER_STEP:g}), in which "
+                    "its weight and inertia change unseen"
                 )
         return tuple(found)
 
@@ -245,8 +245,7 @@ class Run(Trajectory):
             return self.failed_checks
         finer = "other timesteps" if self.timestep is not None else "a tighter tolerance"
         if math.isfinite(error):
-            off = require.format_above(error, ERROR)
-            found = f"phi and u/a are off by {off} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
+            found = f"phi and u/a are off by {error:.3g} rad (trusted up to {ERROR:g}), as a run at {finer} shows"
         else:
             found = f"a run at {finer} diverges: take a much smaller timestep or a better integrator"
         return (*self.failed_checks, found)

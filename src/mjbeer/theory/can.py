@@ -11,7 +11,7 @@ RADIUS = 0.033
 LENGTH = 0.12
 """Length of a 12-oz can [m]; paper, after eq. (31)."""
 THICKNESS = 1e-4
-"""Wall thickness of an aluminium drinks can [m]; a common value (0.1 mm), as the paper gives none."""
+"""Wall thickness of an aluminium drinks can [m]; a common value, as the paper gives none."""
 ALUMINIUM = 2700.0
 """Density of aluminium [kg/m^3]; handbook value."""
 

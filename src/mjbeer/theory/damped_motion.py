@@ -25,14 +25,14 @@ from numpy.polynomial import legendre
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import accelerations
 from mjbeer.theory.motion import EPS, ROUNDINGS, UNCERTAIN, Start
-from mjbeer.theory.oscillator import reduced
+from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 
 _STAGES = 24
 """Number of stages s. The method is of order 47, and a swing takes some five steps a period to rounding."""
 _WORK = 6_000
-"""Most corrections of Newton's method in all steps, those included that are taken again, a tenth of a millisecond each:
-a can of beer that swings by 1 rad takes them in 40 s."""
+"""Most corrections of Newton's method in all steps, a tenth of a millisecond each: a can of beer that swings by 1 rad
+takes them in 40 s."""
 
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -113,16 +113,13 @@ def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: fl
     values, jacobian = rates(*state)
     fastest = abs(jacobian[1, 2]) + abs(jacobian[0, 1]) + abs(state[1]) + swing_rate + math.sqrt(np.abs(values).sum())
     length = 1 / fastest if fastest > 0 else latest  # short beside every time that the motion has
-    work, look, before = 0, _WORK // 8, 0.0
+    work = 0
     while now < latest:
-        if work >= look:
-            _require_end(work, before, now, latest)
-            look, before = 2 * look, now
         length, scale = min(length, latest - now), max(swing_rate, abs(state[1])) + np.finfo(float).tiny
-        if now + length == now:
+        if work >= _WORK or now + length == now:
             raise ToleranceError(
-                f"the motion cannot be followed later than {now:.6g} s of {latest:.6g} s: there it changes within the "
-                "rounding of the time"
+                f"the motion takes too many steps: it is too fast, or too long, to be followed until {latest:.6g} s; "
+                f"it can be followed until {0.99 * now:.3g} s"
             )
         used, solved = _solve_stages(rates, state, length, scale, sensitivity)
         work += used
@@ -148,10 +145,7 @@ def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: fl
             samples[:2, done:until] += deltas[:, np.newaxis]
         sensitivity[[0, 3]] += length * _MATRIX[-1] @ np.array([changes[0], changes.sum(axis=0)]).T
         step_angles = angles.sum(axis=0)
-        deltas, state = (
-            deltas + step_angles,
-            np.array([reduced(state[0] + step_angles[0]), *stages[:, -1]]),
-        )
+        deltas, state = deltas + step_angles, np.array([reduced(state[0] + step_angles[0]), *stages[:, -1]])
         sensitivity[1:3] = changes[:, -1]
         sensitivity[:3] += np.copysign(ROUNDINGS * np.abs(state), sensitivity[:3])
         largest = np.maximum(largest, np.abs(deltas))
@@ -163,26 +157,6 @@ def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: fl
             )
         now, done, length = then, until, length * min(10.0, 0.95 * _STAGES / needed)
     return samples
-
-
-def _require_end(work: int, before: float, now: float, latest: float) -> None:
-    """Check that the motion ends within the work allowed, from the times when half of the `work` and all was done.
-
-    It goes on as fast as in the second half, or it is braked: then the work per time falls in proportion to the work
-    if a turn is braked in proportion to its rate, and as its root if a swing dies away, which ends in half the work.
-    """
-    recent = max(now - before, math.ulp(now))
-    ahead = (latest - now) / recent
-    if recent > before:
-        ahead = min(ahead, before / (recent - before) / 2)
-    if work < _WORK and work * (1 + ahead / 2) <= _WORK:
-        return
-    # Half the work that is allowed, at the faster pace: so a motion that gets ever faster is followed until then, too.
-    known = 0.9 * (now + max(_WORK / work - 2, 0.0) * min(before, recent))
-    raise ToleranceError(
-        f"the motion takes too many steps: it is too fast, or too long, to be followed until {latest:.6g} s; it can be "
-        f"followed until {known:.3g} s"
-    )
 
 
 def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
@@ -197,12 +171,8 @@ def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     for sign, series in zip(signs.T, (_TO_SERIES @ sums).T, strict=True):
         for low, high in itertools.pairwise(np.flatnonzero(sign)):
             if sign[low] != sign[high]:
-                ends = _NODES[low], _NODES[high]
-                for _ in range(4):  # to a millionth of them
-                    x = np.linspace(*ends, 33)
-                    passed = max(1, int(np.argmax(sign[high] * legendre.legval(x, series) > 0)))
-                    ends = x[passed - 1], x[passed]
-                shares.append((1 + float(ends[1])) / 2)
+                towards = sign[high] * series
+                shares.append((1 + root(lambda x, c=towards: legendre.legval(x, c), _NODES[low], _NODES[high])) / 2)
     # A corner that near an end may stay: the torque beside it is the square of that, or less.
     return min((share for share in shares if 1e-6 < share < 1 - 1e-6), default=None)
 

@@ -98,9 +98,9 @@ def axis_motion(
         return scene.can.radius * phi, scene.can.radius * phi_dot
     phi0, phi_dot0, u0, u_dot0 = start
     arm, steady = scene.load.moment / scene.effective_mass, scene.downhill_weight / scene.effective_mass
-    place, speed = u0 - arm * math.sin(phi0), u_dot0 - arm * math.cos(phi0) * phi_dot0
-    u = arm * np.sin(phi) + (place + speed * time + steady * time**2 / 2)
-    return u, arm * np.cos(phi) * phi_dot + (speed + steady * time)
+    mean_u, mean_u_dot = u0 - arm * math.sin(phi0), u_dot0 - arm * math.cos(phi0) * phi_dot0
+    u = arm * np.sin(phi) + (mean_u + mean_u_dot * time + steady * time**2 / 2)
+    return u, arm * np.cos(phi) * phi_dot + (mean_u_dot + steady * time)
 
 
 def slip_rate(scene: Scene, phi_dot: np.ndarray | float, u_dot: np.ndarray | float) -> np.ndarray | float:
@@ -113,9 +113,9 @@ def relaxation_rate(
 ) -> np.ndarray:
     """Return the rate at which damping brings can and load together [1/s]: the torque's slope times J_f/(a^2 M J)."""
     radius, mass = scene.can.radius, scene.effective_mass
-    slope = scene.damping_law.derivative(slip_rate(scene, phi_dot, u_dot))
+    derivative = scene.damping_law.derivative(slip_rate(scene, phi_dot, u_dot))
     resists = scene.frozen.inertia(phi) / (radius**2 * mass * scene.oscillator.inertia(phi))
-    return slope * resists + 2 * scene.drag * np.abs(u_dot) / mass
+    return derivative * resists + 2 * scene.drag * np.abs(u_dot) / mass
 
 
 def rolling_forces(

@@ -19,7 +19,7 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
 
     Raises:
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e4 and 1e4
-        rad or -1e6 and 1e6 rad/s, the motion has more than 1e4 turns or 1e6 periods, or is beyond double precision.
+        rad or -1e6 and 1e6 rad/s, the motion has more than 1e4 turns on an incline, or is beyond double precision.
       NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
       ToleranceError: with damping or drag, if the start is so near an unstable balance that its rounding changes phi by
         more than 1e-4 rad, or the motion takes too many steps; the message says until when it can be followed.

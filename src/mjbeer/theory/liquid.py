@@ -91,15 +91,12 @@ class Liquid:
     viscosity: float  # kinematic, nu [m^2/s]
     law: str  # "thin layers", "creep" or "swing": the law with the largest part in the damping
     slip: float  # slip rate of steady rolling by the laws themselves [rad/s]; 0 on level ground
-    film: float  # thickness of the film that the wall carries round there, sqrt(nu a slip/g) [m]
-    carried: float  # share of the liquid that this film can hold; if it is more than 1, all of the liquid can go round
+    carried: float  # share of the liquid that the film on the wall can hold there; beyond 1 all of it can go round
     damping: Damping
 
     def __str__(self) -> str:
-        return (
-            f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s, damped by {self.law} at a slip rate of "
-            f"{self.slip:.3g} rad/s, with a film of {1e3 * self.film:.2g} mm on the wall"
-        )
+        properties = f"{self.name}: {self.density:g} kg/m^3, {self.viscosity:.3g} m^2/s"
+        return f"{properties}, damped by {self.law} at a slip rate of {self.slip:.3g} rad/s"
 
 
 @remembers_call
@@ -133,14 +130,8 @@ def liquid(
         speed = scene.terminal_speed()
     except NoEquilibriumError:  # none on so steep an incline
         speed = 0.0
-    reasons, ratio, share = [], float(centrifugal_ratio(scene, speed)), _percent(used.carried)
-    if used.carried > _CARRIED:
-        film = f"the wall carries round a film of {1e3 * used.film:.2g} mm, which can hold {share} of the liquid"
-        reasons.append(f"it coats the can: {film}")
-    if ratio > 1:
-        at = f"at its terminal speed of {speed:.2g} m/s the wall's centrifugal acceleration is {ratio:.2g} times"
-        reasons.append(f"{at} g cos(alpha), which spreads it round the can")
-    if reason := _no_lump(name, scene, abs(speed) / scene.can.radius, reasons, "steady rolling"):
+    spread = f"at its terminal speed of {speed:.2g} m/s" if centrifugal_ratio(scene, speed) > 1 else ""
+    if reason := lump_warning(name, scene, abs(speed) / scene.can.radius, spread):
         warn_of_liquid(reason, stacklevel=3)
     return scene
 
@@ -180,53 +171,42 @@ def liquid_in(
     slip = max(steady, wide)
     drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
     rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0
-    bent = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
-    if bent > 0 and (reynolds := slip * a * arc * a / nu) > 1e6:  # of the layer at its end, whatever the wall
+    curved = min(_CURVED * rolled, 1 - creep / drag)  # the torque is nowhere less than that of creep
+    if curved > 0 and (reynolds := slip * a * arc * a / nu) > 1e6:  # of the layer at its end, whatever the wall
         raise ParameterError(
             f"the layer on the wall is turbulent (Reynolds number {reynolds:.2g}): the viscosity is too small or the "
             f"can too fast, got {nu:.4g} m^2/s in {free!r}"
         )
-    holds = DECADE[0] * slip * bent / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
+    holds = DECADE[0] * slip * curved / _CURVED, max(DECADE[1] * slip, (creep / layers) ** 2)
     coats_at = (_CARRIED * shape.area * a / FILM_LOAD) ** 2 * free.gravity / (nu * a)
-    damping = Damping((1 - bent) * drag, bent * drag / slip if bent > 0 else 0.0, holds=holds, coats_at=coats_at)
+    damping = Damping((1 - curved) * drag, curved * drag / slip if curved > 0 else 0.0, holds=holds, coats_at=coats_at)
     law = "swing" if rolled < 1 else "thin layers" if drag > creep else "creep"
-    film = math.sqrt(nu * a * steady / free.gravity)
-    return Liquid(name, density, nu, law, steady, film, FILM_LOAD * film / (shape.area * a), damping)
+    carried = FILM_LOAD * math.sqrt(nu * a * steady / free.gravity) / (shape.area * a)
+    return Liquid(name, density, nu, law, steady, carried, damping)
 
 
-def run_warning(scene: Scene, fastest: float, spread_at: float, turns: float) -> str | None:
-    """Return the reasons to doubt the damping in a run of a liquid; None if there are none, or it is no liquid's.
+def lump_warning(name: str, scene: Scene, slip: float, spread: str, turns: float = math.inf) -> str | None:
+    """Return why a liquid that slips by up to `slip` [rad/s] is no lump, in one sentence; None if it is one.
 
-    `fastest` is the largest slip rate of the run [rad/s], from `spread_at` [s] on `centrifugal_ratio` was more than 1,
-    and the can has turned by so many `turns`.
+    The text `spread` says where or when `centrifugal_ratio` is more than 1, if anywhere. The can has turned by so many
+    `turns`: a film grows with the wall that has come up.
     """
-    reasons = []
-    if spread_at < math.inf:
-        exceeds = f"from t = {spread_at:.6g} s on the wall's centrifugal acceleration is more than g cos(alpha)"
-        reasons.append(f"{exceeds}, which spreads it round the can")
-    # A film grows with the wall that has come up.
-    carried = _CARRIED * math.sqrt(fastest / scene.damping_law.coats_at) * min(1.0, turns)
+    if scene.damping_law.holds is None:
+        return None
+    reasons, (lowest, highest) = [], scene.damping_law.holds
+    if spread:
+        exceeds = "the wall's centrifugal acceleration is more than g cos(alpha)"
+        reasons.append(f"{spread} {exceeds}, which spreads it round the can")
+    carried = _CARRIED * math.sqrt(slip / scene.damping_law.coats_at) * min(1.0, turns)
     if carried > _CARRIED:
-        after = f"after {turns:.2g} turns at up to {fastest:.3g} rad/s"
-        reasons.append(f"it coats the can: {after} the film on the wall can hold {_percent(carried)} of it")
-    return _no_lump("the liquid", scene, fastest, reasons, "the run")
+        share = f"{100 * carried:.0f} %" if carried < 1 else "all"
+        reasons.append(f"it coats the can: at {slip:.3g} rad/s the film on the wall can hold {share} of it")
+    if not lowest * (1 - 1e-9) <= slip <= highest:
+        meant = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid"
+        reasons.append(f"the damping is for {meant}, which slips by {slip:.3g} rad/s")
+    return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}" if reasons else None
 
 
 def centrifugal_ratio(scene: Scene, u_dot: np.ndarray | float) -> np.ndarray | float:
     """Return the centrifugal acceleration at the wall of a can with a speed [m/s], u_dot^2/a, over g cos(alpha)."""
     return np.square(u_dot) / (scene.can.radius * scene.gravity * math.cos(scene.incline))
-
-
-def _percent(carried: float) -> str:
-    return f"{100 * carried:.0f} %" if carried < 1 else "all"
-
-
-def _no_lump(name: str, scene: Scene, slip: float, reasons: list[str], motion: str) -> str | None:
-    """Return the reasons in one sentence; one more is a largest slip rate [rad/s] for which the damping is not."""
-    if scene.damping_law.holds is None:
-        return None
-    lowest, highest = scene.damping_law.holds
-    if not lowest * (1 - 1e-9) <= slip <= highest:
-        meant = f"{lowest:.3g} to {highest:.3g} rad/s between can and liquid, but {slip:.3g}"
-        reasons = [*reasons, f"{motion} is not what the damping is for, {meant}"]
-    return f"{name} as one lump is an order of magnitude only: {'; '.join(reasons)}" if reasons else None

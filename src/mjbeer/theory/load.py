@@ -8,13 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import LENGTH, RADIUS
 
 BEER = 1000.0
 """Density of beer [kg/m^3]: that of water, rounded, from which beer differs by about 1 %."""
-# Integrands are entire and at most sixth-degree trigonometric polynomials over half a
-# turn: 40 Gauss points integrate them to rounding error (24 already do).
+# At most sixth-degree trigonometric polynomials over half a turn: 24 Gauss points already integrate them to rounding.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 
@@ -33,8 +31,7 @@ class Load:
     inertia: float = 0.0
     """Moment of inertia I_cm about the centre of mass [kg m^2], eqs. (9) and (37)."""
     fill: float | None = None
-    """Filling height over diameter, h/2a of eq. (32), if the load is a circular segment. It decides
-    only how the load is drawn: without it the load is a ball at its centre of mass."""
+    """Filling height over diameter, h/2a of eq. (32), if the load is a circular segment; it decides how it is drawn."""
 
     def __post_init__(self) -> None:
         require.set_fields(
@@ -113,9 +110,4 @@ def segment(fill: float) -> Segment:
 
 
 def _checked_fill(fill: float) -> float:
-    share = require.number("fill", fill)
-    if not 0 < share <= 1:
-        raise ParameterError(
-            f"fill (height of the beer over the can's diameter) must be in (0, 1], got {require.format_value(fill)}"
-        )
-    return share
+    return require.within("fill", require.positive("fill", fill), 0, 1)

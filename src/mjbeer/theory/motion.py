@@ -7,8 +7,7 @@ Two kinds of path are enough. An arc begins or ends at a turning point, phi = tu
 both smooth and positive, with `energy` = E - V at the crest and x the distance past it. A swing is two arcs that meet
 at the equilibrium. A load that passes crests goes up in turns, each with less energy at its crest, until it cannot pass
 the next one, swings round in an arc, and goes down in turns for ever. What goes the other way is watched in a mirror.
-
-Beside a separatrix rounding decides. A motion that rounding may change noticeably is refused.
+A motion that rounding may change noticeably, as beside a separatrix, is refused.
 """
 
 import math
@@ -29,9 +28,7 @@ ROUNDINGS = 4 * EPS
 UNCERTAIN = 1e-4
 """Largest effect of rounding on phi [rad], relative beyond 1 rad: a hundredth of the error of a run that is trusted."""
 MOST_TURNS = 10_000
-"""Most turns of a motion that passes crests."""
-MOST_PERIODS = 1_000_000
-"""Most periods of a swing: after more of them rounding of the period alone is 1e-9 rad and more."""
+"""Most turns of a motion on an incline, where each takes another time."""
 
 
 def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
@@ -48,8 +45,8 @@ def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float
         effect = math.inf
     if not effect <= UNCERTAIN:
         raise NoLibrationError(
-            f"phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s is too near a separatrix: rounding of start and scene "
-            f"may change phi by more than {UNCERTAIN:g} rad (relative beyond 1 rad) until {latest:g} s"
+            f"phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s is too near a separatrix, or the motion too long: "
+            f"rounding may change phi by more than {UNCERTAIN:g} rad (relative beyond 1 rad) until {latest:g} s"
         )
     return phi0 + start.sign * delta_phi, start.sign * phi_dot
 
@@ -58,23 +55,19 @@ def period(oscillator: Oscillator, amplitude: float) -> float:
     """Return the period [s] of a swing of an `amplitude` [rad], with the errors of `Scene.period`."""
     rest = oscillator.equilibrium()
     low, high = (end - rest for end in oscillator.separatrix())
-    if not low < amplitude < high:
-        raise NoLibrationError(
-            f"amplitude {amplitude:.6g} rad is not inside the separatrix: released from rest, the load swings about "
-            f"its equilibrium only for amplitudes between {low:.6g} and {high:.6g} rad"
-        )
     sign, potential = oscillator.sign, oscillator.potential
-    start = Start(oscillator, potential, sign, *potential.distances_by_rest(sign * amplitude), 0.0, 0.0)
-    if start.still:
-        return math.tau / oscillator.frequency()
-    if start.energy_above_next_crest < 0:
-        with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
-            found = _period(_arcs_of_swing(start))
-            if start.rounding_delay(-start.energy_above_next_crest, found) <= UNCERTAIN * found:
-                return found
+    if low < amplitude < high:
+        start = Start(oscillator, potential, sign, *potential.distances_by_rest(sign * amplitude), 0.0, 0.0)
+        if start.still:
+            return math.tau / oscillator.frequency()
+        if start.energy_above_next_crest < 0:
+            with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+                found = _period(_arcs_of_swing(start))
+                if start.rounding_delay(-start.energy_above_next_crest, found) <= UNCERTAIN * found:
+                    return found
     raise NoLibrationError(
-        f"amplitude {amplitude!r} rad is too near the separatrix: rounding of the scene may change the period "
-        f"by more than {UNCERTAIN:g} of itself"
+        f"amplitude {amplitude!r} rad is not inside the separatrix, or too near it for doubles: released from rest, "
+        f"the load swings about its equilibrium only for amplitudes between {low:.6g} and {high:.6g} rad"
     )
 
 
@@ -136,7 +129,7 @@ class Start:
 
         The motion passes or misses a crest by the energy `margin` [J].
         """
-        potential, beside = self.potential, abs(self.angle_past_crest)
+        potential = self.potential
         if potential.depth == 0:
             return ROUNDINGS * latest
         if potential.curvature == 0:  # the torque at the crest is a difference of ramp and depth
@@ -145,7 +138,7 @@ class Start:
         steep = potential.balanced / potential.curvature
         # Rounding of the scene puts the crest elsewhere. On level ground it is at an odd multiple of pi, and how far a
         # double is from that is known to an eps.
-        shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep) + EPS * beside
+        shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep) + EPS * abs(self.angle_past_crest)
         rounding = ROUNDINGS * (self.kinetic + abs(float(potential.below(self.angle_past_crest))))
         rounding += abs(float(potential.torque(self.angle_past_crest))) * shift + potential.curvature * shift**2
         share = ROUNDINGS * steep**2 + (rounding / margin if margin > 0 else math.inf)
@@ -159,14 +152,12 @@ class Start:
         The margin is the least energy by which the motion passes or misses a crest.
         """
         swing = _arcs_of_swing(self) if self.swings else None
-        latest, legs = float(np.max(time, initial=0.0)), cycle(swing) if swing else _paths_over_crests(self)
+        legs = cycle(swing) if swing else _paths_over_crests(self)
         first = next(legs)
         begin = first[0].time(self)
         since, cycles = time + begin, 0
         if swing or self.potential.ramp == 0:  # all periods, or turns, are alike
-            most, lasts = (MOST_PERIODS, _period(swing)) if swing else (MOST_TURNS, first[0].duration)
-            _require_until(latest, most * lasts, f"{most} {'periods' if swing else 'turns'}")
-            cycles, since = np.divmod(since, lasts)
+            cycles, since = np.divmod(since, _period(swing) if swing else first[0].duration)
         last, angle = float(np.max(since, initial=0.0)), self.angle_past_rest if swing else self.angle_past_crest
         delta_phi, phi_dot, margin, ended = np.empty_like(time), np.empty_like(time), math.inf, 0.0
         for path, turn, energy in chain([first], legs):
@@ -178,15 +169,11 @@ class Start:
             if ended > last:
                 break
         else:
-            _require_until(latest, ended - begin, f"{MOST_TURNS} turns")
+            raise ParameterError(
+                f"an exact motion on an incline has at most {MOST_TURNS} turns, which end at {ended - begin:.6g} s: "
+                f"time must be less, got {float(np.max(time)):g} s"
+            )
         return (delta_phi if swing else delta_phi + math.tau * cycles), phi_dot, margin
-
-
-def _require_until(latest: float, end: float, most: str) -> None:
-    if not latest < end:
-        raise ParameterError(
-            f"an exact motion has at most {most}, which end at {end:.6g} s: time must be less, got {latest:g} s"
-        )
 
 
 class Arc:
@@ -269,8 +256,8 @@ def _arc_to(start: Start, side: int) -> Arc:
     potential = start.potential
     well = potential.well if side > 0 else math.tau - potential.well
 
-    def height(distance: float) -> float:
-        return float(potential.below(-side * distance))
+    def height(distance: np.ndarray | float) -> np.ndarray:
+        return potential.below(-side * distance)
 
     if start.kinetic == 0 and side * start.angle_past_rest > 0:
         distance = min(abs(start.angle_past_rest), abs(start.angle_past_crest))
@@ -309,7 +296,7 @@ def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]
         end = potential.turn_begins + math.tau
         lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, end)
         at_rest = start.kinetic == 0
-        stop = start.angle_past_crest if at_rest else root(lambda x: float(potential.below(x)) + energy, lower, upper)
+        stop = start.angle_past_crest if at_rest else root(lambda x: potential.below(x) + energy, lower, upper)
         yield Arc(start, stop, end), turn, min(abs(energy), ahead)
         energy, turn = ahead, turn + 1
     while left:

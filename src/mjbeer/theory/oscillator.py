@@ -6,12 +6,10 @@ With the rolling constraint and the conserved momentum eliminated, each scene ob
     J = base + chord sin^2(phi/2) + coupling sin^2(phi),
     V = -ramp phi - depth cos(phi - bottom).
 
-V is a cosine on a ramp: `ramp` is its steepness, a torque, `depth` the amplitude of the cosine, and `bottom` the angle
-of its minimum. If |ramp| < depth, V has in every turn a minimum (the equilibrium, or rest) and a maximum (the barrier).
-A frozen load gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and eqs. 46 and
-47 with u eliminated). All coefficients of J are non-negative, so J never cancels.
-
-V is needed only as differences, from where nothing cancels: see `Potential`.
+V is a cosine on a ramp. If |ramp| < depth, it has in every turn a minimum (the equilibrium, or rest) and a maximum (the
+barrier). A frozen load gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and
+eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels, and V is needed only as
+differences, from where nothing cancels: see `Potential`.
 """
 
 import math
@@ -31,14 +29,13 @@ _SINC_SERIES = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
 class Potential:
     """The shape of V = -ramp phi - depth cos(phi - bottom) about its crest, for ramp >= 0.
 
-    V falls with growing phi. If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well`
-    before it. On a steeper incline V only falls, and its crest is where it falls least; there the well has no width. In
-    both cases the torque downhill at an angle x past the crest is
+    If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well` before it. On a steeper incline
+    V only falls, and its crest is where it falls least; there the well has no width. In both cases
 
         -V'(crest + x) = excess + 2 balanced sin^2(x/2) + curvature sin(x).
 
-    Every turn is the same, but lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past
-    the equilibrium is that at -y past the crest.
+    Every turn is lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past the equilibrium
+    is that at -y past the crest.
     """
 
     def __init__(self, ramp: float, depth: float, bottom: float) -> None:
@@ -161,11 +158,7 @@ class Oscillator:
         return self.ramp * delta_phi - 2 * self.depth * np.sin(middle) * np.sin(delta_phi / 2)
 
     def unevenness(self, phi0: float, phi_dot0: float) -> float:
-        """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates.
-
-        It is large where neither the energy of the start nor that which a turn downhill adds is much more than the
-        depth of the well.
-        """
+        """Return by how much phi_dot varies over a turn, relative to itself, for a start [rad, rad/s] that rotates."""
         drive = float(self.inertia(phi0)) * phi_dot0**2 / 2 + abs(self.ramp)
         by_weight = self.depth / drive if drive > 0 else (math.inf if self.depth > 0 else 0.0)
         return (self.chord + self.coupling) / (2 * self.base) + by_weight
@@ -202,7 +195,7 @@ class Oscillator:
         """Return the two angles between which the largest libration about the equilibrium swings [rad]."""
         potential = self.potential
         barrier = float(potential.below(-potential.well))  # above the equilibrium, as V is at an angle behind it
-        behind = root(lambda angle: float(potential.below(angle)) - barrier, 0, math.tau - potential.well)
+        behind = root(lambda angle: potential.below(angle) - barrier, 0, math.tau - potential.well)
         low, high = potential.rest - behind, math.pi + potential.crest_past_pi
         return (low, high) if self.sign > 0 else (-high, -low)
 
@@ -213,10 +206,8 @@ def _past_pi(angle: float) -> float:
 
 
 def reduced(angle: float) -> float:
-    """Return how far `angle` [rad] is past the nearest even multiple of pi, to full relative precision.
-
-    The sine and cosine of the C library reduce angles of any size with as many digits of pi as that needs.
-    """
+    """Return how far `angle` [rad] is past the nearest even multiple of pi, to full relative precision."""
+    # The sine and cosine of the C library have as many digits of pi as that needs.
     return angle if abs(angle) <= math.pi else math.atan2(math.sin(angle), math.cos(angle))
 
 
@@ -227,34 +218,16 @@ def sinc_gap(x: np.ndarray | float) -> np.ndarray:
     return np.where(np.abs(x) < 1, series, 1 - np.sinc(np.divide(x, math.pi)))
 
 
-def root(function: Callable[[float], float], lower: float, upper: float) -> float:
-    """Return where a function is 0 between `lower`, where it is not positive, and `upper`, to full relative precision.
+def root(function: Callable[[np.ndarray], np.ndarray], lower: float, upper: float) -> float:
+    """Return where a function of an array is 0 between `lower`, where it is not positive, and `upper`, to rounding.
 
-    If it is not positive at `upper` it should be 0 there, and is only rounded. Inverse quadratic interpolation where
-    that is safe, bisection elsewhere: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997).
+    If it is not positive at `upper` it should be 0 there, and is only rounded.
     """
-    # As safe as SciPy's brentq, whose import takes longer than that of all the theory.
-    near, far, here, there = lower, upper, function(lower), function(upper)
-    if there <= 0:
-        return upper
-    assert here <= 0
-    part = 0.5
-    while here != 0:
-        place = near + part * (far - near)
-        value = function(place)
-        if (value > 0) == (here > 0):
-            last, before = near, here
-        else:
-            last, before, far, there = far, there, near, here
-        near, here = place, value
-        best = near if abs(here) < abs(there) else far
-        least = math.ulp(best) / abs(far - near)
-        if least > 0.5:
-            return best
-        way, rise = (near - far) / (last - far), (here - there) / (before - there)
-        part = 0.5
-        if rise**2 < way and (1 - rise) ** 2 < 1 - way:
-            part = here / (there - here) * before / (there - before)
-            part += (last - near) / (far - near) * here / (before - here) * there / (before - there)
-        part = min(1 - least, max(least, part))
-    return near
+    while True:
+        points = np.linspace(lower, upper, 65)
+        positive = function(points) > 0
+        positive[-1] = True
+        first = max(1, int(np.argmax(positive)))
+        if points[first - 1] <= lower and points[first] >= upper:
+            return upper
+        lower, upper = float(points[first - 1]), float(points[first])

@@ -1,9 +1,8 @@
 """Time along a path by quadrature, and the inverse: where the motion is at a time.
 
-A path is given by the positive, smooth function dt/dpsi of a phase psi that grows along it. The function is cut into
-panels on which a Chebyshev series of fixed degree reproduces it to rounding; the series are integrated exactly and
-inverted by Newton's method. There are no timesteps, so no error accumulates but rounding.
-(L. N. Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 19.)
+A path is given by the positive, smooth function dt/dpsi of a phase psi that grows along it. It is cut into panels on
+which a Chebyshev series of fixed degree reproduces it to rounding; the series are integrated exactly and inverted by
+Newton's method. (L. N. Trefethen, Approximation Theory and Approximation Practice, chapters 3 and 19.)
 """
 
 from collections.abc import Callable
@@ -28,8 +27,7 @@ class TravelTime:
         passed so often in a row, each time with another rate, of which the first one is the roughest.
 
         Raises:
-          ToleranceError: if no panels reproduce `rate`: it is not finite, or it is rougher than the rounding of psi
-            explains.
+          ToleranceError: if no panels reproduce `rate`: it is not finite, or too rough.
         """
         lows, ends = np.array(edges[:-1]), np.array(edges[1:])
         panels: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from mjbeer import require
 from mjbeer.theory import equations
 from mjbeer.theory.equations import Coordinates, select_samples, slip_rate
 from mjbeer.theory.liquid import centrifugal_ratio
@@ -17,8 +16,8 @@ SLIP = 1e-3
 LIFT = 1e-3
 """Largest gap or penetration between can and incline, in radii, that is trusted."""
 _SMALL_SWING = 1e-2
-"""Smallest energy with which a drift is compared, relative to the depth m g b of the potential well: that of a swing
-of 0.14 rad. A motion that hardly swings would otherwise divide rounding by nearly nothing."""
+"""Smallest energy with which a drift is compared, over the depth m g b of the well: that of a swing of 0.14 rad. A
+motion that hardly swings would otherwise divide rounding by nearly nothing."""
 
 
 class Record:
@@ -121,12 +120,11 @@ class Record:
         """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
         It includes slip and lift, and what damping and drag take. The denominator is at least `_SMALL_SWING` of the
-        well's depth; a balanced load has no well, and there it is the largest kinetic energy of all that moves.
+        well's depth; for a balanced load it is the largest kinetic energy of all that moves.
         """
         balanced = self.scene.load.offset == 0
         # A thousandth of 1e-11 of the kinetic energy is still many times its rounding.
-        scale = self._kinetic if balanced else max(self._least_swing, 1e-11 * self._kinetic)
-        return _ratio(self._energy_change, scale)
+        return self._energy_change / max(self._least_swing, (1.0 if balanced else 1e-11) * self._kinetic)
 
     @property
     def swing_error(self) -> float:
@@ -135,7 +133,7 @@ class Record:
         A relative error of the energy is about that of the speed or the period, and so of the angle covered meanwhile.
         Where only the phase is off there is none, nor with damping or drag.
         """
-        return _ratio(self._largest_swing_drift, self._least_swing) / max(1.0, self.largest_turn)
+        return self._largest_swing_drift / self._least_swing / max(1.0, self.largest_turn)
 
     @property
     def swing_error_at_most(self) -> float:
@@ -143,7 +141,7 @@ class Record:
 
         A step that misses a brief event may bring a drift that the next one takes away, and leave the phase wrong.
         """
-        return _ratio(self._swing_change, self._least_swing) * self.angle_covered / max(1.0, self.largest_turn)
+        return self._swing_change / self._least_swing * self.angle_covered / max(1.0, self.largest_turn)
 
     @property
     def axis_error(self) -> float:
@@ -152,7 +150,7 @@ class Record:
 
     @property
     def _least_swing(self) -> float:
-        return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth)
+        return max(self.swing_energy, _SMALL_SWING * self.scene.oscillator.depth, np.finfo(float).tiny)
 
 
 def failed_checks(record: Record, rolling: str) -> list[str]:
@@ -166,8 +164,8 @@ def failed_checks(record: Record, rolling: str) -> list[str]:
     error = float(np.maximum(record.swing_error, record.axis_error))  # NaN if one is
     if not error <= ERROR:
         reasons.append(
-            f"energy or momentum drift like an error of {require.format_above(error, ERROR)} rad of phi or u/a "
-            f"(trusted up to {ERROR:g}): take a smaller timestep or a better integrator"
+            f"energy or momentum drift like an error of {error:.3g} rad of phi or u/a (trusted up to {ERROR:g}): "
+            "take a smaller timestep or a better integrator"
         )
     return reasons
 
@@ -184,25 +182,20 @@ def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -
         return [pulls] if math.isfinite(record.rolling_ends_at) else []
     reasons = _slip_reasons(record)
     if not record.needed_friction <= friction:
-        needed = require.format_above(record.needed_friction, friction, digits=3)
-        reasons.append(f"rolling needs a friction coefficient of {needed}, and the contact has {friction:g}: it slides")
+        needed = f"a friction coefficient of {record.needed_friction:.3g}"
+        reasons.append(f"rolling needs {needed}, and the contact has {friction:g}: it slides")
     return reasons
 
 
 def _slip_reasons(record: Record) -> list[str]:
     reasons, slip, lift = [], record.slip / record.scene.can.radius, record.lift / record.scene.can.radius
     if not slip <= SLIP:
-        reasons.append(f"the can slips by {require.format_above(slip, SLIP)} radii (trusted up to {SLIP:g})")
+        reasons.append(f"the can slips by {slip:.3g} radii (trusted up to {SLIP:g})")
     if not lift <= LIFT:
-        by = require.format_above(lift, LIFT)
-        reasons.append(f"the can parts from the incline, or sinks in, by {by} radii (trusted up to {LIFT:g})")
+        reasons.append(f"the can parts from the incline, or sinks in, by {lift:.3g} radii (trusted up to {LIFT:g})")
     return reasons
 
 
 def _largest(so_far: float, values: np.ndarray | float) -> float:
     """Return the largest magnitude; NaN if there is one, which `max` would hide."""
     return float(np.maximum(so_far, np.abs(values).max()))
-
-
-def _ratio(change: float, scale: float) -> float:
-    return 0.0 if scale == 0 else change / scale  # NaN stays

@@ -73,10 +73,8 @@ class Scene:
             damping=self.damping if damped else require.non_negative("damping", self.damping, "N m s"),
         )
         if self.dissipates and self.attachment == "frozen":
-            raise ParameterError(
-                f"a frozen load moves as one with its can, which leaves nothing to damp: damping and drag must be 0, "
-                f"got damping={require.format_value(self.damping)} and drag={require.format_value(self.drag)}"
-            )
+            got = f"damping={require.format_value(self.damping)} and drag={require.format_value(self.drag)}"
+            raise ParameterError(f"a frozen load moves as one with its can: damping and drag must be 0, got {got}")
         a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e4 may round up
         # A can is not balanced by less of a gap than a billionth of its height.
         require.within("load offset", load.offset, 1e-14 * a, a, "m", zero=True)
@@ -168,10 +166,7 @@ class Scene:
         if self.dissipates:
             return self.terminal_tilt()
         if abs(self.oscillator.ramp) > self.oscillator.depth > 0:
-            raise NoEquilibriumError(
-                f"no equilibrium at an incline of {math.degrees(self.incline):.4g} degrees: a frozen load holds the "
-                f"can only up to {math.degrees(self.largest_incline()):.1f} degrees"
-            )
+            raise self._too_steep()
         return self.oscillator.equilibrium()
 
     def largest_incline(self) -> float:
@@ -187,6 +182,11 @@ class Scene:
             sine += self.drag * speed**2 / (self.mass * self.gravity)
         return math.asin(min(sine, 1.0))
 
+    def _too_steep(self) -> NoEquilibriumError:
+        incline, most = math.degrees(self.incline), math.degrees(self.largest_incline())
+        at = f"no equilibrium at an incline of {incline:.4g} degrees"
+        return NoEquilibriumError(f"{at}: the load can hold the can only up to {most:.1f} degrees")
+
     def frequency(self) -> float:
         """Return the angular frequency of small swings about the equilibrium [rad/s]: eq. (10), eq. (55) corrected.
 
@@ -198,10 +198,8 @@ class Scene:
         if not self.dissipates:
             self.equilibrium()
             return self.oscillator.frequency()
-        modes = self.modes()
-        if not (fastest := float(modes.imag.max())) > 0:
-            decays = ", ".join(f"{root:.4g}" for root in modes.real)
-            raise NoLibrationError(f"no frequency: the load creeps back without a swing, with rates {decays} 1/s")
+        if not (fastest := float(self.modes().imag.max())) > 0:
+            raise NoLibrationError("no frequency: the load creeps back without a swing; scene.modes() has the rates")
         return fastest
 
     def period(self, amplitude: float) -> float:
@@ -237,10 +235,7 @@ class Scene:
         if self.drag > 0:
             torque = float(self.damping_law.torque(slip))
         if abs(torque) > weight:
-            raise NoEquilibriumError(
-                f"no steady rolling at an incline of {math.degrees(self.incline):.4g} degrees: the load can hold the "
-                f"can only up to {math.degrees(self.largest_incline()):.1f} degrees"
-            )
+            raise self._too_steep()
         return slip, torque, math.sqrt(weight - abs(torque)) * math.sqrt(weight + abs(torque))
 
     def terminal_speed(self) -> float:
@@ -279,8 +274,9 @@ class Scene:
         polynomial = np.array([cubic, square, mass * k + damping * a**2 * drag, k * (damping + drag)])
         roots = np.roots(polynomial).astype(complex)
         for _ in range(2):  # Newton's method, as an eigenvalue is rounded by the largest one
-            steep = np.polyval(np.polyder(polynomial), roots)
-            roots -= np.divide(np.polyval(polynomial, roots), steep, out=np.zeros_like(roots), where=steep != 0)
+            derivative = np.polyval(np.polyder(polynomial), roots)
+            correction = np.zeros_like(roots)
+            roots -= np.divide(np.polyval(polynomial, roots), derivative, out=correction, where=derivative != 0)
         return np.sort_complex(roots)
 
     def slip_rate(self) -> float:

@@ -18,12 +18,12 @@ def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Sc
     """Return the function with scenes that remember it and its arguments."""
 
     @functools.wraps(make)
-    def made(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
+    def remembering(*arguments: Parameters.args, **others: Parameters.kwargs) -> Scene:
         scene = make(*arguments, **others)
-        require.set_fields(scene, made_by=(made, inspect.signature(make).bind(*arguments, **others).arguments))
+        require.set_fields(scene, made_by=(remembering, inspect.signature(make).bind(*arguments, **others).arguments))
         return scene
 
-    return made
+    return remembering
 
 
 @remembers_call
@@ -38,8 +38,8 @@ def sliding(
 ) -> Scene:
     """Return the scene of beer that slides in a can: sections 2 (massless can, the default) and 3 of the paper.
 
-    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. The beer slides without
-    friction unless `damping` [N m s] is given; `drag` [kg/m] is that of the air. Both are fields of `Scene`.
+    `incline` is in [rad], `fill` is h/2a of eq. (32), and `density` is the beer's [kg/m^3]. `damping` [N m s] and the
+    `drag` of the air [kg/m] are fields of `Scene`.
 
     Raises:
       ParameterError: as `Scene`.

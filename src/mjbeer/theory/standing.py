@@ -2,9 +2,8 @@
 
 The liquid has the inside radius R and the height h. Its modes vary as J1(xi r/R) cos(angle) with J1'(xi) = 0; each acts
 on the can like a pendulum, and what does not slosh acts like a rigid body. Heights z are above the centroid of the
-liquid at rest. For the held can and its forces see H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving
-Containers", NASA SP-106 (1966), chapters 2 and 6; the sums here were derived anew, and are tested against a solution of
-Laplace's equation by polynomials.
+liquid at rest. (H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106, 1966,
+chapters 2 and 6.)
 """
 
 import functools
@@ -30,12 +29,9 @@ SERIES = 4000
 class Reaction(NamedTuple):
     """The forces on the liquid per unit of acceleration of the can, about the liquid's centroid at rest."""
 
-    force: np.ndarray | float
-    """Force per sideways acceleration, F_X [kg]."""
-    coupling: np.ndarray | float
-    """Force per angular acceleration, and moment per sideways acceleration, F_Theta = M_X [kg m]."""
-    moment: np.ndarray | float
-    """Moment per angular acceleration about a level axis, M_Theta [kg m^2]."""
+    force: np.ndarray | float  # per sideways acceleration, F_X [kg]
+    coupling: np.ndarray | float  # force per angular, and moment per sideways acceleration, F_Theta = M_X [kg m]
+    moment: np.ndarray | float  # per angular acceleration about a level axis, M_Theta [kg m^2]
 
 
 class Mode(NamedTuple):
@@ -75,19 +71,17 @@ class Standing:
                 raise ParameterError(f"a can that stands free must have {what}, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            what = "fill (height of the liquid over the can's length) must be between 0 and 1: a full can has no free"
-            raise ParameterError(f"{what} surface, got {require.format_value(self.fill)}")
+            got = require.format_value(self.fill)
+            raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {got}")
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
-        if not _is_count(self.modes) or not 0 <= self.modes <= MOST_MODES:
-            raise ParameterError(f"modes must be one of 0, 1, ... {MOST_MODES}, got {require.format_value(self.modes)}")
         ratio = self.damping_ratio
         require.set_fields(
             self,
             fill=fill,
             density=require.positive("density", self.density, "kg/m^3"),
             viscosity=require.non_negative("viscosity", self.viscosity, "m^2/s"),
-            modes=int(self.modes),
+            modes=_checked_count("modes", self.modes, MOST_MODES),
             damping_ratio=None if ratio is None else require.within("damping_ratio", ratio, 0, 1),
             gravity=require.within("gravity", self.gravity, *require.GRAVITY, "m/s^2"),
         )
@@ -105,14 +99,9 @@ class Standing:
         return self.density * math.pi * self.can.radius**2 * self.height
 
     @property
-    def solid_inertia(self) -> float:
-        """Return the moment of inertia that the liquid would have if it were solid, about a level axis [kg m^2]."""
-        return self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)
-
-    @property
     def held_inertia(self) -> float:
         """Return the moment of inertia about a level axis of the liquid under a lid on its surface, I_F [kg m^2]."""
-        radius, xi = self.can.radius, _roots(SERIES)
+        radius, xi = self.can.radius, _roots()
         series = float(np.sum(np.tanh(xi * self.height / (2 * radius)) / (xi**3 * (xi**2 - 1))))
         return self.mass * (self.height**2 / 12 - 0.75 * radius**2 + 16 * radius**3 / self.height * series)
 
@@ -135,13 +124,11 @@ class Standing:
     def damping_ratios(self, count: int | None = None) -> np.ndarray:
         """Return the damping of the modes over the critical one, shape (count,).
 
-        It is that of the thin layers on wall and bottom: the mean of rho u^2 sqrt(nu omega/2)/2 over them, with the
-        velocity u of the mode along the wall.
+        Thin layers on wall and bottom take rho u^2 sqrt(nu omega/2)/2 where a mode has the velocity u along them.
         """
-        count = self._count(count)
+        radius, xi = self.can.radius, self._xi(count)
         if self.damping_ratio is not None:
-            return np.full(count, self.damping_ratio)
-        radius, xi = self.can.radius, _roots(count)
+            return np.full(len(xi), self.damping_ratio)
         depth = self.height / radius
         inverse_sinh = 2 * np.exp(-2 * xi * depth) / -np.expm1(-4 * xi * depth)
         layers = (xi**2 + 1) / (xi**2 - 1) + 2 * xi * (1 - depth) * inverse_sinh
@@ -149,7 +136,7 @@ class Standing:
 
     def elevations(self, count: int | None = None) -> np.ndarray:
         """Return how high the surface rises at the wall, over R and the sine of each pendulum's angle, (count,)."""
-        return 2 / (_roots(self._count(count)) ** 2 - 1)
+        return 2 / (self._xi(count) ** 2 - 1)
 
     def reaction(self, omega: float | np.ndarray) -> Reaction:
         """Return force and moment of the liquid alone in a can that is shaken with a frequency `omega` [rad/s].
@@ -179,25 +166,21 @@ class Standing:
         [kg m], sum(m_n (p_n^2 - z_n^2)) to the second [kg m^2].
         """
         if self.modes == 0:
-            return np.array([self.mass, 0.0, self.solid_inertia])
+            return np.array([self.mass, 0.0, self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)])
         left = Mode(*(each[self.modes :] for each in self._modes(SERIES)))
         pivot = left.bob + left.length
         second = self.held_inertia + np.sum(left.mass * (pivot**2 - left.bob**2))
         return np.array([self.mass, np.sum(left.mass * left.length), second])
 
-    def _count(self, count: int | None) -> int:
-        if count is None:
-            return self.modes
-        if not _is_count(count) or not 0 <= count <= SERIES:
-            raise ParameterError(f"count must be a number of modes up to {SERIES}, got {require.format_value(count)}")
-        return int(count)
+    def _xi(self, count: int | None) -> np.ndarray:
+        return _roots()[: self.modes if count is None else _checked_count("count", count, SERIES)]
 
     def _modes(self, count: int | None) -> Mode:
-        radius, height, xi = self.can.radius, self.height, _roots(self._count(count))
-        steep = np.tanh(xi * height / radius)
-        mass = self.mass * 2 * radius * steep / (height * xi * (xi**2 - 1))
+        radius, height, xi = self.can.radius, self.height, self._xi(count)
+        tanh = np.tanh(xi * height / radius)
+        mass = self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1))
         bob = height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius))
-        return Mode(mass, bob, radius / (xi * steep))
+        return Mode(mass, bob, radius / (xi * tanh))
 
 
 def standing(
@@ -226,29 +209,29 @@ def standing(
         name = require.choice("liquid", liquid, NAMES)
         density, viscosity = LIQUIDS[name]
     can = Can.sheet_metal() if can is None else can
-    made = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
+    standing_can = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
     if modes > 0 and damping_ratio is None:
-        layer = math.sqrt(2 * viscosity / made.frequencies(1)[0]) / made.can.radius
+        layer = math.sqrt(2 * viscosity / standing_can.frequencies(1)[0]) / standing_can.can.radius
         if layer > 0.1:
-            radii = f"{require.format_above(layer, 0.1)} radii, not 0.1 or less"
-            thick = f"{name} is too thick for the damping of thin layers: that on the wall has {radii}"
-            warn_of_liquid(f"{thick}; give a damping_ratio", stacklevel=2)
-    return made
+            thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
+            warn_of_liquid(f"{thick}, not 0.1 or less; give a damping_ratio", stacklevel=2)
+    return standing_can
 
 
-def _is_count(value: object) -> bool:
-    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+def _checked_count(name: str, value: object, most: int) -> int:
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not 0 <= value <= most:
+        raise ParameterError(f"{name} must be one of 0, 1, ... {most}, got {require.format_value(value)}")
+    return int(value)
 
 
-@functools.lru_cache(maxsize=16)
-def _roots(count: int) -> np.ndarray:
-    """Return the first zeros xi > 0 of J1', shape (count,), by Newton's method from McMahon's expansion."""
-    from scipy.special import jv
+@functools.cache
+def _roots() -> np.ndarray:
+    """Return the first zeros xi > 0 of J1', shape (SERIES,), by Newton's method from McMahon's expansion."""
+    from scipy.special import jv  # its own zeros end at 1200
 
-    beta = (np.arange(1, count + 1) - 0.25) * math.pi
+    beta = (np.arange(1, SERIES + 1) - 0.25) * math.pi
     xi = beta - 7 / (8 * beta)
     for _ in range(6):
         derivative = jv(0, xi) - jv(1, xi) / xi  # J1'; Bessel's equation gives its own derivative
         xi = xi - derivative / (-derivative / xi - (1 - 1 / xi**2) * jv(1, xi))
-    xi.flags.writeable = False
     return xi
