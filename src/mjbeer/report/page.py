@@ -76,7 +76,7 @@ def html(
     made = "mjbeer paper" + " --films" * (not quick)
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
     scenes = {name: _scene(name, films.get(name)) for name in FILMS}
-    runs, _, border = stability_maps.summary(maps["maps"])
+    runs, border = stability_maps.summary(maps["maps"])
     wrong, others = _misprints(validation), [name for name in stability_maps.FAMILIES if name not in _MAP]
     return environment.get_template("page.html").render(
         sketch=stories.letters(),

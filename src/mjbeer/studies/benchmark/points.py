@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.exceptions import ParameterError
 from mjbeer.model.setting import Rolling, Setting
 from mjbeer.studies.study import document
 from mjbeer.theory.can import Can
@@ -156,20 +155,10 @@ class Benchmark:
 
     @classmethod
     def load(cls, path: pathlib.Path) -> "Benchmark":
-        """Return the benchmark in a file.
-
-        Raises:
-          ParameterError: if the file is missing, or is no benchmark of this version.
-        """
-        try:
-            content = json.loads(path.read_text(encoding="utf-8"))
-            points = [
-                Point(**{name: value for name, value in each.items() if value is not None})
-                for each in content["points"]
-            ]
-            return cls(content["settings"], content["machine"], points)
-        except (OSError, ValueError, TypeError, KeyError) as error:
-            raise ParameterError(f"{path} was not written by `{COMMAND}`: {error}") from error
+        """Return the benchmark in a file that `json` is in."""
+        content = json.loads(path.read_text(encoding="utf-8"))
+        known = ({name: value for name, value in each.items() if value is not None} for each in content["points"])
+        return cls(content["settings"], content["machine"], [Point(**each) for each in known])
 
     def json(self) -> str:
         """Return the study as JSON, with a line a point."""

@@ -35,6 +35,7 @@ import math
 import numpy as np
 from numba import njit
 
+from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.scene import Scene, require_no_dissipation
 
@@ -48,10 +49,6 @@ _LAST = 3
 """Number of last terms that must be small: one or two may be small by chance."""
 
 
-class LongMotionError(Exception):
-    """A motion takes more than `MOST_STEPS` steps; the message says so."""
-
-
 def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
     """Return the motion at increasing `times` [s] that starts at `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
 
@@ -60,7 +57,7 @@ def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) 
 
     Raises:
       DissipationError: if the scene has damping or drag.
-      LongMotionError: if the motion is too long.
+      ToleranceError: if the motion takes more than `MOST_STEPS` steps.
     """
     require_no_dissipation(scene, "no series")
     can, load, time = scene.can, scene.load, np.asarray(times, dtype=float)
@@ -82,7 +79,7 @@ def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) 
         form = (0.5, *push, 0.0, 0.0, 2 * m * b * g_c, 2 * m * b * a, *moments)
     samples = np.empty((len(time), 2))
     if not _integrate(form, phi0, phi_dot0 * unit, time / unit, samples, MOST_STEPS):
-        raise LongMotionError(f"the motion takes more than {MOST_STEPS} steps")
+        raise ToleranceError(f"the motion takes more than {MOST_STEPS} steps")
     phi, phi_dot = samples[:, 0], samples[:, 1] / unit
     u, u_dot = can.radius * phi, can.radius * phi_dot
     if sliding:  # M u - m b sin(phi) falls freely from its value at the start
