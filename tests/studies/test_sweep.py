@@ -119,9 +119,8 @@ def test_a_period_is_that_of_exact_theory() -> None:
     ("arguments", "message"),
     [
         ({"fill": [0.5, 1.5]}, r"fill\[1\]: fill \(height of .*\) must be in \(0, 1\], got 1.5"),
-        ({"fil": [0.5]}, "make is <function sliding.*>: got an unexpected keyword argument 'fil'"),
+        ({"fil": [0.5]}, r"fil\[0\]: sliding\(\) got an unexpected keyword argument 'fil'"),
         ({"phi0": [0.1, 1e11]}, r"phi0\[1\]: phi0 must be between"),
-        ({"quantity": highest, "duration": 2e3}, "at most 1,000,000, at each of which a measured quantity has"),
         ({"quantity": "perod"}, "quantity must be one of 'phi', .*'period', .*; got 'perod'"),
         ({"quantity": [highest, named("highest", broken)]}, "two quantities or parameters of the name 'highest'"),
         ({"quantity": named("fill", highest), "fill": [0.5]}, "two quantities or parameters of the name 'fill'"),
@@ -130,7 +129,7 @@ def test_a_period_is_that_of_exact_theory() -> None:
         ({"make": dict}, "make must return a scene, got <class 'dict'>, which returns {}"),
         (
             {"fill": np.linspace(0.1, 0.9, 10**5), "incline": np.linspace(0, 1, 10**5)},
-            r"at most 10,000,000 scenes, got 10,000,000,000 \(fill has 100000, incline has 100000\): cut it into",
+            "at most 10,000,000 scenes, got 10,000,000,000: cut it into several",
         ),
     ],
 )
