@@ -15,7 +15,7 @@ from mjbeer.cli.arguments import SCENES, Option, command, make, run_options, sce
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
-from mjbeer.studies.benchmark.points import CASES, DEFAULT
+from mjbeer.studies.benchmark.points import CASES
 
 if TYPE_CHECKING:
     import xarray
@@ -127,7 +127,7 @@ def report(given: Namespace) -> int:
 
 
 @command(
-    Option("scenes", f"scenes to measure, of {', '.join(CASES)}", DEFAULT),
+    Option("scenes", f"scenes to measure, of {', '.join(CASES)}", tuple(CASES)),
     _folder("benchmark"),
     _flag("quick", "try fewer timesteps and tolerances; takes two minutes"),
 )
@@ -135,7 +135,7 @@ def benchmark(given: Namespace) -> int:
     """Measure error against run time of integrators and other tools, in seven minutes."""
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
-    names = [require.choice("scene", name, CASES) for name in given.scenes] or DEFAULT
+    names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]
     with files.locked(given.output):
         study = timing.conduct(names, given.quick, STDERR)
         benchmark_tables.write(study, given.output)

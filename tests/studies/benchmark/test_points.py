@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from mjbeer.studies.benchmark import benchmark_tables as tables
-from mjbeer.studies.benchmark import points, work_precision
+from mjbeer.studies.benchmark import points
 from mjbeer.studies.benchmark.points import CASES, SHIPPED, Benchmark, Point
 from mjbeer.studies.benchmark.timing import measure
 
@@ -78,9 +78,9 @@ def test_the_study_that_comes_with_mjbeer_is_of_this_code(stored: Benchmark) -> 
 def test_the_diagram_names_what_it_shows_and_each_point_tells_its_setting(
     stored: Benchmark, tmp_path: pathlib.Path
 ) -> None:
-    work_precision.draw(stored, tmp_path / "all")
+    tables.draw(stored, tmp_path / "all")
     frozen = replace(stored, points=stored.of("frozen"))
-    work_precision.draw(frozen, tmp_path / "one")
+    tables.draw(frozen, tmp_path / "one")
     texts = re.findall(r"<text[^>]*>([^<]*)</text>", (tmp_path / "all.svg").read_text())
     for label in (
         "mjbeer's DOP853",

@@ -4,6 +4,7 @@ import gc
 import math
 import time
 from collections.abc import Callable, Container, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -17,14 +18,14 @@ from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
-from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Case, Curve, Point
+from mjbeer.studies.benchmark.points import CASES, CHOSEN, TIMESTEP, TOLERANCE, USUAL, Benchmark, Case, Curve, Point
 from mjbeer.studies.study import machine
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -146,7 +147,10 @@ def _set_up(case: Case, point: Point) -> Rung:
         steps = np.rint(times / value).astype(np.int64)
         solve = partial(states_after, model, mujoco.MjData(model), begin, steps)
     else:
-        simulator = Simulator(scene, point.curve.setting(value))
+        given: dict[str, Any] = {"tolerance": value}
+        if point.parameter == TIMESTEP:
+            given = {"integrator": point.method, "timestep": value}
+        simulator = Simulator(scene, replace(Setting(), rolling=point.model, **given))
         model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
         if point.method == DOP853:
             own = Dop853(model)
