@@ -11,9 +11,8 @@ from mjbeer.checks import Result
 from mjbeer.cli.app import main
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import SoftRow
-from mjbeer.studies.stability import short_runs, stability_maps, stability_study
-from mjbeer.studies.stability.short_runs import Plan
-from mjbeer.studies.stability.stability_maps import PLANS, measure
+from mjbeer.studies.stability import stability_maps, stability_study
+from mjbeer.studies.stability.stability_maps import PLANS, Plan, measure
 from mjbeer.studies.study import Study
 from tests.support import stubs
 
@@ -38,7 +37,7 @@ def test_every_cell_of_a_map_is_as_theory_says(plan: Plan) -> None:
     ("plan", "module", "name", "wrong"),
     [
         (Plan("solref", "discrete"), SoftRow, "at_end_of_step", lambda self, _: self),
-        (Plan("solref", "Euler"), short_runs, "spring", lambda t, z, d: predictions.direct(0.8 / t**2, 1.8 / t, d)),
+        (Plan("solref", "Euler"), stability_maps, "spring", lambda t, z, d: predictions.direct(0.8 / t**2, 1.8 / t, d)),
         (Plan("gravity", "RK4"), predictions, "polynomial", lambda _: [1, 1, 1 / 2, 1 / 6, 1 / 30]),
         (Plan("damping", "RK4"), predictions, "polynomial", lambda _: [1, 1, 1 / 2, 1 / 6, 1 / 30]),
         (Plan("damping", "discrete"), predictions, "IMPLICIT", ()),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, exact, hoop, simulate, sliding
+from mjbeer import Scene, exact, hoop, simulate, sliding
 from mjbeer.checks import Check, Result
 from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
@@ -80,7 +80,5 @@ def test_a_wrong_model_is_found_out(
 
 
 def test_energy_that_obeys_the_other_law_is_found_out() -> None:
-    """It drifts in proportion to the number of swings in place of staying within bounds, and the reverse."""
-    free = sliding(0.0, can=Can.hoop(mass=1e5))
-    assert (motions._drift(free, "RK4", 10)[1] - 1).max() > 0.05
-    assert abs(motions._drift_exponent(free, "Euler", 32)) > 0.02
+    """It drifts in proportion to the number of swings in place of staying within bounds."""
+    assert motions._drift("RK4", 10) > 0.05
