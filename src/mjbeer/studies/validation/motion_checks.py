@@ -152,7 +152,7 @@ def _tilt_error(scene: Scene, rolling: Rolling) -> float:
 
 def _drift(integrator: Integrator, steps: int = 32, swings: int = 1000) -> float:
     """Return the growth of the energy's largest deviation in a later swing of 1 rad over that in the first one."""
-    scene = sliding(0.0, can=Can.hoop(mass=1e5))
+    scene = sliding(0.0, can=Can(mass=1e3, inertia=1e4))
     period, window = scene.period(1.0), np.arange(steps)
     counts = np.unique(np.rint(np.geomspace(1, swings, 1 + round(8 * math.log10(swings)))).astype(int))
     samples = np.unique(np.concatenate([window, *(steps * count + window for count in counts)]))
