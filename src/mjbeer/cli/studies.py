@@ -49,7 +49,6 @@ _OUTPUT = (
     *run_options(several),
     Option("quantity", _QUANTITY, "phi", QUANTITIES),
     Option("output", _OUTPUT, pathlib.Path("sweep.png"), pathlib.Path),
-    _flag("overwrite", "replace a .nc of another sweep, and begin the same one anew"),
     numbers=several,
 )
 def sweep(given: Namespace) -> int:
@@ -74,7 +73,7 @@ def sweep(given: Namespace) -> int:
     cast("Any", maker).__module__, cast("Any", maker).__qualname__ = "mjbeer", given.scene
     resumed = given.output if given.output.suffix == ".nc" else None
     with files.atomic_write(given.output) if resumed is None else contextlib.nullcontext() as temporary:
-        options |= {"quantity": given.quantity, "output": resumed, "overwrite": given.overwrite, **steps(given)}
+        options |= {"quantity": given.quantity, "output": resumed, **steps(given)}
         result = sweep(maker, given.duration, **options)
         if temporary and given.output.suffix in PLOTS:
             _plot(result, given.quantity, temporary)

@@ -57,7 +57,6 @@ def sweep(
     quantity: Asked | Sequence[Asked] = (),
     executor: Executor | None = None,
     output: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
     progress: bool = True,
     **parameters: Any,
 ) -> "xarray.Dataset":
@@ -77,7 +76,7 @@ def sweep(
     The scenes are simulated by an `executor` of `concurrent.futures`, by default by a thread for each core; the result
     does not depend on it. With an `output`, whose name ends in .nc, what is there is saved as NetCDF every two seconds,
     and the same call goes on from there after an interruption. A file with other coordinates or attributes
-    is refused, and so is one whose first scene has other results than now; `overwrite` replaces it.
+    is refused, and so is one whose first scene has other results than now.
 
     A value that is not allowed is refused before anything runs. A scene that fails later has NaN and a status, one that
     leaves the range of its model a status, and the attribute "failed" has a line for each kind of reason, with the
@@ -88,8 +87,7 @@ def sweep(
       OutputError: if the output cannot be written.
       OSError: if the system ends one of the executor's processes.
     """
-    for name, value in (("overwrite", overwrite), ("progress", progress)):
-        require.boolean(name, value)
+    require.boolean("progress", progress)
     if executor is not None and not isinstance(executor, Executor):
         raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.format_value(executor)}")
     path = None if output is None else require.path(output)
@@ -107,7 +105,7 @@ def sweep(
         warnings.warn(note, LiquidWarning, stacklevel=2)
     found = _empty(work, axes)
     if path is not None:
-        if path.exists() and not overwrite:
+        if path.exists():
             found = _continued(path, found, work, axes)
         _save(found, path)  # a file that cannot be written is an error before the first scene
     _fill(found, work, axes, executor, path, progress)
@@ -150,14 +148,14 @@ def _asked(quantity: Asked | Sequence[Asked], axes: Axes) -> dict[str, Callable[
     there, found = [*ALWAYS, "period", "trusted", "status"], list[tuple[str, Callable[[Run], Any]]]()
     for each in quantity if isinstance(quantity, (list, tuple)) else (quantity,):
         if isinstance(each, str):
-            found += [("period", PERIOD.of)] * (require.choice("quantity", each, there) == "period")
+            found += [("period", PERIOD[0])] * (require.choice("quantity", each, there) == "period")
         elif callable(each):
             found.append((getattr(each, "__name__", type(each).__name__), each))
         else:
             raise ParameterError(
                 f"quantity must be a name or a function of a trajectory, got {require.format_value(each)}"
             )
-    names = [*there, *axes, *(name for name, measure in found if measure is not PERIOD.of)]
+    names = [*there, *axes, *(name for name, measure in found if measure is not PERIOD[0])]
     if clash := [name for name in names if names.count(name) > 1]:
         raise ParameterError(f"there are two quantities or parameters of the name {clash[0]!r}: give one another name")
     return dict(found)
@@ -215,9 +213,8 @@ def _empty(work: Work, axes: Axes) -> "xarray.Dataset":
     dims, shape = tuple(axes), _shape(axes)
     variables: dict[str, Any] = {}
     for name in (*ALWAYS, *work.measures):
-        quantity = (ALWAYS | {"period": PERIOD}).get(name)
-        about = {"units": quantity.unit, "long_name": quantity.meaning} if quantity else {}
-        variables[name] = dims, np.full(shape, np.nan), about
+        _, *about = (ALWAYS | {"period": PERIOD}).get(name, (None,))
+        variables[name] = dims, np.full(shape, np.nan), dict(zip(("units", "long_name"), about, strict=False))
     variables["trusted"] = dims, np.zeros(shape, np.bool_), {"long_name": "whether the run is trusted"}
     meaning = "; ".join(f"{number}: {text}" for number, text in STATUSES.items())
     variables["status"] = dims, np.full(shape, NOT_YET, np.int8), {"long_name": meaning}
@@ -271,7 +268,7 @@ def _continued(path: pathlib.Path, new: "xarray.Dataset", work: Work, axes: Axes
         differ += ["quantities"] * (list(stored) != list(new) or stored.sizes != new.sizes)
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise ParameterError(f"{path} was not written by `mjbeer.sweep`: {error}") from error
-    advice = "give another name, or overwrite=True to replace it"
+    advice = "give another name, or remove it"
     if differ:
         raise ParameterError(f"{path} has another sweep, whose {', '.join(differ)} differ: {advice}")
     for scene in np.flatnonzero(stored["status"].values != NOT_YET)[:1].tolist():
