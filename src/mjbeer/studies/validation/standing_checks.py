@@ -29,11 +29,8 @@ _GAIN = 0.1
 def checks() -> Iterator[Check]:
     """Yield the checks of standing cans."""
     check = partial(Check, "standing")
-    name, by = (
-        f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16",
-        "half full, held, RK4, 1 ms",
-    )
-    reason = "RK4: (omega h)^4/120, 2.5e-9"
+    by, reason = "half full, held, RK4, 1 ms", "RK4: (omega h)^4/120, 2.5e-9"
+    name = f"frequency by stepping from {_ANGLE:g} rad, against a pendulum's 1 - angle^2/16"
     yield check(name, lambda: let_go(water(damping_ratio=0.0))[0], by, 5e-9, "relative", reason)
     reason = "breaking waves, which take the square of the angle: 4e-6; and the rates at crossings between samples"
     yield check("logarithmic decrement", lambda: let_go(water())[1], by, 1e-5, "relative", reason)
