@@ -20,7 +20,6 @@ from mjbeer.studies.stability.known_cases import KnownCase, Variant, cases
 from mjbeer.studies.stability.regions import REGIONS, random_trial
 from mjbeer.studies.stability.stability_study import (
     RANDOM,
-    RUNS,
     SIZE,
     batch,
     random_checks,
@@ -134,9 +133,3 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
     assert stability_study.bound(all_of) is None
     assert stability_study.bound({RIGHT: 200, DOUBTED: 100, REFUSED: 50}) == pytest.approx(0.01)
     assert pytest.approx(0.05, abs=2e-3) == 0.99**300
-
-
-def test_the_search_is_cut_into_batches_without_gaps() -> None:
-    firsts = [int(check.name.split()[2]) for check in random_checks(RUNS)]
-    assert firsts == list(range(0, SIZE * len(firsts), SIZE))
-    assert 0 <= SIZE * len(firsts) - RUNS < SIZE

@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pytest
 
-from mjbeer import Scene, exact, hoop, simulate, sliding
+from mjbeer import Scene, simulate, sliding
 from mjbeer.checks import Check, Result
 from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
@@ -43,13 +42,6 @@ def test_a_wrong_motion_is_found_out() -> None:
     wrong = dataclasses.replace(run, scene=sliding())
     assert theory.phi_error(wrong) > 1e-7
     assert abs(2 * math.pi / wrong.frequency() / sliding().period(1.0) - 1) > 1e-9
-
-
-def test_takeoff_is_the_first_sample_in_the_air() -> None:
-    fall = exact(hoop(), np.linspace(0, 0.3, 4), 3.0)
-    lifted = dataclasses.replace(fall, lift=np.array([-1e-9, 0.0, 1e-6, 2e-6]))
-    assert fall.takeoff() is None
-    assert lifted.takeoff() == pytest.approx(math.pi - fall.phi[2])
 
 
 def more_damped(scene: Scene) -> Scene:

@@ -37,7 +37,7 @@ from numba import njit
 
 from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.scene import Scene, require_no_dissipation
+from mjbeer.theory.scene import Scene
 
 MOST_STEPS = 400_000
 """Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""
@@ -50,16 +50,14 @@ _LAST = 3
 
 
 def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
-    """Return the motion at increasing `times` [s] that starts at `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
+    """Return the undamped motion at increasing `times` [s] from `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
 
     A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. The unit of time is a power of two near the
     fastest time of the motion, so that no conversion is rounded, and no coefficient overflows.
 
     Raises:
-      DissipationError: if the scene has damping or drag.
       ToleranceError: if the motion takes more than `MOST_STEPS` steps.
     """
-    require_no_dissipation(scene, "no series")
     can, load, time = scene.can, scene.load, np.asarray(times, dtype=float)
     pace = abs(phi_dot0) + math.sqrt(scene.gravity / can.radius)
     unit = 2.0 ** math.frexp(1 / pace)[1] if pace > 0 else 1.0
