@@ -22,7 +22,7 @@ from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, MISPRINT
 from mjbeer.studies import predictions
 from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
-from mjbeer.studies.stability import search, stability_maps
+from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import BOTH, NOBODY, SERIES, SILENT, THEORY, VERDICTS
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
@@ -89,7 +89,7 @@ def holds() -> str:
                 "**stability**",
                 f"in gravity the longest stable timesteps are within {border_error():.2g} % of linear theory; of "
                 f"{ended(random):,} random runs {random.get(SILENT, 0)} were wrong without saying so (of such runs "
-                f"fewer than {100 * (search.bound(random) or 1):.1g} % are, at 95 % confidence), and "
+                f"fewer than {100 * (stability_study.bound(random) or 1):.1g} % are, at 95 % confidence), and "
                 f"{alone(random):,} of them were judged by one theory alone ([stability](docs/stability.md))",
             ),
             (
@@ -178,7 +178,7 @@ def steps() -> str:
 def agreement() -> str:
     """How the maps came out, and how near their borders in gravity are to the limit of a swing."""
     maps = [each for each in stability_maps.load()["maps"] if each["family"] != "damping"]
-    runs, *_ = stability_maps.summary(maps)
+    runs, _ = stability_maps.summary(maps)
     return prose(
         f"{len(maps)} maps of timestep and stiffness, {runs:,} short runs in all, agree with this. In gravity the "
         f"border was found by bisection, and the longest stable timestep is within {border_error():.2g} % "
@@ -214,7 +214,7 @@ def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
     maps = [each for each in stability_maps.load()["maps"] if each["family"] == "damping"]
     count = Counter("".join("".join(each["measured"]) for each in maps))
-    *_, worst = stability_maps.summary(maps)
+    _, worst = stability_maps.summary(maps)
     return prose(
         f"Of {count.total():,} runs in these maps {count['0']:,} explode, {count['1']:,} are inaccurate and "
         f"{count['2']:,} accurate. The borders between them agree with linear theory within {100 * worst:.2g} %."
@@ -233,8 +233,8 @@ def alone(count: dict[str, int]) -> int:
 
 def kinds() -> str:
     """How the random runs ended, by kind of model, and what judged them."""
-    shown = next(each for each in search.tables(counts()) if "by model" in each.title)
-    left_out = NOBODY, BOTH, SERIES, search.ABOVE, search.TWICE
+    shown = next(each for each in stability_study.search_tables(counts()) if "by model" in each.title)
+    left_out = NOBODY, BOTH, SERIES, stability_study.NEEDLESS, stability_study.ABOVE, stability_study.TWICE
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
     return table(tuple(shown.columns[at] for at in columns), [tuple(row[at] for at in columns) for row in shown.rows])
 
@@ -242,9 +242,9 @@ def kinds() -> str:
 def honesty() -> str:
     """How many runs were silent, and what that allows; how often a run said too little of its error."""
     found, known = counts()["kinds"]["all"], counts()["known"]
-    share = search.bound(found)
+    share = stability_study.bound(found)
     allows = "" if share is None else f", so that with 95 % confidence fewer than {100 * share:.1g} % are"
-    silent, above, twice = (found.get(name, 0) for name in (SILENT, search.ABOVE, search.TWICE))
+    silent, above, twice = (found.get(name, 0) for name in (SILENT, stability_study.ABOVE, stability_study.TWICE))
     return prose(
         f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone(found):,} were judged "
         f"by one theory alone, and {found.get(NOBODY, 0)} by none. {above} trusted runs had a larger error than their "

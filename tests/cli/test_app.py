@@ -78,7 +78,6 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("simulate sliding --phi0 1,2", "argument --phi0: invalid float value: '1,2'"),
         ("export sliding", "the following arguments are required: --output"),
         ("benchmark slding", "scene must be one of 'sliding', 'sliding-metal', "),
-        ("stability --long --quick", "--long and --quick exclude each other"),
         ("simulate sliding --incline 100", "incline must be between -90 and 90 [degrees], got 100.0"),
         ("sweep frozen --incline 1:100:3", "incline must be between -90 and 90 [degrees], got 100.0"),
         ("simulate sliding --phi0 inf", "phi0 must be a finite number [degrees], got inf"),

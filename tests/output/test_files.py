@@ -133,7 +133,7 @@ def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
 ) -> None:
     """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
     stubs.benchmark(monkeypatch)
-    monkeypatch.setattr("mjbeer.studies.stability.stability_study.plan", lambda extent: [])
+    monkeypatch.setattr("mjbeer.studies.stability.stability_study.plan", lambda quick: [])
     folder = tmp_path / "new"
     with start([str(folder)], HOLD) as holder:
         hear(holder, "locked")

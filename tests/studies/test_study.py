@@ -1,14 +1,11 @@
 """Checks: judged by their bounds, kept one by one, resumed after an interruption, measured by several processes."""
 
-import contextlib
 import json
 import math
 import multiprocessing
 import os
 import pathlib
 import signal
-import socket
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -18,17 +15,16 @@ from mjbeer.checks import Check, Result
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.studies import study as studies
 from mjbeer.studies.study import Study
-from tests.support.processes import PATIENCE, fall, interrupt, start, where
+from tests.support.processes import fall, hear, interrupt, start, where
 
 ALONE = """
-import sys
-from functools import partial
-import pathlib
+import os, pathlib, sys
 from mjbeer.checks import Check
 from mjbeer.studies.study import run
-from tests.support.processes import call_and_sleep
-checks = [Check("t", str(place), partial(call_and_sleep, int(sys.argv[1]))) for place in range(4)]
-run(checks, None, pathlib.Path(sys.argv[2]), "mjbeer test", {})
+from tests.support.processes import work_and_sleep
+os.cpu_count = lambda: 2
+checks = [Check("t", str(place), work_and_sleep) for place in range(4)]
+run(checks, None, pathlib.Path(sys.argv[1]), "mjbeer test", {})
 """
 
 
@@ -99,49 +95,32 @@ def test_a_result_that_cannot_be_kept_is_an_error(tmp_path: pathlib.Path) -> Non
         studies.run([Check("g", "a", replace_by_folder)], None, path, "mjbeer test", {})
 
 
-def places(count: int, measure: Callable[[], dict[str, Any]] = where) -> list[Check]:
-    return [Check("g", str(place), measure) for place in range(count)]
-
-
 @pytest.mark.slow
 def test_processes_measure_elsewhere_and_the_order_stays(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    together = studies.run(places(3), None, tmp_path / "study.jsonl", "mjbeer test", {})
+    together = studies.run(
+        [Check("g", name, where) for name in "012"], None, tmp_path / "study.jsonl", "mjbeer test", {}
+    )
     assert where()["process"] not in {result.values["process"] for result in together.results}
     assert [result.name for result in together.results] == ["0", "1", "2"]
-    assert not multiprocessing.active_children()
 
 
 @pytest.mark.slow
 def test_a_process_that_is_killed_is_an_error(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     with pytest.raises(OSError, match="ended from outside"):
-        studies.run(places(2, fall), None, tmp_path / "study.jsonl", "mjbeer test", {})
+        studies.run([Check("g", name, fall) for name in "01"], None, tmp_path / "study.jsonl", "mjbeer test", {})
     assert not multiprocessing.active_children()
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("number", "everybody"), [(signal.SIGINT, True), (signal.SIGINT, False), (signal.SIGKILL, False)]
-)
-def test_no_process_outlives_the_one_that_started_it(
-    number: signal.Signals, everybody: bool, tmp_path: pathlib.Path
-) -> None:
-    """Ctrl-C reaches all of them, and the others are told by the first; of its being killed they hear as well.
-
-    Each of the two calls this process when it is at work, and the system hangs up for it when it has ended.
-    """
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        server.settimeout(PATIENCE)
-        with (
-            start([str(server.getsockname()[1]), str(tmp_path / "study.jsonl")], ALONE) as process,
-            contextlib.ExitStack() as lines,
-        ):
-            calls = [lines.enter_context(server.accept()[0]) for _ in range(2)]
-            _, err = interrupt(process, number, everybody=everybody)
-            assert err.count("Traceback") <= 1  # its own
-            for call in calls:
-                call.settimeout(PATIENCE)
-                assert call.recv(1) == b""
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_no_process_outlives_the_one_that_started_it(number: signal.Signals, tmp_path: pathlib.Path) -> None:
+    """It alone is interrupted or killed, and its streams are at their end when the others have ended, too."""
+    with start([str(tmp_path / "study.jsonl")], ALONE) as process:
+        for _ in range(2):
+            hear(process, "at work")
+        _, err = interrupt(process, number, everybody=False)
+    assert err.count("Traceback") <= 1  # its own

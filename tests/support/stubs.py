@@ -20,7 +20,7 @@ from mjbeer.paper.stories import Story
 from mjbeer.report import page
 from mjbeer.studies.benchmark import other_tools, timing
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark, Curve
-from mjbeer.studies.stability import search, stability_maps, stability_study
+from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.validation import validate as validation
 
 STEPS = tuple(16e-3 / 2**k for k in range(6))
@@ -50,12 +50,12 @@ def benchmark(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[flo
 def stability(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make the stability study one of the first check of each group, with a small map and few runs, in this process."""
     first: dict[str, Check] = {}
-    for check in stability_study.plan("quick"):
+    for check in stability_study.plan(True):
         first.setdefault(check.group, check)
     small = {"maps": partial(stability_maps.measure, stability_maps.PLANS[0], 4)}
-    small["search"] = partial(search.batch, 0, 4)
+    small["search"] = partial(stability_study.batch, 0, 4)
     first |= {group: replace(first[group], measure=measure) for group, measure in small.items()}
-    monkeypatch.setattr(stability_study, "plan", lambda extent: list(first.values()))
+    monkeypatch.setattr(stability_study, "plan", lambda quick: list(first.values()))
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
 
 

@@ -21,7 +21,7 @@ from mjbeer.paper import stories
 from mjbeer.paper.claim import Claim
 from mjbeer.report.films import COMMANDS, FILMS, RACES
 from mjbeer.report.formulas import letters, mathml
-from mjbeer.studies.benchmark import benchmark_tables, work_precision
+from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.study import machine
@@ -51,7 +51,7 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
     benchmark = Benchmark.load(SHIPPED)
     scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
     drawn: dict[str, Callable[[Any], None]] = {
-        f"error-{case}": partial(work_precision.draw, scene) for case, scene in scenes.items()
+        f"error-{case}": partial(benchmark_tables.draw, scene) for case, scene in scenes.items()
     }
     drawn |= {story.name: story.plot for story in stories.STORIES}
     maps = stability_maps.figures(stability_maps.load())
@@ -76,7 +76,7 @@ def html(
     made = "mjbeer paper" + " --films" * (not quick)
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
     scenes = {name: _scene(name, films.get(name)) for name in FILMS}
-    runs, _, border = stability_maps.summary(maps["maps"])
+    runs, border = stability_maps.summary(maps["maps"])
     wrong, others = _misprints(validation), [name for name in stability_maps.FAMILIES if name not in _MAP]
     return environment.get_template("page.html").render(
         sketch=stories.letters(),

@@ -1,25 +1,19 @@
 """Linear theory in advance: for which timesteps a small motion stays bounded, and for which accurate.
 
-**Integrators.** One turns linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with a matrix G of
+**Integrators** turn linear equations q'' = -k q - b q' into x_{n+1} = G x_n for x = (q, h q'), with a matrix G of
 K = k h^2 and B = b h alone. A motion is bounded if no eigenvalue of G lies outside the unit circle. For a Runge-Kutta
 method G = R(h L), where R is the polynomial of its tableau and L the matrix of the equations as x' = L x (E. Hairer,
 G. Wanner, Solving Ordinary Differential Equations II, section IV.2). MuJoCo's "Euler", "implicit", "implicitfast" and
-"discrete" are all the same semi-implicit Euler for forces like gravity, whose stiffness none of them treats
-implicitly.
+"discrete" are the same semi-implicit Euler for forces like gravity.
 
-**Soft constraints.** In the solver a constraint is one row or several. A row has a residual r, for instance u - a roll,
-and a reference acceleration -b r' - k r. Because it is soft, only a share s of that is reached:
-
-    r'' = s (-b r' - k r) + (1 - s) a_free,
-
-where a_free is the acceleration without the constraint. With solref (tau, zeta) and a constant impedance d (solimp's
-dmin = dmax),
+**Soft constraints** have rows with a residual r, for instance u - a roll, and a reference acceleration -b r' - k r, of
+which a share s is reached: r'' = s (-b r' - k r) + (1 - s) a_free, where a_free is the acceleration without the
+constraint. With solref (tau, zeta) and a constant impedance d (solimp's dmin = dmax)
 
     b = 2/(d tau),   k = d/(d tau zeta)^2,
 
-so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: the impedance drops out, and stability depends on
-h/tau and zeta alone. It does not drop out where MuJoCo overestimates the row's diagonal, as it does by default: then
-s < d, and the row is softer, and stable for longer timesteps, than its solref suggests.
+so that a share s = d leaves b s = 2/tau and k s = 1/(tau zeta)^2: stability depends on h/tau and zeta alone. Where
+MuJoCo overestimates the row's diagonal, as it does by default, s < d, and the row is softer than its solref suggests.
 
 **Damping** is what an integrator may treat implicitly: all but RK4 and DOP853 do, but "Euler" not that of a tendon,
 which damps the reduced model.
@@ -130,13 +124,7 @@ def accurate_limit(integrator: str) -> float:
 
 
 def first(excess: Callable[[float], float], low: float, high: float) -> float:
-    """Return the smallest value from `low` to `high`, both positive, from which on `excess` is positive, or `high`.
-
-    Raises:
-      ValueError: if `excess` is positive at `low`.
-    """
-    if excess(low) > 0:
-        raise ValueError(f"the limit is exceeded already at {low!r}")
+    """Return the smallest value above `low`, both positive, from which on `excess` is positive, or `high`."""
     while low < high:
         above = low * _RATIO
         if excess(above) > 0:

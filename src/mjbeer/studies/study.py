@@ -4,13 +4,14 @@ import json
 import os
 import pathlib
 import platform
+import re
 import warnings
 from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing
 from dataclasses import dataclass, field
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import distributions
 from typing import Any
 
 from rich.console import Console
@@ -70,10 +71,6 @@ class Study:
         """Command, settings and machine."""
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
-    def lines(self) -> str:
-        """Return the study as lines of JSON: what it is of, and a line each result."""
-        return line(self.about) + "".join(line(result.as_json()) for result in self.results)
-
 
 def run(
     checks: Sequence[Check], console: Console | None, path: pathlib.Path, command: str, settings: dict[str, Any]
@@ -95,7 +92,7 @@ def run(
             study = stored
             if console is not None:
                 console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
-    files.write(path, study.lines())
+    files.write(path, "".join(map(line, [study.about, *(result.as_json() for result in study.results)])))
     done = {(result.group, result.name): result for result in study.results}
     missing = [check for check in checks if (check.group, check.name) not in done]
     with progress_bar(console, len(missing)) as begin, closing(measured(missing, begin)) as results:
@@ -111,11 +108,7 @@ def run(
 
 
 def measured(checks: Sequence[Check], begin: Callable[[str], None]) -> Generator[Result]:
-    """Yield the results of checks as they are ready, from a process for each core.
-
-    Raises:
-      OSError: if the system ends one of the processes.
-    """
+    """Yield the results of checks as they are ready, from a process for each core; OSError if one is ended."""
     if (processes := min(os.cpu_count() or 1, len(checks))) <= 1:
         for check in checks:
             begin(check.name)
@@ -139,12 +132,15 @@ def _in_silence(check: Check) -> Result:
 
 def machine() -> dict[str, Any]:
     """Return what run times and rounding depend on: processor, system, and versions of packages."""
+    about = pathlib.Path("/proc/cpuinfo")
+    named = re.search(r"model name\s*: (.*)", about.read_text(encoding="utf-8")) if about.exists() else None
+    versions = {each.name: each.version for each in distributions() if each.name in _PACKAGES}
     return {
-        "processor": _processor(),
+        "processor": named[1] if named else platform.processor() or platform.machine(),
         "cores": os.cpu_count(),
         "system": platform.platform(terse=True),
         "python": platform.python_version(),
-        "versions": {name: number for name in _PACKAGES if (number := _version(name))},
+        "versions": {name: versions[name] for name in _PACKAGES if name in versions},
     }
 
 
@@ -165,20 +161,3 @@ def table(title: str, results: Sequence[Result], document: bool = False) -> Tabl
         rows.append((result.name, result.by, error + failed, f"{result.bound:.1e} {result.unit}".strip(), last))
     last = "what dominates the error" if document else "verdict"
     return Table(title, ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))
-
-
-def _processor() -> str:
-    """Return the name of the processor, or at least its architecture."""
-    try:
-        lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        return platform.processor() or platform.machine()
-    names = (each.partition(":")[2].strip() for each in lines if each.startswith("model name"))
-    return next(names, platform.machine())
-
-
-def _version(name: str) -> str | None:
-    try:
-        return version(name)
-    except PackageNotFoundError:
-        return None

@@ -1,6 +1,5 @@
 """`mjbeer.sweep`: many scenes in one call, on all cores or on a cluster, as an `xarray.Dataset`."""
 
-import inspect
 import math
 import os
 import pathlib
@@ -29,15 +28,14 @@ from mjbeer.theory.scene import Scene
 if TYPE_CHECKING:
     import xarray
 
-_MOST_SAMPLES, _MOST_SCENES = 1_000_000, 10_000_000
-"""Largest number of samples of a run, which take a hundred megabytes in each thread, and of scenes: a gigabyte."""
+_MOST_SCENES = 10_000_000
+"""Largest number of scenes, which take a gigabyte."""
 _SAVED_EVERY = 2.0
 """Time between two savings [s]: what is done in it may be lost."""
 _UNITS = {"incline": "rad", "phi0": "rad", "phi_dot0": "rad/s", "density": "kg/m^3", "gravity": "m/s^2"}
 _UNITS |= {"damping": "N m s", "drag": "kg/m", "viscosity": "m^2/s", "radius": "m", "length": "m", "offset": "m"}
 _UNITS |= {"wheel_mass": "kg", "load_mass": "kg", "hoop_mass": "kg"}
 """Units of the parameters of mjbeer's own scenes; a fill has none."""
-_TRUSTED, _STATUS = "trusted", "status"
 
 Axes = Mapping[str, np.ndarray]
 """The values of each parameter that varies; scenes are numbered with those of the last as neighbours."""
@@ -59,7 +57,6 @@ def sweep(
     quantity: Asked | Sequence[Asked] = (),
     executor: Executor | None = None,
     output: str | os.PathLike[str] | None = None,
-    overwrite: bool = False,
     progress: bool = True,
     **parameters: Any,
 ) -> "xarray.Dataset":
@@ -79,7 +76,7 @@ def sweep(
     The scenes are simulated by an `executor` of `concurrent.futures`, by default by a thread for each core; the result
     does not depend on it. With an `output`, whose name ends in .nc, what is there is saved as NetCDF every two seconds,
     and the same call goes on from there after an interruption. A file with other coordinates or attributes
-    is refused, and so is one whose first scene has other results than now; `overwrite` replaces it.
+    is refused, and so is one whose first scene has other results than now.
 
     A value that is not allowed is refused before anything runs. A scene that fails later has NaN and a status, one that
     leaves the range of its model a status, and the attribute "failed" has a line for each kind of reason, with the
@@ -90,8 +87,7 @@ def sweep(
       OutputError: if the output cannot be written.
       OSError: if the system ends one of the executor's processes.
     """
-    for name, value in (("overwrite", overwrite), ("progress", progress)):
-        require.boolean(name, value)
+    require.boolean("progress", progress)
     if executor is not None and not isinstance(executor, Executor):
         raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.format_value(executor)}")
     path = None if output is None else require.path(output)
@@ -99,12 +95,6 @@ def sweep(
         raise ParameterError(f"the file's name must end in .nc, got {require.format_value(str(path))}")
     if not callable(make):
         raise ParameterError(f"make must be a function that returns a scene, got {require.format_value(make)}")
-    try:
-        inspect.signature(make).bind(**parameters)
-    except TypeError as error:
-        raise ParameterError(f"make is {require.format_value(make)}: {error}") from error
-    except ValueError:  # a function in C without a signature
-        pass
     axes, fixed = _arranged({**parameters, "phi0": phi0, "phi_dot0": phi_dot0})
     require.warn_of_degrees(float(np.abs(axes.get("phi0", fixed.get("phi0"))).max()))
     setting = Setting.of(integrator, tolerance, rolling=rolling, timestep=timestep, friction=friction)
@@ -115,7 +105,7 @@ def sweep(
         warnings.warn(note, LiquidWarning, stacklevel=2)
     found = _empty(work, axes)
     if path is not None:
-        if path.exists() and not overwrite:
+        if path.exists():
             found = _continued(path, found, work, axes)
         _save(found, path)  # a file that cannot be written is an error before the first scene
     _fill(found, work, axes, executor, path, progress)
@@ -130,11 +120,7 @@ def _arranged(parameters: Mapping[str, Any]) -> tuple[dict[str, np.ndarray], dic
     fixed = {name: value for name, value in parameters.items() if name not in several}
     fixed |= {name: require.number(name, fixed[name]) for name in ("phi0", "phi_dot0") if name in fixed}
     if (count := math.prod(_shape(axes))) > _MOST_SCENES:
-        lengths = ", ".join(f"{name} has {len(values)}" for name, values in axes.items())
-        raise ParameterError(
-            f"a sweep has at most {_MOST_SCENES:,} scenes, got {count:,} ({lengths}): cut it into several, each with "
-            "an output of its own"
-        )
+        raise ParameterError(f"a sweep has at most {_MOST_SCENES:,} scenes, got {count:,}: cut it into several")
     return axes, fixed
 
 
@@ -159,17 +145,17 @@ def _named(axes: Axes, scene: int) -> str:
 
 def _asked(quantity: Asked | Sequence[Asked], axes: Axes) -> dict[str, Callable[[Run], Any]]:
     """Return what measures the quantities that are asked for besides those of every sweep, by their names."""
-    there, found = [*ALWAYS, "period", _TRUSTED, _STATUS], list[tuple[str, Callable[[Run], Any]]]()
+    there, found = [*ALWAYS, "period", "trusted", "status"], list[tuple[str, Callable[[Run], Any]]]()
     for each in quantity if isinstance(quantity, (list, tuple)) else (quantity,):
         if isinstance(each, str):
-            found += [("period", PERIOD.of)] * (require.choice("quantity", each, there) == "period")
+            found += [("period", PERIOD[0])] * (require.choice("quantity", each, there) == "period")
         elif callable(each):
             found.append((getattr(each, "__name__", type(each).__name__), each))
         else:
             raise ParameterError(
                 f"quantity must be a name or a function of a trajectory, got {require.format_value(each)}"
             )
-    names = [*there, *axes, *(name for name, measure in found if measure is not PERIOD.of)]
+    names = [*there, *axes, *(name for name, measure in found if measure is not PERIOD[0])]
     if clash := [name for name in names if names.count(name) > 1]:
         raise ParameterError(f"there are two quantities or parameters of the name {clash[0]!r}: give one another name")
     return dict(found)
@@ -180,16 +166,10 @@ def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
 
     MuJoCo's integrators end at a timestep, the first one at or after the duration.
     """
-    steps = duration / setting.timestep
-    whole = setting.timestep * math.ceil(steps * (1 - 1e-10))  # which allows for rounding
+    whole = setting.timestep * math.ceil(duration / setting.timestep * (1 - 1e-10))  # which allows for rounding
     end = duration if setting.tolerance is not None or setting.integrator in OWN else whole
     if not every_step:
         return np.array([end])
-    if steps > _MOST_SAMPLES:
-        raise ParameterError(
-            f"a duration of {duration!r} s has too many timesteps of {setting.timestep!r} s: at most "
-            f"{_MOST_SAMPLES:,}, at each of which a measured quantity has a sample"
-        )
     times = setting.timestep * np.arange(1 + math.floor(end / setting.timestep * (1 + 1e-12)))
     return times if times[-1] >= end * (1 - 1e-12) else np.append(times, end)
 
@@ -202,11 +182,11 @@ def _checked(work: Work, axes: Axes) -> list[str]:
     """
     notes: dict[str, str] = {}
 
-    def problem(scene: int) -> ParameterError | None:
+    def problem(scene: int) -> Exception | None:
         with collect_liquid_warnings() as warnings_of_liquids:
             try:
                 work.scene(*_varied(axes, [scene]))
-            except ParameterError as error:
+            except (ParameterError, TypeError) as error:  # the latter if `make` has no such parameter
                 return error
             except Exception:
                 pass
@@ -233,12 +213,11 @@ def _empty(work: Work, axes: Axes) -> "xarray.Dataset":
     dims, shape = tuple(axes), _shape(axes)
     variables: dict[str, Any] = {}
     for name in (*ALWAYS, *work.measures):
-        quantity = (ALWAYS | {"period": PERIOD}).get(name)
-        about = {"units": quantity.unit, "long_name": quantity.meaning} if quantity else {}
-        variables[name] = dims, np.full(shape, np.nan), about
-    variables[_TRUSTED] = dims, np.zeros(shape, np.bool_), {"long_name": "whether the run is trusted"}
+        _, *about = (ALWAYS | {"period": PERIOD}).get(name, (None,))
+        variables[name] = dims, np.full(shape, np.nan), dict(zip(("units", "long_name"), about, strict=False))
+    variables["trusted"] = dims, np.zeros(shape, np.bool_), {"long_name": "whether the run is trusted"}
     meaning = "; ".join(f"{number}: {text}" for number, text in STATUSES.items())
-    variables[_STATUS] = dims, np.full(shape, NOT_YET, np.int8), {"long_name": meaning}
+    variables["status"] = dims, np.full(shape, NOT_YET, np.int8), {"long_name": meaning}
     coordinates = {
         name: (name, values, {"units": _UNITS[name]} if name in _UNITS else {}) for name, values in axes.items()
     }
@@ -289,10 +268,10 @@ def _continued(path: pathlib.Path, new: "xarray.Dataset", work: Work, axes: Axes
         differ += ["quantities"] * (list(stored) != list(new) or stored.sizes != new.sizes)
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise ParameterError(f"{path} was not written by `mjbeer.sweep`: {error}") from error
-    advice = "give another name, or overwrite=True to replace it"
+    advice = "give another name, or remove it"
     if differ:
         raise ParameterError(f"{path} has another sweep, whose {', '.join(differ)} differ: {advice}")
-    for scene in np.flatnonzero(stored[_STATUS].values != NOT_YET)[:1].tolist():
+    for scene in np.flatnonzero(stored["status"].values != NOT_YET)[:1].tolist():
         (now,), *_ = measure(work, _varied(axes, [scene]))
         if not np.array_equal(now, [values.values.flat[scene] for values in stored.values()], equal_nan=True):
             raise ParameterError(
@@ -311,7 +290,7 @@ def _fill(
     progress: bool,
 ) -> None:
     """Simulate the scenes that a sweep lacks, and write them into its arrays; save them if there is a path."""
-    scenes = np.flatnonzero(found[_STATUS].values == NOT_YET)
+    scenes = np.flatnonzero(found["status"].values == NOT_YET)
     arrays = [variable.values for variable in found.values()]  # in the order in which they are measured
     failed = {_numberless(line): line for line in found.attrs["failed"].splitlines()}
     saved, done = time.monotonic(), 0

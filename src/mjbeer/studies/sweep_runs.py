@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Generator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -20,29 +20,20 @@ _PIECE, _LARGEST_PIECE = 0.25, 256
 """Pieces grow up to this time [s] and number of scenes: little enough to be lost with a process."""
 _WORKERS = 64
 """Number of workers that an executor is taken to have that does not tell, such as a cluster's."""
-
-
-class RunQuantity(NamedTuple):
-    """A number of a run, with its unit, and what it is in words."""
-
-    of: Callable[[Run], Any]
-    unit: str
-    meaning: str
-
-
-ALWAYS = {
-    "phi": RunQuantity(lambda run: run.phi[-1], "rad", "φ at the end"),
-    "u": RunQuantity(lambda run: run.u[-1], "m", "u at the end"),
-    "phi_dot": RunQuantity(lambda run: run.phi_dot[-1], "rad/s", "rate of φ at the end"),
-    "u_dot": RunQuantity(lambda run: run.u_dot[-1], "m/s", "velocity at the end"),
-    "error": RunQuantity(lambda run: run.error_estimate, "rad", "estimated error of φ and u/a"),
-    "lowest_normal": RunQuantity(lambda run: run.record.lowest_normal, "N", "lowest normal force"),
-    "friction_needed": RunQuantity(lambda run: run.record.needed_friction, "", "friction coefficient needed"),
-    "parting_time": RunQuantity(lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
-    "energy_drift": RunQuantity(lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
+ALWAYS: dict[str, tuple[Callable[[Run], Any], str, str]] = {
+    "phi": (lambda run: run.phi[-1], "rad", "φ at the end"),
+    "u": (lambda run: run.u[-1], "m", "u at the end"),
+    "phi_dot": (lambda run: run.phi_dot[-1], "rad/s", "rate of φ at the end"),
+    "u_dot": (lambda run: run.u_dot[-1], "m/s", "velocity at the end"),
+    "error": (lambda run: run.error_estimate, "rad", "estimated error of φ and u/a"),
+    "lowest_normal": (lambda run: run.record.lowest_normal, "N", "lowest normal force"),
+    "friction_needed": (lambda run: run.record.needed_friction, "", "friction coefficient needed"),
+    "parting_time": (lambda run: run.record.rolling_ends_at, "s", "time from which N < 0"),
+    "energy_drift": (lambda run: run.energy_drift, "", "energy drift over the swing's kinetic energy"),
 }
-"""The quantities that every sweep has, besides whether a run is trusted and its status."""
-PERIOD = RunQuantity(lambda run: 2 * math.pi / run.frequency(), "s", "period of the swing")
+"""The quantities that every sweep has, besides whether a run is trusted and its status: what measures each, its unit,
+and what it is in words."""
+PERIOD: tuple[Callable[[Run], Any], str, str] = (lambda run: 2 * math.pi / run.frequency(), "s", "period of the swing")
 WELL, REFUSED, DIVERGED, NOT_REACHED, NO_VALUE, BEYOND, NOT_YET = 0, 1, 2, 3, 4, 5, -1
 STATUSES = {
     WELL: "all went well",
@@ -100,7 +91,7 @@ def _outcome(work: Work, varied: Mapping[str, float]) -> tuple[list[float], str]
     try:
         scene, *start = work.scene(varied)
         run = integrate(scene, *start, work.setting, work.times)
-        values[: len(ALWAYS)] = [float(quantity.of(run)) for quantity in ALWAYS.values()]
+        values[: len(ALWAYS)] = [float(of(run)) for of, *_ in ALWAYS.values()]
         trusted = run.trusted
     except Exception as error:
         kinds = {DivergenceError: DIVERGED, ToleranceError: NOT_REACHED}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, exact, frozen, pendulum, simulate, sliding
-from mjbeer.exceptions import DissipationError, DivergenceError
+from mjbeer.exceptions import DivergenceError
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, WHOLE, OtherTool
 from tests.support.scenes import METAL
@@ -29,12 +29,6 @@ STARTS = {
     "frozen, metal can": (frozen(can=METAL), -0.5, 1.0),
     "pendulum": (pendulum(), 1.0, 0.0),
 }
-
-
-@pytest.mark.parametrize("scene", [sliding(drag=0.1), sliding(damping=0.1)])
-def test_losses_are_refused(scene: Scene) -> None:
-    with pytest.raises(DissipationError):
-        other_tools.right_hand_side(scene)
 
 
 def params(names: Iterable[str]) -> list[Any]:
@@ -94,10 +88,9 @@ def test_a_failure_is_raised(name: str, monkeypatch: pytest.MonkeyPatch, capfd: 
     assert capfd.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("broken", [ImportError("cannot open libfmt.so.11"), OSError("no such driver")], ids=str)
-def test_what_cannot_be_imported_is_absent_and_says_why(broken: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_imported_is_absent_and_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(_: str) -> None:
-        raise broken
+        raise OSError("cannot open libfmt.so.11")
 
     monkeypatch.setattr(importlib, "import_module", fail)
-    assert other_tools.absent() == {"heyoka": str(broken)}
+    assert other_tools.absent() == {"heyoka": "cannot open libfmt.so.11"}

@@ -1,7 +1,6 @@
 """The benchmark on short ladders: points, failures, files. Nothing is asserted of times."""
 
 import itertools
-import json
 import math
 import pathlib
 
@@ -9,7 +8,7 @@ import numpy as np
 import pytest
 
 from mjbeer.cli.app import main
-from mjbeer.exceptions import DivergenceError, ParameterError
+from mjbeer.exceptions import DivergenceError
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.points import CASES, INTERVAL, Benchmark, Curve, Point
 from mjbeer.studies.benchmark.timing import conduct, ladders, measure
@@ -52,20 +51,16 @@ def test_what_is_written_is_read(measured: Benchmark, tmp_path: pathlib.Path) ->
     (tmp_path / "study.json").write_text(measured.json())
     read = Benchmark.load(tmp_path / "study.json")
     assert (read.json(), read.cases) == (measured.json(), measured.cases)
-    (tmp_path / "study.json").write_text(json.dumps({"points": []}))
-    with pytest.raises(ParameterError, match=r"study\.json was not written by `mjbeer benchmark`"):
-        Benchmark.load(tmp_path / "study.json")
 
 
 def test_a_setting_that_fails_is_a_point_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the timesteps of DOP853 the coarsest ones diverge, and the ladder goes on to those that do not."""
-    curve = Curve("reduced", "DOP853")
-    stubs.benchmark(monkeypatch, {curve: ladders(CASES["hoop"].scene)[curve]})
-    done = conduct(["hoop"], False, None)
-    failed = [each for each in done.points if each.failure]
-    assert failed
-    assert all(math.isinf(each.error) and not each.times for each in failed)
-    assert min(each.error for each in done.of("hoop")) < 1e-10
+    """A second is too long for a timestep, and the ladder goes on."""
+    stubs.benchmark(monkeypatch, {Curve("reduced", "DOP853"): (1.0, 8e-3)})
+    failed, other = conduct(["frozen"], False, None).points
+    assert failed.failure is not None
+    assert math.isinf(failed.error)
+    assert not failed.times
+    assert other.error < 1e-10
 
 
 def test_a_tool_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,8 +74,6 @@ def test_a_tool_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytes
 
 def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:
     assert "heyoka" not in {curve.model for curve in ladders(CASES["frozen"].scene, missing=["heyoka"])}
-    with pytest.raises(ParameterError, match=r"scene must be one of 'sliding', .*; got 'bottle'"):
-        conduct(["bottle"], True, None)
     for name, case in CASES.items():
         found = ladders(case.scene)
         assert {each.model for each in found} >= {"reduced", *other_tools.OTHER_TOOLS}

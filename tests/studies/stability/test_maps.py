@@ -9,12 +9,10 @@ import pytest
 
 from mjbeer.checks import Result
 from mjbeer.cli.app import main
-from mjbeer.exceptions import ParameterError
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import SoftRow
-from mjbeer.studies.stability import short_runs, stability_maps, stability_study
-from mjbeer.studies.stability.short_runs import Plan
-from mjbeer.studies.stability.stability_maps import PLANS, measure
+from mjbeer.studies.stability import stability_maps, stability_study
+from mjbeer.studies.stability.stability_maps import PLANS, Plan, measure
 from mjbeer.studies.study import Study
 from tests.support import stubs
 
@@ -39,7 +37,7 @@ def test_every_cell_of_a_map_is_as_theory_says(plan: Plan) -> None:
     ("plan", "module", "name", "wrong"),
     [
         (Plan("solref", "discrete"), SoftRow, "at_end_of_step", lambda self, _: self),
-        (Plan("solref", "Euler"), short_runs, "spring", lambda t, z, d: predictions.direct(0.8 / t**2, 1.8 / t, d)),
+        (Plan("solref", "Euler"), stability_maps, "spring", lambda t, z, d: predictions.direct(0.8 / t**2, 1.8 / t, d)),
         (Plan("gravity", "RK4"), predictions, "polynomial", lambda _: [1, 1, 1 / 2, 1 / 6, 1 / 30]),
         (Plan("damping", "RK4"), predictions, "polynomial", lambda _: [1, 1, 1 / 2, 1 / 6, 1 / 30]),
         (Plan("damping", "discrete"), predictions, "IMPLICIT", ()),
@@ -53,11 +51,11 @@ def test_a_wrong_theory_does_not_agree(
     assert measure(plan, 5)["error"] > BOUND
 
 
-@pytest.mark.parametrize("extent", stability_study.EXTENTS)
-def test_checks_have_names_of_their_own(extent: str) -> None:
-    names = [(check.group, check.name) for check in stability_study.plan(extent)]
+@pytest.mark.parametrize("quick", [True, False])
+def test_checks_have_names_of_their_own(quick: bool) -> None:
+    names = [(check.group, check.name) for check in stability_study.plan(quick)]
     assert len(set(names)) == len(names)
-    assert {group for group, _ in names} == {"maps", *({"cases", "search"} if extent != "maps" else set())}
+    assert {group for group, _ in names} == {"maps", "cases", "search"}
 
 
 def test_the_study_is_written(
@@ -98,10 +96,3 @@ def test_stored_maps_are_what_is_measured_now(name: str) -> None:
         assert now["measured"][place] == kept["measured"][place][0] + kept["measured"][place][-1]
         stretches = ([edge or math.inf for edge in of["boundaries"][place]] for of in (kept, now))
         assert next(stretches) == pytest.approx(next(stretches), rel=0.05)
-
-
-@pytest.mark.parametrize("text", ["no JSON", "{}", "[]"])
-def test_another_file_is_refused(text: str, tmp_path: pathlib.Path) -> None:
-    (tmp_path / "maps.json").write_text(text)
-    with pytest.raises(ParameterError, match=r"maps\.json was not written by `mjbeer stability`"):
-        stability_maps.load(tmp_path / "maps.json")

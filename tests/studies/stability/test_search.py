@@ -14,11 +14,19 @@ import pytest
 import mjbeer
 from mjbeer.checks import Result
 from mjbeer.studies import study
-from mjbeer.studies.stability import search
+from mjbeer.studies.stability import stability_study
 from mjbeer.studies.stability.judge import BOTH, DOUBTED, REFUSED, RIGHT, SILENT, THEORY, Outcome, Trial
 from mjbeer.studies.stability.known_cases import KnownCase, Variant, cases
 from mjbeer.studies.stability.regions import REGIONS, random_trial
-from mjbeer.studies.stability.search import RANDOM, RUNS, SIZE, batch, tables, totals, try_case
+from mjbeer.studies.stability.stability_study import (
+    RANDOM,
+    SIZE,
+    batch,
+    random_checks,
+    search_tables,
+    totals,
+    try_case,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -32,14 +40,12 @@ SAMPLE += [case for case in CASES if len(case.variants) == 1 and case not in SAM
 """A nearly full can takes ten seconds to swing, and as many to simulate."""
 
 
-def test_no_run_is_wrong_and_silent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_run_is_wrong_and_silent() -> None:
     if EXAMPLES is None:
         assert not batch(0, FIXED)["silent"]
         return
-    monkeypatch.setitem(RUNS, "usual", int(EXAMPLES))
-    todo = [check for check in search.checks("usual", secrets.randbelow(10**9)) if check.group == RANDOM]
-    results = list(study.measured(todo, lambda _: None))
-    for table in tables(totals(results), results):
+    results = list(study.measured(random_checks(int(EXAMPLES), secrets.randbelow(10**9)), lambda _: None))
+    for table in search_tables(totals(results), results):
         print(table.markdown())
     assert all(result.passed for result in results)
 
@@ -48,7 +54,7 @@ def test_no_run_is_wrong_and_silent(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_sample_of_the_known_cases_ends_as_it_must(case: KnownCase, monkeypatch: pytest.MonkeyPatch) -> None:
     """A motion that no number of steps makes smooth is refused after fewer of them than usually."""
     monkeypatch.setattr("mjbeer.simulation.tolerance._EVALUATIONS", 500_000)
-    found = try_case(case, quick=True)
+    found = try_case(case)
     assert found["runs"]
     assert [run for run in found["runs"] if not run["as it must"]] == []
     assert found["error"] == 0
@@ -63,8 +69,7 @@ def test_what_must_be_is_what_is_compared(monkeypatch: pytest.MonkeyPatch) -> No
     found = try_case(KnownCase("name", "why", (*tried, Variant("e", bad, 1e-2))))
     assert [run["as it must"] for run in found["runs"]] == [True, True, True, False, False]
     assert (found["error"], found["why"]) == (2, "why")
-    assert len(try_case(KnownCase("name", "why", tried), quick=True)["runs"]) == 3
-    monkeypatch.setattr(search, "supported", lambda *_: False)
+    monkeypatch.setattr(stability_study, "supported", lambda *_: False)
     assert try_case(KnownCase("name", "why", tried[1:2]))["error"] == 1
 
 
@@ -115,7 +120,7 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
         Outcome("", "nobody", math.inf, 1e-4),
     ]
     outcomes = iter(ends)
-    monkeypatch.setattr(search, "judge", lambda _: next(outcomes))
+    monkeypatch.setattr(stability_study, "judge", lambda _: next(outcomes))
     found = batch(SIZE, len(ends))
     assert [run["number"] - SIZE for run in found["silent"]] == [5]
     assert found["silent"][0]["trial"].startswith("Trial(scene=")
@@ -125,13 +130,6 @@ def test_a_batch_counts_and_keeps_what_is_wrong(monkeypatch: pytest.MonkeyPatch)
         RIGHT: 6, DOUBTED: 4, SILENT: 2, REFUSED: 2, BOTH: 8, THEORY: 4, "nobody": 2, "doubted, yet right": 2,
         "above its estimate": 4, "above twice": 2,
     }  # fmt: skip
-    assert search.bound(all_of) is None
-    assert search.bound({RIGHT: 200, DOUBTED: 100, REFUSED: 50}) == pytest.approx(0.01)
+    assert stability_study.bound(all_of) is None
+    assert stability_study.bound({RIGHT: 200, DOUBTED: 100, REFUSED: 50}) == pytest.approx(0.01)
     assert pytest.approx(0.05, abs=2e-3) == 0.99**300
-
-
-def test_the_search_is_cut_into_batches_without_gaps() -> None:
-    for extent, least in RUNS.items():
-        firsts = [int(check.name.split()[2]) for check in search.checks(extent) if check.group == RANDOM]
-        assert firsts == list(range(0, SIZE * len(firsts), SIZE))
-        assert 0 <= SIZE * len(firsts) - least < SIZE

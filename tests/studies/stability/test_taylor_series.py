@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, Scene, frozen, hoop, pendulum, sliding
+from mjbeer.exceptions import ToleranceError
 from mjbeer.studies.stability import taylor_series as module
-from mjbeer.studies.stability.taylor_series import LongMotionError, series
+from mjbeer.studies.stability.taylor_series import series
 from mjbeer.theory.equations import kinetic_energy, potential_energy
 from mjbeer.theory.load import Load
 from tests.support import taylor
@@ -71,5 +72,5 @@ def test_without_gravity_and_rate_nothing_moves() -> None:
 
 def test_a_motion_that_is_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_STEPS", 100)
-    with pytest.raises(LongMotionError, match="more than 100 steps"):
+    with pytest.raises(ToleranceError, match="more than 100 steps"):
         series(sliding(), np.array([100.0]), 1.0)

@@ -6,10 +6,9 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, exact, hoop, simulate, sliding
+from mjbeer import Scene, simulate, sliding
 from mjbeer.checks import Check, Result
 from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
@@ -45,13 +44,6 @@ def test_a_wrong_motion_is_found_out() -> None:
     assert abs(2 * math.pi / wrong.frequency() / sliding().period(1.0) - 1) > 1e-9
 
 
-def test_takeoff_is_the_first_sample_in_the_air() -> None:
-    fall = exact(hoop(), np.linspace(0, 0.3, 4), 3.0)
-    lifted = dataclasses.replace(fall, lift=np.array([-1e-9, 0.0, 1e-6, 2e-6]))
-    assert fall.takeoff() is None
-    assert lifted.takeoff() == pytest.approx(math.pi - fall.phi[2])
-
-
 def more_damped(scene: Scene) -> Scene:
     law = Damping(*((1 + 1e-3) * each for each in scene.damping_law.coefficients))
     return dataclasses.replace(scene, damping=law if isinstance(scene.damping, Damping) else law.linear)
@@ -80,7 +72,5 @@ def test_a_wrong_model_is_found_out(
 
 
 def test_energy_that_obeys_the_other_law_is_found_out() -> None:
-    """It drifts in proportion to the number of swings in place of staying within bounds, and the reverse."""
-    free = sliding(0.0, can=Can.hoop(mass=1e5))
-    assert (motions._drift(free, "RK4", 10)[1] - 1).max() > 0.05
-    assert abs(motions._drift_exponent(free, "Euler", 32)) > 0.02
+    """It drifts in proportion to the number of swings in place of staying within bounds."""
+    assert motions._drift("RK4", 10) > 0.05

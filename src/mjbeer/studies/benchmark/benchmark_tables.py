@@ -1,14 +1,21 @@
-"""The tables of a benchmark, and the folder that it writes: the study, a diagram, and a summary."""
+"""The tables and the diagram of a benchmark, and the folder that it writes.
+
+The diagram is error over run time: a panel a scene, with mjbeer's own integrators in colour.
+"""
 
 import math
 import pathlib
+from collections.abc import Sequence
 
-from mjbeer.model.setting import ROLLINGS
+from matplotlib.axes import Axes
+
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, ROLLINGS
 from mjbeer.output import files
+from mjbeer.output.plots import COLOURS, add_tooltips, chart, name_below
 from mjbeer.output.terminal import Table
-from mjbeer.studies.benchmark import points, work_precision
+from mjbeer.studies.benchmark import points
 from mjbeer.studies.benchmark.other_tools import WHOLE
-from mjbeer.studies.benchmark.points import Benchmark, Point, milliseconds
+from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Curve, Point, milliseconds
 
 COMPARED = (1e-3, 1e-6, 1e-9, 1e-11)
 """The errors [rad] at which run times are compared with that of the best setting."""
@@ -22,6 +29,27 @@ theory.
 
 ![Work-precision diagram](work_precision.svg)
 """
+_DARK, _SCIPY, _HEYOKA = "#333333", COLOURS[4], COLOURS[3]
+_LINES: dict[Curve, tuple[str, str, str]] = {
+    Curve("reduced", DOP853): ("mjbeer's DOP853", COLOURS[0], "-o"),
+    Curve("reduced", GAUSS_JACKSON): ("mjbeer's Gauss-Jackson (multistep)", COLOURS[1], "-s"),
+    Curve("reduced", CHOSEN, TOLERANCE): ("mjbeer to a tolerance", COLOURS[2], "-D"),
+    Curve("contact", DOP853): ("mjbeer's DOP853, in contact", COLOURS[5], ":o"),
+    Curve("reduced", "RK4"): ("MuJoCo's RK4", _DARK, "-^"),
+    Curve("contact", "RK4"): ("MuJoCo's RK4, in contact", _DARK, ":^"),
+    Curve("reduced", "Euler"): ("MuJoCo's Euler", _DARK, "-x"),
+    Curve("equality, slide first", "Euler"): ("equality as usually written", "black", "*"),
+    Curve("equality, hinge first", "Euler"): ("the same, hinge first", "black", "p"),
+    Curve("contact, defaults", "Euler"): ("contact as usually written", "black", "X"),
+    Curve("SciPy DOP853", "", TOLERANCE): ("SciPy's DOP853, interpreted", _SCIPY, "--v"),
+    Curve("SciPy odeint", "", TOLERANCE): ("SciPy's odeint (LSODA), interpreted", _SCIPY, "--<"),
+    Curve("heyoka", "", TOLERANCE): ("heyoka", _HEYOKA, "-P"),
+}
+"""The curves that are drawn, each with its name, its colour, and its line and marker: those that somebody would choose,
+and single points of models as people usually write them, at 2 ms. SciPy calls interpreted Python, drawn with dashes;
+all other curves are of compiled code. The tables have what the others cost."""
+_FLOOR, _CEILING = 1e-15, 10.0
+"""Smaller errors [rad] are drawn at the floor, since a logarithmic axis has no zero; larger ones are no motion."""
 
 
 def write(study: Benchmark, folder: pathlib.Path) -> None:
@@ -32,7 +60,7 @@ def write(study: Benchmark, folder: pathlib.Path) -> None:
     """
     (folder / "summary.md").unlink(missing_ok=True)  # an earlier one would not match the study
     files.write(folder / "study.json", study.json())
-    work_precision.draw(study, folder / "work_precision")
+    draw(study, folder / "work_precision")
     machine = study.machine
     versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
     absent = [f"\n{name} is absent: {reason}" for name, reason in study.settings["absent"].items()]
@@ -138,3 +166,46 @@ def two_digits(value: float) -> str:
 def _evaluations(found: list[Point], error: float) -> str:
     best = points.cheapest(found, error)
     return "" if best is None or best.evaluations is None else f" ({best.evaluations:,})"
+
+
+def draw(study: Benchmark, path: pathlib.Path) -> None:
+    """Draw the scenes of a study, each in a panel, and write them to `path` with .svg appended.
+
+    In the SVG a point has its setting, its error and its run time as a tooltip.
+
+    Raises:
+      OutputError: if a file cannot be written.
+    """
+    cases = study.cases
+    columns = min(2, len(cases))
+    rows = -(-len(cases) // columns)
+    stories = [(story := CASES[case].story)[0].upper() + story[1:] for case in cases]
+    title, subtitle = "What accuracy costs: mjbeer, MuJoCo, SciPy and heyoka", ""
+    if len(cases) == 1:
+        title, _, subtitle = stories[0].partition(", ")
+    width, height = (6.2, 6.4) if len(cases) == 1 else (11, 4.4 * rows + 1.5)
+    with chart(path, rows, columns, width, height, title, subtitle) as panels:
+        for axes in panels[len(cases) :]:
+            axes.set_visible(False)
+        for axes, case, story in zip(panels, cases, stories, strict=False):
+            _draw(axes, study.of(case))
+            axes.set(xscale="log", yscale="log", ylim=(_FLOOR / 3, _CEILING), title=story if len(cases) > 1 else "")
+            axes.set(xlabel="run time of 2 s of motion [ms]", ylabel="largest error of φ and u/a [rad]")
+            axes.minorticks_off()
+        name_below(panels, 3 if len(cases) > 1 else 2)
+
+
+def _draw(axes: Axes, found: Sequence[Point]) -> None:
+    """Draw the curves of a scene that have points, and give each point a tooltip."""
+    for curve, (name, colour, line) in _LINES.items():
+        if shown := [point for point in found if point.curve == curve and point.error < _CEILING]:
+            times, errors = [1e3 * point.time for point in shown], [max(point.error, _FLOOR) for point in shown]
+            size = 9 if curve.model in USUAL else 5
+            (drawn,) = axes.plot(times, errors, line, label=name, color=colour, markersize=size, linewidth=1.3)
+            add_tooltips(drawn, [_tooltip(point, name) for point in shown])
+
+
+def _tooltip(point: Point, name: str) -> str:
+    """Return what a point is: its curve, timestep or tolerance, error and run time."""
+    value = f"{point.value:g}" if point.parameter == TOLERANCE else milliseconds(point.value)
+    return f"{name}, {point.parameter} {value}: error {point.error:.1e} rad, run time {milliseconds(point.time)}"

@@ -23,7 +23,7 @@ import numpy as np
 from mjbeer.exceptions import DivergenceError
 from mjbeer.model.setting import Setting
 from mjbeer.simulation.run import integrate as simulate
-from mjbeer.theory.scene import Scene, require_no_dissipation
+from mjbeer.theory.scene import Scene
 
 RightHandSide = Callable[[float, Sequence[Any]], tuple[Any, ...]]
 Samples = tuple[np.ndarray, np.ndarray, int | None]
@@ -41,13 +41,9 @@ _MOST_TAYLOR_STEPS = 1_000_000  # without a limit heyoka may never end; a run ov
 def right_hand_side(scene: Scene, sin: Function = math.sin, cos: Function = math.cos) -> RightHandSide:
     """Return the function f(t, state) that gives the rates of change of a scene's state [rad, m, and per s].
 
-    Pass the state as plain floats: with NumPy's scalars the function takes four times as long. With the `sin` and `cos`
-    of a library of symbols, it returns symbols.
-
-    Raises:
-      DissipationError: if the scene has damping or drag.
+    The scene has no damping. Pass the state as plain floats: with NumPy's scalars the function takes four times as
+    long. With the `sin` and `cos` of a library of symbols, it returns symbols.
     """
-    require_no_dissipation(scene, "no equations written by hand")
     form, mass = scene.oscillator, scene.effective_mass
     p, q = form.depth * math.sin(form.bottom), form.depth * math.cos(form.bottom)
     slope, half, quarter, middle = form.ramp, form.chord / 2, form.chord / 4, form.base + form.chord / 2

@@ -4,27 +4,27 @@ import gc
 import math
 import time
 from collections.abc import Callable, Container, Sequence
+from dataclasses import replace
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import mujoco
 import numpy as np
 from rich.console import Console
 
-from mjbeer import require
 from mjbeer.exceptions import DivergenceError, MjbeerError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.model.build import specify
 from mjbeer.model.joints import initial_state, to_coordinates
-from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, supported
+from mjbeer.model.setting import DOP853, GAUSS_JACKSON, INTEGRATORS, ROLLINGS, Setting, supported
 from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.tolerance import even_at_most
 from mjbeer.studies.benchmark import other_tools
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
-from mjbeer.studies.benchmark.points import CASES, CHOSEN, TOLERANCE, USUAL, Benchmark, Case, Curve, Point
+from mjbeer.studies.benchmark.points import CASES, CHOSEN, TIMESTEP, TOLERANCE, USUAL, Benchmark, Case, Curve, Point
 from mjbeer.studies.study import machine
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -35,28 +35,16 @@ _SHORT = 0.05
 """A run shorter than this [s] is timed twice and the first time dropped, so that caches and predictors are warm."""
 
 
-class Rung(NamedTuple):
-    """A setting of a case, set up once and run often."""
-
-    solve: Callable[[], Any]
-    """Runs once; this is what is timed."""
-    motion: Callable[[Any], Samples]
-    """Makes phi, u and the number of evaluations from what `solve` returned."""
-
-
 def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Benchmark:
     """Measure the cases of some names: first all errors, then all times, in rounds.
 
     A setting that fails is a point with the reason. A tool that cannot be imported takes no part; the settings of the
     study have its name and the reason.
-
-    Raises:
-      ParameterError: if a case does not exist.
     """
-    cases, missing = [CASES[require.choice("scene", name, CASES)] for name in names], other_tools.absent()
+    cases, missing = [CASES[name] for name in names], other_tools.absent()
     curves = [(case, *curve) for case in cases for curve in ladders(case.scene, quick, missing).items()]
     study = Benchmark({"cases": list(names), "quick": quick, "repeats": REPEATS, "absent": missing}, machine(), [])
-    rungs: dict[str, list[tuple[Point, Rung]]] = {case.name: [] for case in cases}
+    ready: dict[str, list[tuple[Point, Callable[[], Any]]]] = {case.name: [] for case in cases}
     with progress_bar(console, len(curves) + REPEATS * len(cases)) as begin:
         for case, curve, values in curves:
             begin(f"{case.name}: {curve.label}")
@@ -65,7 +53,7 @@ def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Bench
                 point = Point(case.name, curve.model, curve.method, curve.parameter, value)
                 study.points.append(point)
                 try:
-                    rungs[case.name].append((point, measure(case, point, truth)))
+                    ready[case.name].append((point, measure(case, point, truth)))
                 except MjbeerError as error:
                     point.failure = str(error)
         for repeat in range(REPEATS):
@@ -74,8 +62,8 @@ def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Bench
                 gc.collect()
                 gc.disable()
                 try:
-                    for point, rung in rungs[case.name]:
-                        point.times.append(_seconds(rung.solve))
+                    for point, solve in ready[case.name]:
+                        point.times.append(_seconds(solve))
                 finally:
                     gc.enable()
     return study
@@ -117,28 +105,33 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
     return found | {Curve(name, "", TOLERANCE): tool.tolerances[::every] for name, tool in others.items()}
 
 
-def measure(case: Case, point: Point, truth: Trajectory) -> Rung:
+def measure(case: Case, point: Point, truth: Trajectory) -> Callable[[], Any]:
     """Set a point up and run it once; store its set-up time, evaluations, and errors against the exact motion in it.
+
+    Returned is what runs it again, to be timed.
 
     Raises:
       MjbeerError: if it cannot be set up, or fails, or its end is not finite.
     """
     began = time.perf_counter()
-    rung = _set_up(case, point)
+    solve, motion = _set_up(case, point)
     point.setup = time.perf_counter() - began
-    phi, u, point.evaluations = rung.motion(rung.solve())
+    phi, u, point.evaluations = motion(solve())
     if not (math.isfinite(phi[-1]) and math.isfinite(u[-1])):  # a value that is not finite stays so
         raise DivergenceError(f"{point.curve.label}: the motion did not stay finite")
     point.phi_max = float(np.abs(phi - truth.phi).max())
     point.u_max = float(np.abs(u - truth.u).max()) / truth.scene.can.radius
-    return rung
+    return solve
 
 
-def _set_up(case: Case, point: Point) -> Rung:
-    """Return what runs a point: another tool, a model as people usually write it, or a setting of mjbeer."""
+def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any], Samples]]:
+    """Return what runs a point, and what makes samples from what it returns.
+
+    The point is another tool, a model as people usually write it, or a setting of mjbeer.
+    """
     scene, times, value = case.scene, case.times, point.value
     if point.model in OTHER_TOOLS:
-        return Rung(OTHER_TOOLS[point.model].set_up(scene, case.phi0, 0.0, times, value), lambda found: found)
+        return OTHER_TOOLS[point.model].set_up(scene, case.phi0, 0.0, times, value), lambda found: found
     own: Dop853 | GaussJackson | None = None
     if point.model in USUAL:
         model = usual_model(point.model, scene)
@@ -146,7 +139,10 @@ def _set_up(case: Case, point: Point) -> Rung:
         steps = np.rint(times / value).astype(np.int64)
         solve = partial(states_after, model, mujoco.MjData(model), begin, steps)
     else:
-        simulator = Simulator(scene, point.curve.setting(value))
+        given: dict[str, Any] = {"tolerance": value}
+        if point.parameter == TIMESTEP:
+            given = {"integrator": point.method, "timestep": value}
+        simulator = Simulator(scene, replace(Setting(), rolling=point.model, **given))
         model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)
         if point.method == DOP853:
             own = Dop853(model)
@@ -163,7 +159,7 @@ def _set_up(case: Case, point: Point) -> Rung:
             count = round(float(times[-1]) / value) * (4 if point.method == "RK4" else 1)
         return found.phi, found.u, count
 
-    return Rung(solve, motion)
+    return solve, motion
 
 
 def _seconds(solve: Callable[[], Any]) -> float:

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import mujoco
 import numpy as np
 
 from mjbeer.exceptions import (
@@ -18,10 +19,11 @@ from mjbeer.exceptions import (
     UnsupportedError,
     UntrustedWarning,
 )
+from mjbeer.model.free import attach
+from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import FRICTION, Integrator, Rolling
 from mjbeer.simulation.simulate import simulate
-from mjbeer.studies import attached_can
-from mjbeer.studies.stability.taylor_series import LongMotionError, series
+from mjbeer.studies.stability.taylor_series import series
 from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import exact, exact_motion
 from mjbeer.theory.record import ERROR
@@ -133,13 +135,46 @@ def _judge_attached(trial: Trial) -> Outcome:
     scene, duration = trial.scene, trial.timestep * trial.steps
     with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
-        times, phi = attached_can.roll(scene, trial.phi0, duration, trial.timestep)
+        times, phi = roll(scene, trial.phi0, duration, trial.timestep)
     motion = exact(scene, times, trial.phi0)
     rolls = times <= motion.rolls_until(trial.friction)
     error = float(np.abs(phi - motion.phi)[rolls].max(initial=0.0) / max(1.0, np.abs(motion.phi - trial.phi0).max()))
     doubts = [str(each.message) for each in warned if issubclass(each.category, UntrustedWarning)]
     verdict = DOUBTED if doubts else RIGHT if error <= ERROR else SILENT
     return Outcome(verdict, THEORY, error, ERROR, "; ".join(doubts))
+
+
+def roll(scene: Scene, phi0: float, duration: float, timestep: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return times [s], and phi [rad] at each, of a can that `mjbeer.attach` puts into a world with a slope.
+
+    It is let go at `phi0` [rad], and rolls there in plain MuJoCo.
+    """
+    spec, radius, tilt = mujoco.MjSpec(), scene.can.radius, scene.incline
+    spec.option.timestep = timestep
+    spec.option.integrator = int(mujoco.mjtIntegrator.mjINT_RK4)
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
+    slope = spec.worldbody.add_frame(quat=[math.cos(tilt / 2), 0, math.sin(tilt / 2), 0])
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1]).set_frame(slope)
+    attach(spec, scene)
+    model = spec.compile()
+    data, (u, _), swings = mujoco.MjData(model), scene.start(phi0, 0.0), scene.attachment == "sliding"
+    down, normal = np.array([math.cos(tilt), 0, -math.sin(tilt)]), np.array([math.sin(tilt), 0, math.cos(tilt)])
+    half = (tilt + u / radius) / 2
+    data.joint("can-free").qpos = [*(radius * (1 - 1e-9) * normal + u * down), math.cos(half), 0, math.sin(half), 0]
+    if swings:
+        data.joint("can-swing").qpos = phi0 - u / radius
+    mujoco.mj_forward(model, data)
+    angles = np.empty((2, math.ceil(duration / timestep)))
+    with quiet():
+        for place in range(angles.shape[1]):
+            ahead = data.body("can-can").xmat.reshape(3, 3)[:, 0]
+            angles[:, place] = (
+                math.atan2(-ahead @ normal, ahead @ down),
+                data.joint("can-swing").qpos[0] if swings else 0.0,
+            )
+            mujoco.mj_step(model, data)
+    phi = np.unwrap(angles[0]) + angles[1]
+    return timestep * np.arange(len(phi)), phi + 2 * math.pi * round((phi0 - phi[0]) / (2 * math.pi))
 
 
 def truth(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) -> tuple[str, list[np.ndarray], float]:
@@ -183,7 +218,7 @@ def _by_series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float) ->
     """Return the motion by Taylor series; None if it takes too many steps, or is damped."""
     try:
         return None if scene.dissipates else _angles(scene, series(scene, times, phi0, phi_dot0))
-    except LongMotionError:
+    except ToleranceError:
         return None
 
 

@@ -1,22 +1,46 @@
-"""The stability study: maps with the borders of linear theory, and a search for runs that are wrong and silent."""
+"""The stability study: maps with the borders of linear theory, and a search for runs that are wrong and silent.
+
+The search makes known cases and random ones, and all come before the same judge.
+"""
 
 import datetime
 import json
+import math
 import pathlib
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from functools import partial
+from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check
+from mjbeer.checks import Check, Result
+from mjbeer.model.setting import supported
 from mjbeer.output import files
 from mjbeer.output.terminal import Table
 from mjbeer.studies import study as studies
-from mjbeer.studies.stability import search, stability_maps
+from mjbeer.studies.stability import stability_maps
+from mjbeer.studies.stability.judge import DOUBTED, JUDGES, REFUSED, RIGHT, SILENT, VERDICTS, judge
+from mjbeer.studies.stability.known_cases import KnownCase, cases
+from mjbeer.studies.stability.regions import REGIONS, random_trial
 from mjbeer.studies.study import Study
+from mjbeer.theory.record import ERROR
 
 COMMAND = "mjbeer stability"
-EXTENTS = ("quick", "usual", "long", "maps")
-"""How much a study measures: "long" everything, "maps" nothing but all maps; the other two differ in the number of
-random runs."""
+KNOWN, RANDOM = "cases", "search"
+"""The groups of a study with known and with random cases."""
+SIZE = 4 * len(REGIONS)
+"""Number of random runs in a batch, which takes some seconds."""
+RUNS, FEW_RUNS = 3000, 250
+"""Least number of random runs in a study and in a quick one."""
+NEEDLESS, ABOVE, TWICE = "doubted, yet right", "above its estimate", "above twice"
+"""Counted besides: runs that warn although their samples are right, which is no fault where a can slips or would be
+pulled; and trusted runs whose error is above what they admit, or above twice that."""
+_ROUNDING = 1e-9
+"""Errors below this [rad] are not above an estimate: a second run cannot see rounding."""
+_RULE_OF_THREE = 3.0
+"""-ln(0.05): where n runs had no fault, a share of faults above 3/n would have shown one with a probability of 95 %."""
 _READ = """
 A run is **right** if it is trusted, and phi and u/a stay within 0.01 rad of theory (relative beyond 1 rad), and within
 its tolerance if it has one. It is **refused** if it ends in an error that states the reason, and **doubted** if it
@@ -26,13 +50,117 @@ share no code judge a motion without damping; damped ones, liquids and attached 
 """How to read the tables of the search."""
 
 
-def plan(extent: str) -> list[Check]:
-    """Return all checks of a study of this extent, one of `EXTENTS`."""
-    maps = stability_maps.checks(sample=extent in ("quick", "usual"))
-    return maps if extent == "maps" else [*maps, *search.checks(extent)]
+def plan(quick: bool) -> list[Check]:
+    """Return all checks of a study; a `quick` one has a sample of the maps, coarser, and fewer random runs."""
+    known = [
+        Check(KNOWN, each.name, partial(try_case, each), bound=0, unit="runs", reason="each ends as it must")
+        for each in cases()
+    ]
+    return [*stability_maps.checks(sample=quick), *known, *random_checks(FEW_RUNS if quick else RUNS)]
 
 
-def conduct(folder: pathlib.Path, extent: str, console: Console) -> Study:
+def random_checks(runs: int, number: int = 0) -> list[Check]:
+    """Return the checks of at least so many random runs, from a `number` on."""
+    named = {first: f"random runs {first} to {first + SIZE - 1}" for first in range(number, number + runs, SIZE)}
+    reason = "none is wrong and silent"
+    return [Check(RANDOM, name, partial(batch, first), "", 0, "runs", reason) for first, name in named.items()]
+
+
+def try_case(case: KnownCase) -> dict[str, Any]:
+    """Return how the variants of a known case ended; "error" counts the wrong ends."""
+    runs = []
+    for each in case.variants:
+        outcome = judge(each.trial)
+        good = outcome.verdict != SILENT and outcome.error <= each.within
+        if not supported(each.trial.scene, each.trial.rolling):
+            good = outcome.verdict == REFUSED
+        runs.append({"setting": each.setting, "as it must": good} | asdict(outcome))
+    return {"error": sum(not run["as it must"] for run in runs), "why": case.why, "runs": runs}
+
+
+def batch(first: int, size: int = SIZE) -> dict[str, Any]:
+    """Return how the random runs from the number `first` on ended; "error" counts those that are wrong and silent.
+
+    "kinds" has the counts by kind of model, with what judged the runs; "silent" has all that is known of those that
+    must not be.
+    """
+    kinds: dict[str, Counter[str]] = {}
+    silent = []
+    for number in range(first, first + size):
+        trial = random_trial(number)
+        outcome = judge(trial)
+        trusted = outcome.verdict == RIGHT
+        counted = {
+            outcome.verdict: True,
+            outcome.judged_by: True,
+            NEEDLESS: outcome.verdict == DOUBTED and outcome.error <= ERROR,
+            ABOVE: trusted and outcome.error > outcome.admitted + _ROUNDING,
+            TWICE: trusted and outcome.error > 2 * outcome.admitted + _ROUNDING,
+        }
+        kinds.setdefault(trial.kind, Counter()).update(name for name, holds in counted.items() if holds and name)
+        if outcome.verdict == SILENT:
+            region = REGIONS[number % len(REGIONS)].name
+            silent.append({"number": number, "region": region, **asdict(outcome), "trial": repr(trial)})
+    return {"error": len(silent), "kinds": {kind: dict(of) for kind, of in kinds.items()}, "silent": silent}
+
+
+def totals(results: Iterable[Result]) -> dict[str, Any]:
+    """Return the counts of a study's runs, as numbers: of known cases, and of random ones by kind of model and all."""
+    known, kinds = Counter[str](), dict[str, Counter[str]]()
+    for result in results:
+        if result.group == KNOWN:
+            known.update(run["verdict"] for run in result.values["runs"])
+        elif result.group == RANDOM:
+            for kind, counts in result.values["kinds"].items():
+                kinds.setdefault(kind, Counter()).update(counts)
+    ordered = dict(sorted(kinds.items())) | {"all": sum(kinds.values(), Counter())}
+    return {"known": dict(known), "kinds": {kind: dict(of) for kind, of in ordered.items()}}
+
+
+def bound(counts: dict[str, int]) -> float | None:
+    """Return the largest share of silent runs that a count of 0 allows, at 95 %: 3/n; None if some were silent."""
+    judged = sum(counts.get(verdict, 0) for verdict in (RIGHT, DOUBTED))
+    return None if counts.get(SILENT) or not judged else _RULE_OF_THREE / judged
+
+
+def search_tables(found: dict[str, Any], results: Sequence[Result] = ()) -> list[Table]:
+    """Return the tables of a search from its totals: known cases, random ones, and the silent runs of `results`."""
+    columns, last = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE), "share of silent runs below, at 95 %"
+    shares = ["-" if (share := bound(counts)) is None else f"{share:.1g}" for counts in found["kinds"].values()]
+    kinds = [(*row, share) for row, share in zip(_rows(found["kinds"], columns), shares, strict=True)]
+    silent = [run for of in results for run in of.values.get("silent", ())]
+    wrong = [(str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]) for run in silent]
+    made = [
+        Table("Known cases", ("cases", "runs", *VERDICTS), _rows({"all": found["known"]}, VERDICTS)),
+        Table("Random runs, by model and by what judged them", ("model", "runs", *columns, last), kinds),
+        Table("Silent runs, which must not be", ("number", "region", "error [rad]", "trial"), wrong, left=(0, 1, 3)),
+    ]
+    return [table for table in made if table.rows]
+
+
+def _rows(counted: dict[str, dict[str, int]], columns: Sequence[str]) -> list[tuple[str, ...]]:
+    """Return a row for each name: the number of its runs, and counts."""
+    return [
+        (name, str(sum(of.get(verdict, 0) for verdict in VERDICTS)), *(str(of.get(column, 0)) for column in columns))
+        for name, of in counted.items()
+    ]
+
+
+def _table_of_cases(results: Sequence[Result]) -> Table:
+    """Return a table with a line a known case: how its runs ended, with the largest error of each way, and why."""
+    rows = []
+    for result in results:
+        ended = []
+        for verdict in VERDICTS:
+            runs = [run for run in result.values["runs"] if run["verdict"] == verdict]
+            errors = [run["error"] for run in runs if run["error"] not in (None, math.inf)]
+            ended.append(f"{len(runs)}" + (f" ({max(errors):.0e})" if errors else ""))
+        rows.append((result.name, *ended, result.values["why"]))
+    columns = ("case", *VERDICTS, "why it is one")
+    return Table("Known cases: runs, and the largest error [rad]", columns, rows, left=(0, 5))
+
+
+def conduct(folder: pathlib.Path, quick: bool, console: Console) -> Study:
     """Measure what the study in `folder` lacks, on all cores, and return the study, kept as stability.jsonl.
 
     The summary of an earlier study is removed first.
@@ -43,21 +171,19 @@ def conduct(folder: pathlib.Path, extent: str, console: Console) -> Study:
       ParameterError: if stability.jsonl is there but is not such a study.
     """
     (folder / "summary.md").unlink(missing_ok=True)
-    return studies.run(plan(extent), console, folder / "stability.jsonl", COMMAND, {"extent": extent})
+    return studies.run(plan(quick), console, folder / "stability.jsonl", COMMAND, {"quick": quick})
 
 
 def tables(study: Study) -> list[Table]:
     """Return the tables for the terminal; that with a line a case appears only in the summary."""
-    shown = [stability_maps.table(study.of(stability_maps.MAPS))]
-    if study.of(search.RANDOM):
-        shown += search.tables(search.totals(study.results), study.results)
-    return shown
+    maps = stability_maps.table(study.of(stability_maps.MAPS))
+    return [maps, *search_tables(totals(study.results), study.results)]
 
 
 def to_json(study: Study) -> str:
     """Return the study as one JSON document: all results, and the totals of the search as numbers."""
     content = study.about | {"failed": [result.name for result in study.failed]}
-    content |= {"totals": search.totals(study.results), "results": [result.as_json() for result in study.results]}
+    content |= {"totals": totals(study.results), "results": [result.as_json() for result in study.results]}
     return json.dumps(content) + "\n"
 
 
@@ -69,14 +195,12 @@ def write(study: Study, folder: pathlib.Path) -> None:
     """
     maps = stability_maps.to_json(study, datetime.date.today())
     files.write(folder / "maps.json", maps)
-    totals = study.about | search.totals(study.results)
-    files.write(folder / "totals.json", json.dumps(totals, indent=1) + "\n")
+    files.write(folder / "totals.json", json.dumps(study.about | totals(study.results), indent=1) + "\n")
     count = len(study.failed)
     verdict = f"**{count} did not come out as they must.**" if count else "All came out as they must."
     lines = ["# mjbeer: stability", "", verdict, _READ]
     for name, draw in stability_maps.figures(json.loads(maps)).items():
         draw(folder / name)
         lines += [f"![{name}]({name}.svg)", "", stability_maps.FAMILIES[name.removeprefix("stability-")].caption, ""]
-    known = [search.table_of_cases(study.of(search.KNOWN))] if study.of(search.KNOWN) else []
-    lines += [table.markdown() for table in (*tables(study), *known)]
+    lines += [table.markdown() for table in (*tables(study), _table_of_cases(study.of(KNOWN)))]
     files.write(folder / "summary.md", "\n".join(lines))

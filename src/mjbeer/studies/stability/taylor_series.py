@@ -35,8 +35,9 @@ import math
 import numpy as np
 from numba import njit
 
+from mjbeer.exceptions import ToleranceError
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.scene import Scene, require_no_dissipation
+from mjbeer.theory.scene import Scene
 
 MOST_STEPS = 400_000
 """Largest number of steps of a motion, which take some two seconds. A swing takes about twenty."""
@@ -48,56 +49,43 @@ _LAST = 3
 """Number of last terms that must be small: one or two may be small by chance."""
 
 
-class LongMotionError(Exception):
-    """A motion takes more than `MOST_STEPS` steps; the message says so."""
-
-
 def series(scene: Scene, times: np.ndarray, phi0: float, phi_dot0: float = 0.0) -> Coordinates:
-    """Return the motion at increasing `times` [s] that starts at `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
+    """Return the undamped motion at increasing `times` [s] from `phi0` [rad] with `phi_dot0` [rad/s] at time 0.
 
-    A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. Units of mass, length and time are powers of
-    two near the load's mass, the radius and the fastest time of the motion, so that no conversion is rounded.
+    A sliding load starts at s = 0 with s' = 0, a frozen one at u = a phi. The unit of time is a power of two near the
+    fastest time of the motion, so that no conversion is rounded, and no coefficient overflows.
 
     Raises:
-      DissipationError: if the scene has damping or drag.
-      LongMotionError: if the motion is too long.
+      ToleranceError: if the motion takes more than `MOST_STEPS` steps.
     """
-    require_no_dissipation(scene, "no series")
     can, load, time = scene.can, scene.load, np.asarray(times, dtype=float)
-    mass, length = _unit(load.mass), _unit(can.radius)
     pace = abs(phi_dot0) + math.sqrt(scene.gravity / can.radius)
-    unit = _unit(1 / pace) if pace > 0 else 1.0
-    a, b, m, m_can = can.radius / length, load.offset / length, load.mass / mass, can.mass / mass
-    inertia, can_inertia = load.inertia / (mass * length**2), can.inertia / (mass * length**2)
-    g_s, g_c = (scene.gravity * unit**2 / length * part(scene.incline) for part in (math.sin, math.cos))
+    unit = 2.0 ** math.frexp(1 / pace)[1] if pace > 0 else 1.0
+    a, b, m, m_can, inertia = can.radius, load.offset, load.mass, can.mass, load.inertia
+    g_s, g_c = (scene.gravity * unit**2 * part(scene.incline) for part in (math.sin, math.cos))
     if sliding := scene.attachment == "sliding":
-        rim = can_inertia / a**2
+        rim = can.inertia / a**2
         total = m + m_can + rim
         square = (m * b) ** 2 / total
         moments = inertia + m * b**2 * (m_can + rim) / total, square
         form = (1.0, 0.0, 0.0, -m * b * g_c, -m * b * rim * g_s / total, 0.0, square, *moments)
     else:
-        moments = inertia + can_inertia + m_can * a**2 + m * (a - b) ** 2, 4 * m * b * a
+        moments = inertia + can.inertia + m_can * a**2 + m * (a - b) ** 2, 4 * m * b * a
         push = g_s * (m_can * a + m * (a - b)), 2 * m * b * g_s
         form = (0.5, *push, 0.0, 0.0, 2 * m * b * g_c, 2 * m * b * a, *moments)
     samples = np.empty((len(time), 2))
     if not _integrate(form, phi0, phi_dot0 * unit, time / unit, samples, MOST_STEPS):
-        raise LongMotionError(f"the motion takes more than {MOST_STEPS} steps")
+        raise ToleranceError(f"the motion takes more than {MOST_STEPS} steps")
     phi, phi_dot = samples[:, 0], samples[:, 1] / unit
     u, u_dot = can.radius * phi, can.radius * phi_dot
     if sliding:  # M u - m b sin(phi) falls freely from its value at the start
-        rim, lever = can.mass + can.inertia / can.radius**2, load.mass * load.offset
-        place, speed = rim * load.offset * math.sin(phi0), rim * load.offset * math.cos(phi0) * phi_dot0
-        fall = (load.mass + can.mass) * scene.gravity * math.sin(scene.incline)
-        u = (place + speed * time + fall * time**2 / 2 + lever * np.sin(phi)) / (load.mass + rim)
-        u_dot = (speed + fall * time + lever * np.cos(phi) * phi_dot) / (load.mass + rim)
+        rest = m_can + can.inertia / a**2
+        place, speed = rest * b * math.sin(phi0), rest * b * math.cos(phi0) * phi_dot0
+        fall = (m + m_can) * scene.gravity * math.sin(scene.incline)
+        u = (place + speed * time + fall * time**2 / 2 + m * b * np.sin(phi)) / (m + rest)
+        u_dot = (speed + fall * time + m * b * np.cos(phi) * phi_dot) / (m + rest)
     angles = {"phi": phi, "phi_dot": phi_dot, "roll": u / can.radius, "roll_dot": u_dot / can.radius}
     return Coordinates(time=time, u=u, u_dot=u_dot, lift=0 * u, lift_dot=0 * u, **angles)
-
-
-def _unit(size: float) -> float:
-    """Return the power of two just above a positive size."""
-    return 2.0 ** math.frexp(size)[1]
 
 
 @njit(cache=True)

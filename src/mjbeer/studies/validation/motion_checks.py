@@ -39,10 +39,6 @@ def checks() -> Iterator[Check]:
         for rolling, (bound, reason) in rests.items():
             quantity, by = f"equilibrium, {name}, 5 s at rest", f"frozen, {rolling}, RK4, 1 ms"
             yield Check("rest", quantity, partial(_creep, scene, rolling), by, bound, "rad", reason)
-    quantity, reason = "full can, let go at 1 rad: how far it comes in 10 s", "no torque: its load is centred"
-    for scene, by in ((sliding(fill=1.0), "sliding"), (frozen(0.0, fill=1.0), "frozen, on the level")):
-        measure = partial(_creep, scene, "reduced", 10, 1.0)
-        yield Check("rest", quantity, measure, f"{by}, reduced, RK4, 1 ms", 0.0, "rad", reason)
     scenes = {"sliding": sliding(), "sliding, metal can": sliding(can=_METAL), "frozen": frozen()}
     scenes |= {"frozen, metal can": frozen(can=_METAL), "pendulum": pendulum()}
     errors: tuple[tuple[Rolling, float, str], ...] = (("reduced", 1e-7, "RK4"), ("equality", 1e-7, "RK4"))
@@ -112,23 +108,11 @@ def orders() -> Iterator[Check]:
 
 def drifts() -> Iterator[Check]:
     """Yield the checks of energy over very many swings."""
-    check, free = partial(Check, "drift"), sliding(0.0, can=Can.hoop(mass=1e5))
-    width = "growth of the energy's largest deviation within a swing, over 1000 swings"
-    falling = "sampling phase: a period is not quite 32 steps; the method is symplectic"
+    quantity = "growth of the energy's largest deviation within a swing, over 1000 swings"
+    reason = "sampling phase: a period is not quite 32 steps; the method is symplectic"
     for integrator in ("Euler", "implicit", "implicitfast", "discrete"):
         by = f"can too heavy to move, {integrator}, T/32"
-        measure = lambda of=integrator: (_drift(free, of, 32)[1] - 1).max()  # noqa: E731
-        yield check(width, measure, by, 0.05, "relative", falling)
-    quantity = "energy lost over 1000 swings: exponent of their number, less 1"
-    reason = "the swing changes meanwhile: up to 1/14 of its energy is lost"
-    heavy = "can too heavy to move"
-    for name, scene, integrator, steps in (
-        (heavy, free, "RK4", 32),
-        ("massless can", sliding(0.0), "RK4", 32),
-        (heavy, free, DOP853, 10),
-    ):
-        measure = partial(_drift_exponent, scene, integrator, steps)
-        yield check(quantity, measure, f"{name}, {integrator}, T/{steps}", 0.02, "", reason)
+        yield Check("drift", quantity, partial(_drift, integrator), by, 0.05, "relative", reason)
 
 
 def _period_error(scene: Scene, amplitude: float, integrator: Integrator, timestep: float) -> float:
@@ -136,10 +120,10 @@ def _period_error(scene: Scene, amplitude: float, integrator: Integrator, timest
     return 2 * math.pi / run.frequency() / scene.period(amplitude) - 1
 
 
-def _creep(scene: Scene, rolling: Rolling, duration: float = 5, phi0: float | None = None) -> float:
-    """Return the largest distance [rad] from a start at rest, which is at the equilibrium if not at `phi0` [rad]."""
-    rest = equilibrium_53(scene) if phi0 is None else phi0
-    return float(np.abs(simulate(scene, duration, rest, rolling=rolling).phi - rest).max())
+def _creep(scene: Scene, rolling: Rolling) -> float:
+    """Return the largest distance [rad] from the equilibrium, after a start at rest there."""
+    rest = equilibrium_53(scene)
+    return float(np.abs(simulate(scene, 5, rest, rolling=rolling).phi - rest).max())
 
 
 def _error(scene: Scene, rolling: Rolling) -> float:
@@ -162,13 +146,9 @@ def _tilt_error(scene: Scene, rolling: Rolling) -> float:
     return _steady(scene, rolling)[1] - scene.terminal_tilt()
 
 
-@cache
-def _drift(scene: Scene, integrator: Integrator, steps: int, swings: int = 1000) -> np.ndarray:
-    """Return the number of each swing of 1 rad, and what its energy is then, shape (3, numbers of swings).
-
-    The second row is the largest deviation from the start within that swing over that within the first one; the third
-    is the change of the mean since the first one, as a share of the energy.
-    """
+def _drift(integrator: Integrator, steps: int = 32, swings: int = 1000) -> float:
+    """Return the growth of the energy's largest deviation in a later swing of 1 rad over that in the first one."""
+    scene = sliding(0.0, can=Can(mass=1e3, inertia=1e4))
     period, window = scene.period(1.0), np.arange(steps)
     counts = np.unique(np.rint(np.geomspace(1, swings, 1 + round(8 * math.log10(swings)))).astype(int))
     samples = np.unique(np.concatenate([window, *(steps * count + window for count in counts)]))
@@ -176,18 +156,9 @@ def _drift(scene: Scene, integrator: Integrator, steps: int, swings: int = 1000)
     times = period / steps * samples
     start = simulator.initial_state(scene.equilibrium() + 1.0, 0.0)
     motion, form = simulator.coordinates(simulator.solve(start, times).states, times), scene.oscillator
-    kinetic = form.inertia(motion.phi) * motion.phi_dot**2 / 2
-    energy = (kinetic - form.drop(motion.phi, float(motion.phi[0]))) / form.drop(scene.equilibrium(), motion.phi[0])
-    of_swings = np.array([energy[place : place + steps] for place in np.searchsorted(samples, steps * counts)])
-    width = np.abs(of_swings).max(axis=1)
-    return np.stack([counts, width / width[0], of_swings.mean(axis=1) - energy[:steps].mean()])
-
-
-def _drift_exponent(scene: Scene, integrator: Integrator, steps: int) -> float:
-    """Return the exponent of the number of swings in the energy that is lost, less 1."""
-    counts, _, lost = _drift(scene, integrator, steps)
-    clear = np.abs(lost) > 1e-13  # rounding of the energy and of a hundred swings
-    return observed_order(counts[clear], np.abs(lost[clear])) - 1
+    energy = form.inertia(motion.phi) * motion.phi_dot**2 / 2 - form.drop(motion.phi, float(motion.phi[0]))
+    width = [np.abs(energy[place : place + steps]).max() for place in np.searchsorted(samples, steps * counts)]
+    return float(max(width) / width[0] - 1)
 
 
 def _order_error(scene: Scene, integrator: Integrator) -> float:

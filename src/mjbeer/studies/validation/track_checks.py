@@ -35,10 +35,7 @@ def checks() -> Iterator[Check]:
         by, reason = f"{name}, 60 points without noise", "the splines of the motion, and the tolerance"
         yield _check("incline of a track", partial(_lost, scene, phi0, other), by, 1e-6, "rad", reason)
         if phi0 is None:  # ice takes ten seconds
-            quantity, by = (
-                "squares of errors over standard errors, less 1",
-                f"{name}, {_TRACKS} tracks with 3 mm of noise",
-            )
+            quantity, by = "squares of errors over standard errors, less 1", f"{name}, {_TRACKS} tracks, 3 mm of noise"
             reason, bound = f"chance: three standard deviations of {2 * _TRACKS} squares", 3 * math.sqrt(1 / _TRACKS)
             yield _check(quantity, partial(_excess, scene, phi0, other), by, bound, "", reason)
 
