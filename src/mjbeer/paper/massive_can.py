@@ -3,53 +3,45 @@
 Where the wheel of appendix B, whose K is 2M, has the same equation, K is the name `rolling`.
 """
 
-from functools import partial
-from typing import Any
-
-from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, SceneConstants, Witness, equation
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Witness
 from mjbeer.paper.sliding import KINETIC_11, POTENTIAL_14, POTENTIAL_17
-from mjbeer.paper.witness import DRIFT, EQUALITY, EXACT, HELD, METAL, resting
+from mjbeer.paper.witness import DRIFT, EXACT, HELD, METAL, simulated
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import sliding
 
-CAN_39 = "rolling/2*s_dot**2 + rolling*b*cos_phi*s_dot*phi_dot + rolling/2*b**2*{}_phi**2*phi_dot**2"
+CAN_39 = "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*{}(phi)**2*phi_dot**2"
 """T_can [J] in s and phi; its last term has the cosine, printed with the sine."""
-POTENTIAL_40 = "- can_mass*g*s*sin_alpha - can_mass*g*b*sin_phi*sin_alpha"  # V_can [J] in s and phi
-BEER_43 = "u_dot**2 - 2*b*cos_phi*u_dot*phi_dot + b**2*phi_dot**2"  # v_beer^2 [m^2/s^2] in u and theta
-TWICE_44 = "m/2*u_dot**2 - m*b*cos_phi*u_dot*phi_dot + m/2*b**2*phi_dot**2"  # m v_beer^2/2 [J]
-MOTION_46 = "(m + rolling)*u_ddot - m*b*cos_phi*phi_ddot + m*b*sin_phi*phi_dot**2 - (m + can_mass)*g*sin_alpha"
-MOTION_47 = "{}*{} - m*b*cos_phi*u_ddot + m*g*b*sin_theta"
+POTENTIAL_40 = "- can_mass*g*s*sin(alpha) - can_mass*g*b*sin(phi)*sin(alpha)"  # V_can [J] in s and phi
+TWICE_44 = "m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m/2*b**2*phi_dot**2"  # m v_beer^2/2 [J]
+MOTION_46 = "(m + rolling)*u_ddot - m*b*cos(phi)*phi_ddot + m*b*sin(phi)*phi_dot**2 - (m + can_mass)*g*sin(alpha)"
+MOTION_47 = "{}*{} - m*b*cos(phi)*u_ddot + m*g*b*sin(theta)"
 """I_axis theta_ddot - m b cos(phi) u_ddot = -m g b sin(theta); a misprint has other factors in the first term."""
 MOTION_48 = (
-    "(m + rolling)*s_ddot + rolling*b*cos_phi*phi_ddot - rolling*b*sin_phi*phi_dot**2 - (m + can_mass)*g*sin_alpha"
+    "(m + rolling)*s_ddot + rolling*b*cos(phi)*phi_ddot - rolling*b*sin(phi)*phi_dot**2 - (m + can_mass)*g*sin(alpha)"
 )
 _MOTION_16 = (
-    "(inertia + m*b**2*sin_phi**2)*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 + m*g*b*cos_alpha*sin_phi "
-    "+ rolling*b*cos_phi*s_ddot"
+    "(inertia + m*b**2*sin(phi)**2)*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 + m*g*b*cos(alpha)*sin(phi) "
+    "+ rolling*b*cos(phi)*s_ddot"
 )
 MOTION_49 = (
-    f"{_MOTION_16} + rolling*b**2*cos_phi**2*phi_ddot - rolling*b**2*sin_phi*cos_phi*phi_dot**2 "
-    "- can_mass*g*b*sin_alpha*cos_phi"
+    f"{_MOTION_16} + rolling*b**2*cos(phi)**2*phi_ddot - rolling*b**2*sin(phi)*cos(phi)*phi_dot**2 "
+    "- can_mass*g*b*sin(alpha)*cos(phi)"
 )
-PRINTED_49 = f"{_MOTION_16} + rolling*b**2*sin_phi**2*phi_ddot"
+PRINTED_49 = f"{_MOTION_16} + rolling*b**2*sin(phi)**2*phi_ddot"
 """Eq. (16) with what the can adds to it, corrected and as printed."""
 _OF_THE_WHOLE = "rolling*u_dot**2/2 - kinetic"
-_OF_THE_CAN = "- can_mass*g*u*sin_alpha - potential"
+_OF_THE_CAN = "- can_mass*g*u*sin(alpha) - potential"
 """The can's kinetic energy, or its potential energy, less that of the whole."""
-
-
-def steady(c: SceneConstants, k: Any) -> Any:
-    """Return the acceleration [m/s^2] of footnote 4 for a can whose beer does not swing."""
-    return c.g * c.sin_alpha * (c.m + c.can_mass) / (c.m + k)
+_STEADY = "g*sin(alpha)*(m + can_mass)/(m + {})"  # acceleration [m/s^2] of a can whose beer does not swing
 
 
 def _rests(scene: Scene) -> Witness:
-    return Witness(EQUALITY, partial(resting, scene))
+    return simulated(scene, scene.equilibrium())
 
 
-_FULL, _NEARLY_EMPTY = sliding(can=Can.sheet_metal()), sliding(fill=1e-4, can=Can.sheet_metal())
-_HOOP = sliding(fill=1e-4, can=Can.hoop(mass=0.05))
+_FULL, _NEARLY_EMPTY = (_rests(sliding(fill=fill, can=Can.sheet_metal())) for fill in (0.5, 1e-4))
+_HOOP = _rests(sliding(fill=1e-4, can=Can.hoop(mass=0.05)))
 _LEFT_49 = r"(I_{\text{cm}}+mb^2\sin^2\!\varphi)\,\ddot\varphi+mb^2\sin\varphi\,\cos\varphi\,\dot\varphi^2\\ {}+"
 _CAN = r"\Bigl(m_{\text{can}}+\frac{I_{\text{can}}}{a^2}\Bigr)"
 BRACKET_49 = (
@@ -59,57 +51,58 @@ BRACKET_49 = (
 
 # fmt: off
 CLAIMS = (
-    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, equation("phi - theta + alpha"),
-        Misprint(0.16, equation("phi - theta - alpha"), "The two angles of the beer",
+    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, "phi - theta + alpha",
+        Misprint(0.16, "phi - theta - alpha", "The two angles of the beer",
             r"\varphi=\theta\,<+|->\,\alpha"),
         quote="θ or φ = θ + α as the independent coordinates"),
-    Claim("(39)", "T_can in u", METAL, HELD, equation(f"rolling*u_dot**2/2 - (kinetic - ({KINETIC_11}))")),
+    Claim("(39)", "T_can in u", METAL, HELD, f"rolling*u_dot**2/2 - (kinetic - ({KINETIC_11}))"),
     Claim("(39)", "T_can in s and phi: its last term has cos^2; printed sin^2", METAL, HELD,
-        equation(f"{CAN_39.format('cos')} - (kinetic - ({KINETIC_11}))"),
-        Misprint(0.060, equation(f"{CAN_39.format('sin')} - (kinetic - ({KINETIC_11}))"), "Kinetic energy of the can",
+        f"{CAN_39.format('cos')} - (kinetic - ({KINETIC_11}))",
+        Misprint(0.060, f"{CAN_39.format('sin')} - (kinetic - ({KINETIC_11}))", "Kinetic energy of the can",
             r"\frac12" + _CAN + r"\bigl(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi\\ "
             r"{}+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2\bigr)")),
-    Claim("(40)", "V_can in u", METAL, EXACT, equation(POTENTIAL_14 + _OF_THE_CAN)),
-    Claim("(40)", "V_can in s and phi", METAL, EXACT, equation(POTENTIAL_40 + POTENTIAL_14 + "- potential")),
-    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, equation("u - b*sin_phi - s")),
-    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, equation("-b*cos_phi - across")),
+    Claim("(40)", "V_can in u", METAL, EXACT, POTENTIAL_14 + _OF_THE_CAN),
+    Claim("(40)", "V_can in s and phi", METAL, EXACT, POTENTIAL_40 + POTENTIAL_14 + "- potential"),
+    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, "u - b*sin(phi) - s"),
+    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, "-b*cos(phi) - across"),
     Claim("(42)", "x_dot = s_dot; printed s_dot^2 (in SI units)", METAL, EXACT,
-        equation("s_dot - u_dot + b*cos_phi*phi_dot"),
-        Misprint(0.39, equation("s_dot**2 - u_dot + b*cos_phi*phi_dot"),
+        "s_dot - u_dot + b*cos(phi)*phi_dot",
+        Misprint(0.39, "s_dot**2 - u_dot + b*cos(phi)*phi_dot",
             "Velocity of the centre of mass along the incline", r"\dot x=<\dot s^2|\dot s>")),
-    Claim("(42)", "y_dot", METAL, EXACT, equation("b*sin_phi*phi_dot - across_dot")),
-    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT, equation(BEER_43 + "- (s_dot**2 + across_dot**2)")),
+    Claim("(42)", "y_dot", METAL, EXACT, "b*sin(phi)*phi_dot - across_dot"),
+    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT,
+        "u_dot**2 - 2*b*cos(phi)*u_dot*phi_dot + b**2*phi_dot**2 - (s_dot**2 + across_dot**2)"),
     Claim("(43)", "v_beer^2 in s and phi", METAL, EXACT,
-        equation("s_dot**2 + b**2*sin_phi**2*phi_dot**2 - (s_dot**2 + across_dot**2)")),
+        "s_dot**2 + b**2*sin(phi)**2*phi_dot**2 - (s_dot**2 + across_dot**2)"),
     Claim("(44)", "T_beer in u and theta", METAL, HELD,
-        equation(f"{TWICE_44} + inertia*phi_dot**2/2 + {_OF_THE_WHOLE}")),
-    Claim("(44)", "T_beer in s and phi", METAL, HELD, equation(f"{KINETIC_11} + {_OF_THE_WHOLE}")),
-    Claim("(45)", "V_beer in u and theta", METAL, EXACT, equation(POTENTIAL_17 + _OF_THE_CAN)),
-    Claim("(45)", "V_beer in s and phi", METAL, EXACT, equation(POTENTIAL_14 + _OF_THE_CAN)),
-    Claim("(46)", "equation of motion of u", METAL, HELD, equation(MOTION_46)),
+        f"{TWICE_44} + inertia*phi_dot**2/2 + {_OF_THE_WHOLE}"),
+    Claim("(44)", "T_beer in s and phi", METAL, HELD, f"{KINETIC_11} + {_OF_THE_WHOLE}"),
+    Claim("(45)", "V_beer in u and theta", METAL, EXACT, POTENTIAL_17 + _OF_THE_CAN),
+    Claim("(45)", "V_beer in s and phi", METAL, EXACT, POTENTIAL_14 + _OF_THE_CAN),
+    Claim("(46)", "equation of motion of u", METAL, HELD, MOTION_46),
     Claim("(47)", "equation of motion of theta: I_axis; printed m a^2 (for m a^2/2 of a half can)", METAL, HELD,
-        equation(MOTION_47.format("axial", "phi_ddot")),
-        Misprint(0.50, equation(MOTION_47.format("m*a**2", "phi_ddot")), "Massive can: equation of motion of θ",
+        MOTION_47.format("axial", "phi_ddot"),
+        Misprint(0.50, MOTION_47.format("m*a**2", "phi_ddot"), "Massive can: equation of motion of θ",
             r"<ma^2|I_{\text{axis}}>\,\ddot\theta-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta"),
         quote="recalling that mb² + I_cm = ma²"),
-    Claim("(48)", "equation of motion of s", METAL, HELD, equation(MOTION_48)),
+    Claim("(48)", "equation of motion of s", METAL, HELD, MOTION_48),
     Claim("(49)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", METAL, HELD,
-        equation(MOTION_49),
-        Misprint(0.059, equation(PRINTED_49), "Massive can: equation of motion of φ",
+        MOTION_49,
+        Misprint(0.059, PRINTED_49, "Massive can: equation of motion of φ",
             _LEFT_49 + _CAN + "(" + BRACKET_49 + r"<|{}+m_{\text{can}}gb\sin\alpha\,\cos\varphi>")),
-    Claim("footnote 4", "acceleration of a can whose beer does not swing", _rests(_FULL), HELD,
-        lambda q: (q.u_ddot, -steady(q, q.rolling)),
+    Claim("footnote 4", "acceleration of a can whose beer does not swing", _FULL, HELD,
+        f"u_ddot - {_STEADY.format('rolling')}",
         quote="the acceleration of the center of the can would be constant, with value "
         "g sin α(m + m_can)/(m + m_can + I_can/a²)"),
     Claim("footnote 4", "the same with I_can = m_can a^2: beyond, the metal can; within, a hoop",
-        _rests(_HOOP), Bound(1e-7, DRIFT), lambda q: (q.u_ddot, -steady(q, 2 * q.can_mass)),
-        limit=Limit(4.2e-3, _rests(_FULL).see), quote="≈ g sin α(m + m_can)/(m + 2m_can)"),
+        _HOOP, Bound(1e-7, DRIFT), f"u_ddot - {_STEADY.format('2*can_mass')}",
+        limit=Limit(4.2e-3, _FULL.see), quote="≈ g sin α(m + m_can)/(m + 2m_can)"),
     Claim("sec. 3.1", "(g/2) sin(alpha) of a nearly empty can: beyond, of sheet metal; within, a hoop",
-        _rests(_HOOP), Bound(1e-4, "what beer is left (fill 1e-4)"), equation("u_ddot - g*sin_alpha/2"),
-        limit=Limit(0.054, _rests(_NEARLY_EMPTY).see),
+        _HOOP, Bound(1e-4, "what beer is left (fill 1e-4)"), "u_ddot - g*sin(alpha)/2",
+        limit=Limit(0.054, _NEARLY_EMPTY.see),
         quote="nearly the same as that of an empty can, with acceleration (g/2) sin α down the incline"),
-    Claim("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _rests(_FULL), HELD,
-        lambda q: (q.sin_phi / q.cos_phi, -(steady(q, q.rolling) - q.g * q.sin_alpha) / (q.g * q.cos_alpha)),
+    Claim("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _FULL, HELD,
+        f"tan(phi) - ({_STEADY.format('rolling')} - g*sin(alpha))/(g*cos(alpha))",
         quote="small oscillations of the “beer” about an equilibrium"),
 )
 # fmt: on
