@@ -14,8 +14,7 @@ from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
-from mjbeer.paper.hopping import MU
-from mjbeer.paper.story_plots import footnote_8_as_printed, skids
+from mjbeer.paper.story_plots import footnote_8_as_printed
 from mjbeer.paper.witness import footnote_scene
 from mjbeer.theory.trajectory import Trajectory
 from tests.support import stubs
@@ -54,21 +53,6 @@ def test_films_show_what_they_say(name: str) -> None:
         else:
             assert np.ptp(run.slip) > run.scene.can.radius / 2
             assert run.lift.max() > run.scene.can.radius / 5
-
-
-def test_of_two_cans_one_swings_and_the_other_does_not() -> None:
-    swinging, still = motions(FILMS["trivial"])
-    assert np.ptp(swinging.phi) > math.radians(119)
-    assert np.abs(still.phi).max() < 1e-9
-
-
-def test_a_jump_is_a_gap_and_no_slope() -> None:
-    """At a friction coefficient of 0.8, a hoop of 0.8 % skids before 84 degrees or only after 90."""
-    angles = skids(np.geomspace(1e-3, 0.07, 300), MU)
-    (gap,) = np.flatnonzero(np.isnan(angles))
-    assert np.nanmax(np.abs(np.diff(angles))) < 3
-    assert angles[gap - 1] < 84
-    assert angles[gap + 1] > 90
 
 
 def test_footnote_8_as_printed_is_another_motion() -> None:

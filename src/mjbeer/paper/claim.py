@@ -8,7 +8,8 @@ import ast
 import re
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
-from types import SimpleNamespace
+from functools import cache
+from types import CodeType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
@@ -66,6 +67,14 @@ def terms(equation: str, seen: Any) -> tuple[Any, ...]:
     It names what was seen, of which `seen` is the whole, and functions of NumPy's. What is in parentheses after a sign
     is one term.
     """
+    names, codes = _compiled(equation)
+    named = {name: getattr(seen if hasattr(seen, name) else np, name) for name in names}
+    return tuple(eval(code, named | {"seen": seen}) for code in codes)
+
+
+@cache
+def _compiled(equation: str) -> tuple[set[str], list[CodeType]]:
+    """Return the names in an equation, and its terms."""
 
     def split(node: ast.expr) -> Generator[ast.expr]:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
@@ -74,13 +83,10 @@ def terms(equation: str, seen: Any) -> tuple[Any, ...]:
         else:
             yield node
 
-    found = []
-    for each in split(ast.parse(equation.strip(), mode="eval").body):
-        names = {node.id for node in ast.walk(each) if isinstance(node, ast.Name)} - {"seen"}
-        named = {name: getattr(seen if hasattr(seen, name) else np, name) for name in names}
-        code = compile(ast.fix_missing_locations(ast.Expression(each)), equation, "eval")
-        found.append(eval(code, named | {"seen": seen}))
-    return tuple(found)
+    whole = ast.parse(equation.strip(), mode="eval").body
+    names = {node.id for node in ast.walk(whole) if isinstance(node, ast.Name)} - {"seen"}
+    found = (ast.fix_missing_locations(ast.Expression(each)) for each in split(whole))
+    return names, [compile(each, equation, "eval") for each in found]
 
 
 def value(equation: str, seen: Any) -> Any:
