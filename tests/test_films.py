@@ -5,7 +5,7 @@ import pathlib
 import numpy as np
 import pytest
 
-from mjbeer import exact, frozen
+from mjbeer import exact
 from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race
 from mjbeer.paper import stories
@@ -17,7 +17,6 @@ ALL: dict[str, tuple[Film, float]] = {
     **{name: (film, 30.0) for name, film in FILMS.items() if isinstance(film, Race | MotionFilm)},
     **{f"paper/{order.path.stem}": (order.film, order.fps) for order in stories.films(pathlib.Path())},
 }
-TIMES = np.linspace(0.0, 2.3, 1151)
 TURN = 0.6
 """Largest turn from picture to picture [rad]: a tenth of a circle. From half a circle on, the eye sees it backwards."""
 
@@ -61,19 +60,6 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     assert not any(can.trajectory.solver_warnings or can.trajectory.rolling_warnings for can in cans.values())
 
 
-def test_ice_rolls_over_and_honey_does_not_because_of_the_incline() -> None:
-    """Let go with a level surface, ice would swing back on up to 6.93 degrees; here it hesitates on top."""
-    ice = exact(races.with_ice(), TIMES, -races.with_ice().incline)
-    slowest = np.abs(ice.u_dot[TIMES > 0.3]).min()
-    assert slowest < 0.1
-    for incline, swings in ((6.93, True), (6.94, False)):
-        level = frozen(np.radians(incline), 0.75, races.METAL, 917.0)
-        assert (level.separatrix()[0] < -level.incline < level.separatrix()[1]) is swings
-    honey = exact(races.with_liquid("honey"), TIMES, -races.with_ice().incline)
-    assert np.abs(honey.phi).max() < np.pi
-    assert np.abs(ice.phi).max() > 2 * np.pi
-
-
 def test_the_documents_have_a_small_picture_of_each_film() -> None:
     pictures = list((pathlib.Path(__file__).parents[1] / "renders").glob("*.webp"))
     assert {path.stem for path in pictures} == set(FILMS)
@@ -81,10 +67,8 @@ def test_the_documents_have_a_small_picture_of_each_film() -> None:
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_a_film_lasts_from_two_to_twelve_seconds_and_says_what_is_seen(name: str) -> None:
+def test_a_film_lasts_from_two_to_twelve_seconds(name: str) -> None:
     film, fps = ALL[name]
     plan = film.plan()
     assert 2 <= len(plan.times(fps)) / fps <= 12
     assert plan.start <= film.still <= plan.end
-    if isinstance(film, MotionFilm) and film.look is not None:
-        assert len(film.look.title) > 10
