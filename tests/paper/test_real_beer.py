@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from mjbeer import exact, sliding
-from mjbeer.simulation.simulate import simulate
+from mjbeer import exact
 from mjbeer.theory.liquid import FILM_LOAD, LIQUIDS
 from mjbeer.theory.scene import GRAVITY
 
@@ -30,13 +29,6 @@ def first_metre(volume: float, incline: float, friction: float = 1.0, drag: floa
 def footnote_4(volume: float) -> float:
     scene = water_in(volume, 0.1, friction=0.0)
     return scene.acceleration() / (scene.gravity * math.sin(scene.incline))
-
-
-def test_an_even_acceleration_is_found() -> None:
-    scene = sliding(can=CAN)
-    run = simulate(scene, 1.5, scene.equilibrium(), tolerance=1e-9, times=np.linspace(0, 1.5, 11))
-    full = scene.gravity * math.sin(scene.incline)
-    assert over_first_metre(run) == pytest.approx(scene.acceleration() / full, rel=1e-9)
 
 
 def test_the_can_holds_what_it_says() -> None:

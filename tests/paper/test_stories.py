@@ -21,7 +21,6 @@ from tests.support import stubs
 
 pytestmark = pytest.mark.slow
 
-SKETCH = {"letters.svg"}
 STORIES = {story.name: story for story in stories.STORIES}
 FILMS = {name: story.film for name, story in STORIES.items() if story.film is not None}
 
@@ -61,28 +60,22 @@ def test_footnote_8_as_printed_is_another_motion() -> None:
     assert np.abs(footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(4)
 
 
-def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
-    calls = stubs.draw(monkeypatch)
-    folder = tmp_path / "stories"
-    assert main(["paper", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "stories.md"}
-    assert not calls
-    assert "[Film]" not in (folder / "stories.md").read_text()
-    assert main(["paper", "--films", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "told.mp4", "stories.md"}
-    text = (folder / "stories.md").read_text()
-    assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story.", "[Film](told.mp4)"))
-    assert capsys.readouterr().err.endswith(f"the stories are in {folder / 'stories.md'}\n")
-
-
-def test_without_opengl_the_films_are_missing_and_named(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+@pytest.mark.parametrize(("words", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")])
+def test_the_command(
+    words: list[str],
+    problem: str | None,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
 ) -> None:
+    """Films that cannot be drawn are named."""
     stubs.draw(monkeypatch)
-    monkeypatch.setattr(opengl, "problem", lambda: "no OpenGL")
-    assert main(["paper", "--films", "--output", str(tmp_path)]) == 0
-    assert set(os.listdir(tmp_path)) == {*SKETCH, "told.svg", "stories.md"}
-    text, line = (tmp_path / "stories.md").read_text(), opengl.missing(["told.mp4"])
-    assert f"Films: {line}\n" in text
-    assert "[Film]" not in text
-    assert capsys.readouterr().err.endswith(f"{line}\n")
+    monkeypatch.setattr(opengl, "problem", lambda: problem)
+    assert main(["paper", *words, "--output", str(tmp_path)]) == 0
+    text, err, filmed = (tmp_path / "stories.md").read_text(), capsys.readouterr().err, bool(words) and not problem
+    assert set(os.listdir(tmp_path)) == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
+    assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story."))
+    assert ("[Film](told.mp4)" in text) == filmed
+    missing = opengl.missing(["told.mp4"])
+    assert (f"Films: {missing}\n" in text, missing in err) == (bool(problem), bool(problem))
+    assert f"the stories are in {tmp_path / 'stories.md'}\n" in err
