@@ -314,22 +314,11 @@ def metre() -> str:
     )  # fmt: skip
 
 
-MADE: dict[str, Callable[[], str]] = {
-    "holds": holds,
-    "misprints": misprints,
-    "cheapest": cheapest,
-    "others": others,
-    "whole-calls": whole_calls,
-    "ranges": ranges,
-    "measured": measured,
-    "steps": steps,
-    "agreement": agreement,
-    "damped": damped,
-    "damped-runs": damped_runs,
-    "kinds": kinds,
-    "honesty": honesty,
-    "speeds": speeds,
-    "metre": metre,
+_OF_THE_BENCHMARK = cheapest, others, whole_calls, ranges, measured
+_OF_STABILITY = steps, agreement, damped, damped_runs, kinds, honesty
+MADE = {
+    each.__name__.replace("_", "-"): each
+    for each in (holds, misprints, *_OF_THE_BENCHMARK, *_OF_STABILITY, speeds, metre)
 }
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@ import pathlib
 import sys
 
 import mpmath
-import numpy as np
 import pytest
 from scipy.optimize import brentq
 
