@@ -63,7 +63,7 @@ def test_kinds_of_what_is_wrong() -> None:
 def test_a_misprint_that_is_none_is_found_out(row: Claim) -> None:
     """The row would fail if the printed form were right, and if the right form were the printed one."""
     if row.misprint:
-        none = dataclasses.replace(row, misprint=dataclasses.replace(row.misprint, equation=row.right))
+        none = dataclasses.replace(row, misprint=dataclasses.replace(row.misprint, wrong=row.right))
         wrong = dataclasses.replace(row, right=row.printed)
     else:
         assert row.limit

@@ -127,7 +127,7 @@ class Misprint:
     """What the paper prints in place of what is right."""
 
     expected_error: float  # error that it must have
-    equation: str
+    wrong: str  # the equation as it is printed
     about: str  # what the formula is of, as a heading
     latex: str  # the formula, with `<printed|right>` where the two differ; `\\` begins a new line
     kind: str = MISPRINT
@@ -159,7 +159,7 @@ class Claim:
     quantity: str  # what is claimed of what
     witness: Witness
     bound: Bound
-    right: str  # the equation as it is right
+    right: str  # the equation as it is right, whose terms sum to zero
     misprint: Misprint | None = None  # what is printed instead
     limit: Limit | None = None  # where it no longer holds
     quote: str = ""  # the paper's own words, where the claim rests on these
@@ -172,7 +172,7 @@ class Claim:
     @property
     def printed(self) -> str:
         """The equation as the paper prints it."""
-        return self.misprint.equation if self.misprint else self.right
+        return self.misprint.wrong if self.misprint else self.right
 
     def measure(self) -> Result:
         """Compute the errors of what is right and of what is printed, or of what is beyond the limit.

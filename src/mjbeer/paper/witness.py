@@ -20,10 +20,10 @@ from mjbeer.theory.scenes import frozen, pendulum, sliding
 
 
 def simulated(scene: Scene, phi0: float, *more: Any, **settings: Any) -> Witness:
-    """Return the witness of a motion; the arguments are those of `watch`, and MuJoCo rolls the can by a constraint.
+    """Return the witness of a motion; the arguments are those of `watch`.
 
-    That model has two bodies that a constraint couples, and contains none of the paper's theory. A massless can is
-    beyond it, unless the load is frozen to it.
+    Unless told otherwise the can is rolled by a constraint between two joints: that model contains none of the paper's
+    theory. A massless can around a sliding load is beyond it, and is reduced.
     """
     settings.setdefault("rolling", "equality" if supported(scene, "equality") else "reduced")
     return Witness(f"MuJoCo, {settings['rolling']}", partial(watch, scene, phi0, *more, **settings))
