@@ -90,7 +90,7 @@ def _hoop(ratio: float) -> Scene:
 
 
 def fall(ratio: float, friction: float, timestep: float) -> Run:
-    """Return half a second of a hoop in contact that is let go at `TOP`: it has passed the bottom then."""
+    """Return half a second of a hoop in contact that is let go at `TOP`: one that lifts off has done so by then."""
     return simulate(_hoop(ratio), 0.5, TOP, rolling="contact", timestep=timestep, friction=friction)
 
 
