@@ -10,19 +10,14 @@ import pytest
 from mjbeer import exact
 from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
-from mjbeer.drawing.film import Film, MotionFilm
-from mjbeer.drawing.race import Race
-from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
 from mjbeer.paper.story_plots import footnote_8_as_printed
 from mjbeer.paper.witness import footnote_scene
-from mjbeer.theory.trajectory import Trajectory
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow
 
 STORIES = {story.name: story for story in stories.STORIES}
-FILMS = {name: story.film for name, story in STORIES.items() if story.film is not None}
 
 
 @pytest.mark.costly
@@ -31,27 +26,6 @@ def test_a_plot_is_drawn_and_small(name: str, tmp_path: pathlib.Path) -> None:
     STORIES[name].plot(tmp_path / name)
     assert os.listdir(tmp_path) == [f"{name}.svg"]
     assert (tmp_path / f"{name}.svg").stat().st_size < 150_000
-
-
-def motions(film: Film) -> list[Trajectory]:
-    """The motions of a film: one, or those of the cans that it compares."""
-    if isinstance(film, Race):
-        return [runner.trajectory for runner in film.runners()]
-    assert isinstance(film, MotionFilm)
-    return [film.trajectory()]
-
-
-@pytest.mark.parametrize("name", FILMS)
-def test_films_show_what_they_say(name: str) -> None:
-    """Each is of the scene under its plot's title. That of contact slips and leaves the incline; every other can be
-    trusted."""
-    for run in motions(FILMS[name]):
-        assert in_words(run.scene, {"load", "incline"}) in STORIES[name].subtitle
-        if run.rolling != "contact":
-            assert run.trusted, run.warnings
-        else:
-            assert np.ptp(run.slip) > run.scene.can.radius / 2
-            assert run.lift.max() > run.scene.can.radius / 5
 
 
 def test_footnote_8_as_printed_is_another_motion() -> None:
