@@ -44,10 +44,10 @@ def letters() -> Symbols:
     kinetic = m * (slope(x) ** 2 + slope(y) ** 2) / 2 + inertia * phi_dot**2 / 2
     kinetic += can_mass * u_dot**2 / 2 + can_inertia * (u_dot / a) ** 2 / 2
     return Symbols(
-        a, b, m, inertia, can_mass, can_inertia, g, alpha, u=u, u_dot=u_dot, u_ddot=u_ddot, theta=alpha + phi,
-        phi=phi, phi_dot=phi_dot, phi_ddot=phi_ddot, s=x, s_dot=slope(x), s_ddot=slope(slope(x)), across=y,
-        across_dot=slope(y), height=height, kinetic=kinetic, rest=sp.symbols("phi_0", real=True),
-        potential=m * g * height - can_mass * g * u * sp.sin(alpha),
+        a=a, b=b, m=m, inertia=inertia, can_mass=can_mass, can_inertia=can_inertia, g=g, alpha=alpha,
+        u=u, u_dot=u_dot, u_ddot=u_ddot, phi=phi, phi_dot=phi_dot, phi_ddot=phi_ddot, theta=alpha + phi,
+        s=x, s_dot=slope(x), s_ddot=slope(slope(x)), across=y, across_dot=slope(y), height=height, kinetic=kinetic,
+        potential=m * g * height - can_mass * g * u * sp.sin(alpha), rest=sp.symbols("phi_0", real=True),
     )  # fmt: skip
 
 

@@ -32,18 +32,13 @@ class Seen(SimpleNamespace):
     and `b` the distance of the load's centre of mass from the axis [m]. `g` and `alpha` are gravity and the incline.
     """
 
-    def __init__(
-        self, a: Any, b: Any, m: Any, inertia: Any, can_mass: Any, can_inertia: Any, g: Any, alpha: Any, **measured: Any
-    ) -> None:
-        constants = {"a": a, "b": b, "m": m, "inertia": inertia, "can_mass": can_mass, "can_inertia": can_inertia}
-        super().__init__(**constants, g=g, alpha=alpha, **measured)
-
     @classmethod
     def of(cls, scene: "Scene", **measured: Any) -> Self:
         """Return the constants of a scene, with what was measured."""
         can, load = scene.can, scene.load
-        masses = can.radius, load.offset, load.mass, load.inertia, can.mass, can.inertia
-        return cls(*masses, scene.gravity, scene.incline, **measured)
+        constants = {"a": can.radius, "b": load.offset, "m": load.mass, "inertia": load.inertia}
+        constants |= {"can_mass": can.mass, "can_inertia": can.inertia, "g": scene.gravity, "alpha": scene.incline}
+        return cls(**constants, **measured)
 
     @property
     def axial(self) -> Any:
