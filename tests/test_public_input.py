@@ -22,7 +22,6 @@ from mjbeer.drawing import film, video
 from mjbeer.exceptions import ParameterError
 from mjbeer.model.export import export
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Setting
-from mjbeer.paper.witness import loop
 from mjbeer.require import format_value
 from mjbeer.theory.scene import ATTACHMENTS
 
@@ -80,7 +79,7 @@ def public() -> Iterator[tuple[str, Callable[..., object]]]:
         ("Run()", RUN),
     ):
         yield from methods(name, type(instance), instance)
-    for more in (Setting, export, loop):
+    for more in (Setting, export):
         yield more.__name__, more
 
 

@@ -25,7 +25,7 @@ from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy, potential_energy
-from tests.support.constraints import applied_share
+from tests.support.rows import applied_share
 from tests.support.scenes import METAL, SCENES
 from tools import portability as others
 from tools.portability import BY_NAME, FRICTION, START

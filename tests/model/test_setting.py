@@ -8,7 +8,7 @@ from mjbeer import build, frozen
 from mjbeer.model.joints import initial_state
 from mjbeer.studies.benchmark.points import USUAL
 from mjbeer.studies.benchmark.timing import usual_model
-from tests.support.constraints import applied_share
+from tests.support.rows import applied_share
 
 
 @pytest.mark.parametrize("written", USUAL)

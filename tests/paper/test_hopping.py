@@ -1,19 +1,16 @@
 """The hoop with a weight on its rim: closed forms against the theory of forces, contact runs against Coulomb's law.
 
-Coulomb's law is integrated here by SciPy, phase by phase: rolling until |F| = mu N, then slipping until the rim grips.
 g = r = 1, hoop m = I = 1, weight M = 3, mu = 0.2 is the setting in which W. F. D. Theron and
 M. F. Maritz, "The amazing variety of motions of a loaded hoop" (2008), can be compared with.
 """
 
 import math
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from mjbeer import hoop, simulate
+from mjbeer import exact, hoop, simulate
 from mjbeer.paper import hopping
 from mjbeer.theory.equations import rolling_forces
 
@@ -35,53 +32,38 @@ def accelerations(phi: float, rate: float, push: float) -> np.ndarray:
     return np.linalg.solve(matrix, right)
 
 
-def phase(slopes: Callable, margin: Callable, begin: float, state: np.ndarray) -> tuple[float, np.ndarray, Any]:
-    """When a margin falls through 0, the state u, phi, u_dot, phi_dot then, and the motion until then."""
-
-    def event(_: float, state: np.ndarray) -> float:
-        return margin(state)
-
-    event.terminal, event.direction = True, -1  # ty: ignore[missing-attribute]
-    run = solve_ivp(slopes, (begin, begin + 5), state, events=event, dense_output=True, rtol=1e-10, atol=1e-12)
-    assert len(run.t_events[0]) == 1
-    return float(run.t[-1]), run.y[:, -1], run.sol
-
-
-def rolls(_: float, state: np.ndarray) -> list[float]:
-    turning = float(SCENE.oscillator.acceleration(state[1], state[3]))
-    return [state[3], state[3], turning, turning]
-
-
-def slides(_: float, state: np.ndarray, push: float) -> list[float]:
-    u_ddot, phi_ddot, _ = accelerations(state[1], state[3], push)
-    return [state[2], state[3], u_ddot, phi_ddot]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("phi_dot0", [-0.2, -0.3, -0.5])
 def test_contact_rolls_slips_and_grips_as_coulomb_says(phi_dot0: float) -> None:
-    """u and phi through rolling and slipping; the two are some hundredths apart in the end, N is never 0."""
+    """u and phi through rolling, until |F| = mu N, and slipping, which SciPy integrates until the rim grips.
 
-    def forces(state: np.ndarray) -> Any:
-        return rolling_forces(SCENE, state[1], state[3], state[2])
+    The two are some hundredths apart in the end, and N is never 0.
+    """
+    skids = exact(SCENE, np.linspace(0, 5, 5001), math.pi, phi_dot0).rolls_until(MU)
+    start = exact(SCENE, [0.0, skids], math.pi, phi_dot0)
+    sign = math.copysign(1.0, float(start.forces.friction[-1]))
 
-    def grip(state: np.ndarray) -> float:
-        return float(MU * forces(state).normal - abs(forces(state).friction))
+    def slides(_: float, state: np.ndarray) -> list[float]:
+        u_ddot, phi_ddot, _ = accelerations(state[1], state[3], sign * MU)
+        return [state[2], state[3], u_ddot, phi_ddot]
 
-    skids, state, rolling = phase(rolls, grip, 0.0, np.array([math.pi, math.pi, phi_dot0, phi_dot0]))
-    sign = math.copysign(1.0, float(forces(state).friction))
-    # How fast the rim slides against the friction; less 1e-9 to leave the start of the slip.
-    grips, _, slip = phase(
-        lambda time, now: slides(time, now, sign * MU), lambda now: sign * (now[2] - now[3]) + 1e-9, skids, state
-    )
-    run = simulate(SCENE, grips, math.pi, phi_dot0, rolling="contact", timestep=5e-4, friction=MU)
-    inside = run.time <= grips
-    times = run.time[inside]
-    truth = np.where(times <= skids, rolling(times), slip(times))
-    assert np.abs(run.u[inside] - truth[0]).max() < SOFT
-    assert np.abs(run.phi[inside] - truth[1]).max() < SOFT
+    def slips(_: float, state: np.ndarray) -> float:
+        """How fast the rim slides against the friction; less 1e-9 to leave the start of the slip."""
+        return sign * (state[2] - state[3]) + 1e-9
+
+    slips.terminal, slips.direction = True, -1  # ty: ignore[missing-attribute]
+    state = [each[-1] for each in (start.u, start.phi, start.u_dot, start.phi_dot)]
+    slip = solve_ivp(slides, (skids, skids + 5), state, events=slips, dense_output=True, rtol=1e-10, atol=1e-12)
+    assert len(slip.t_events[0]) == 1
+    run = simulate(SCENE, slip.t[-1], math.pi, phi_dot0, rolling="contact", timestep=5e-4, friction=MU)
+    rolls = run.time <= skids
+    inside = ~rolls & (run.time <= slip.t[-1])
+    rolling, truth = exact(SCENE, run.time[rolls], math.pi, phi_dot0), slip.sol(run.time[inside])
+    for seen, expected in ((run.u, (rolling.u, truth[0])), (run.phi, (rolling.phi, truth[1]))):
+        assert np.abs(seen[rolls] - expected[0]).max() < SOFT
+        assert np.abs(seen[inside] - expected[1]).max() < SOFT
     assert abs(truth[0, -1] - truth[1, -1]) > 20 * SOFT
-    assert min(accelerations(phi, rate, MU)[2] for _, phi, _, rate in truth.T[times > skids]) > 0
+    assert min(accelerations(phi, rate, MU)[2] for _, phi, _, rate in truth.T) > 0
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 0.05, 0.3])

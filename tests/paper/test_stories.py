@@ -10,21 +10,14 @@ import pytest
 from mjbeer import exact
 from mjbeer.cli.app import main
 from mjbeer.drawing import opengl
-from mjbeer.drawing.film import Film, MotionFilm
-from mjbeer.drawing.race import Race
-from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
-from mjbeer.paper.hopping import MU
-from mjbeer.paper.story_plots import footnote_8_as_printed, skids
+from mjbeer.paper.story_plots import footnote_8_as_printed
 from mjbeer.paper.witness import footnote_scene
-from mjbeer.theory.trajectory import Trajectory
 from tests.support import stubs
 
 pytestmark = pytest.mark.slow
 
-SKETCH = {"letters.svg"}
 STORIES = {story.name: story for story in stories.STORIES}
-FILMS = {name: story.film for name, story in STORIES.items() if story.film is not None}
 
 
 @pytest.mark.costly
@@ -35,70 +28,28 @@ def test_a_plot_is_drawn_and_small(name: str, tmp_path: pathlib.Path) -> None:
     assert (tmp_path / f"{name}.svg").stat().st_size < 150_000
 
 
-def motions(film: Film) -> list[Trajectory]:
-    """The motions of a film: one, or those of the cans that it compares."""
-    if isinstance(film, Race):
-        return [runner.trajectory for runner in film.runners()]
-    assert isinstance(film, MotionFilm)
-    return [film.trajectory()]
-
-
-@pytest.mark.parametrize("name", FILMS)
-def test_films_show_what_they_say(name: str) -> None:
-    """Each is of the scene under its plot's title. That of contact slips and leaves the incline; every other can be
-    trusted."""
-    for run in motions(FILMS[name]):
-        assert in_words(run.scene, {"load", "incline"}) in STORIES[name].subtitle
-        if run.rolling != "contact":
-            assert run.trusted, run.warnings
-        else:
-            assert np.ptp(run.slip) > run.scene.can.radius / 2
-            assert run.lift.max() > run.scene.can.radius / 5
-
-
-def test_of_two_cans_one_swings_and_the_other_does_not() -> None:
-    swinging, still = motions(FILMS["trivial"])
-    assert np.ptp(swinging.phi) > math.radians(119)
-    assert np.abs(still.phi).max() < 1e-9
-
-
-def test_a_jump_is_a_gap_and_no_slope() -> None:
-    """At a friction coefficient of 0.8, a hoop of 0.8 % skids before 84 degrees or only after 90."""
-    angles = skids(np.geomspace(1e-3, 0.07, 300), MU)
-    (gap,) = np.flatnonzero(np.isnan(angles))
-    assert np.nanmax(np.abs(np.diff(angles))) < 3
-    assert angles[gap - 1] < 84
-    assert angles[gap + 1] > 90
-
-
 def test_footnote_8_as_printed_is_another_motion() -> None:
     times = np.linspace(0, 3, 301)
     truth = exact(footnote_scene(), times, 0.0).phi
     assert np.abs(footnote_8_as_printed(footnote_scene(), times, 0.0) - truth).max() > math.radians(4)
 
 
-def test_the_command(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
-    calls = stubs.draw(monkeypatch)
-    folder = tmp_path / "stories"
-    assert main(["paper", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "stories.md"}
-    assert not calls
-    assert "[Film]" not in (folder / "stories.md").read_text()
-    assert main(["paper", "--films", "--output", str(folder)]) == 0
-    assert set(os.listdir(folder)) == {*SKETCH, "told.svg", "told.mp4", "stories.md"}
-    text = (folder / "stories.md").read_text()
-    assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story.", "[Film](told.mp4)"))
-    assert capsys.readouterr().err.endswith(f"the stories are in {folder / 'stories.md'}\n")
-
-
-def test_without_opengl_the_films_are_missing_and_named(
-    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+@pytest.mark.parametrize(("words", "problem"), [([], None), (["--films"], None), (["--films"], "no OpenGL")])
+def test_the_command(
+    words: list[str],
+    problem: str | None,
+    tmp_path: pathlib.Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture,
 ) -> None:
+    """Films that cannot be drawn are named."""
     stubs.draw(monkeypatch)
-    monkeypatch.setattr(opengl, "problem", lambda: "no OpenGL")
-    assert main(["paper", "--films", "--output", str(tmp_path)]) == 0
-    assert set(os.listdir(tmp_path)) == {*SKETCH, "told.svg", "stories.md"}
-    text, line = (tmp_path / "stories.md").read_text(), opengl.missing(["told.mp4"])
-    assert f"Films: {line}\n" in text
-    assert "[Film]" not in text
-    assert capsys.readouterr().err.endswith(f"{line}\n")
+    monkeypatch.setattr(opengl, "problem", lambda: problem)
+    assert main(["paper", *words, "--output", str(tmp_path)]) == 0
+    text, err, filmed = (tmp_path / "stories.md").read_text(), capsys.readouterr().err, bool(words) and not problem
+    assert set(os.listdir(tmp_path)) == {"letters.svg", "told.svg", "stories.md"} | ({"told.mp4"} if filmed else set())
+    assert all(each in text for each in ("## told", "![told](told.svg)", "A stub's story."))
+    assert ("[Film](told.mp4)" in text) == filmed
+    missing = opengl.missing(["told.mp4"])
+    assert (f"Films: {missing}\n" in text, missing in err) == (bool(problem), bool(problem))
+    assert f"the stories are in {tmp_path / 'stories.md'}\n" in err

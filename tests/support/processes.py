@@ -1,4 +1,4 @@
-"""The command line as users run it: in a process of its own, with limits, signals and broken streams.
+"""The command line as users run it: in a process of its own, with signals and broken streams.
 
 Nothing here waits for a time: a process says on standard output that it has come to a place, and stays there. At the
 end is what processes of a study are given to do: each of them loads this module anew, and fast.
@@ -7,16 +7,12 @@ end is what processes of a study are given to do: each of them loads this module
 import contextlib
 import os
 import pathlib
-import resource
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Callable, Generator, Mapping, Sequence
 from typing import Any, TextIO
-
-from mjbeer.output import files
 
 PATIENCE = 600.0
 """Time after which a process is taken to hang [s]: a guard, which no machine is slow enough to meet."""
@@ -30,7 +26,6 @@ def start(
     code: str = _MAIN,
     env: Mapping[str, str] = os.environ,
     stdout: int | TextIO | None = subprocess.PIPE,
-    stderr: int | TextIO = subprocess.PIPE,
     preexec_fn: Callable[[], None] | None = None,
 ) -> Generator[subprocess.Popen[str]]:
     """Start Python's `code`, by default `mjbeer`, with some words, in a session of its own, as a terminal does.
@@ -45,47 +40,34 @@ def start(
         if preexec_fn is not None:
             preexec_fn()
 
-    code = f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}"
-    command = [sys.executable, "-P", "-c", code, *words]
+    command = [sys.executable, "-P", "-c", f"import sys; sys.path.append({str(_CHECKOUT)!r}); {code}", *words]
     with subprocess.Popen(
         command,
         start_new_session=True,
         text=True,
         env=env,
         stdout=stdout,
-        stderr=stderr,
+        stderr=subprocess.PIPE,
         preexec_fn=prepare,  # noqa: PLW1509 - it makes system calls only
     ) as process:
-
-        def end() -> None:
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process.pid, signal.SIGKILL)
-
-        hung = threading.Event()
-        watch = threading.Timer(PATIENCE, lambda: (hung.set(), end()))
-        watch.start()
         try:
             yield process
-            assert not hung.is_set(), "it hung, or left a process behind that held its standard streams open"
         finally:
-            watch.cancel()
-            end()
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
 
 
 def run(words: Sequence[str], *settings: Any, **streams: Any) -> tuple[int, str, str]:
     """Exit status, standard output and standard error of what `start` starts with the same arguments."""
     with start(words, *settings, **streams) as process:
-        out, err = process.communicate()
-    return process.returncode, out or "", err or ""
+        out, err = process.communicate(timeout=PATIENCE)
+    return process.returncode, out or "", err
 
 
 def hear(process: subprocess.Popen[str], word: str) -> None:
     """Wait until a process says a word, on a line of its own."""
     assert process.stdout is not None
-    for line in process.stdout:
-        if line == f"{word}\n":
-            return
-    raise AssertionError(f"it ended before it said {word!r}: {process.communicate()[1]}")
+    assert f"{word}\n" in process.stdout, process.communicate()[1]
 
 
 def interrupt(process: subprocess.Popen[str], *numbers: int, everybody: bool = True) -> tuple[int, str]:
@@ -93,21 +75,8 @@ def interrupt(process: subprocess.Popen[str], *numbers: int, everybody: bool = T
     send = os.killpg if everybody else os.kill
     for number in numbers:
         send(process.pid, number)
-    _, err = process.communicate()
+    _, err = process.communicate(timeout=PATIENCE)
     return process.returncode, err
-
-
-def run_with_little_disk(words: Sequence[str]) -> tuple[int, str, str]:
-    """As `run`, but no file can become longer than 4 KiB, as if the disk were full.
-
-    It writes no bytecode: cut off in the checkout, that would end every later run (Python 3.11.2 does not notice).
-    """
-    return run(words, env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}, preexec_fn=_little_disk)
-
-
-def _little_disk() -> None:
-    resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # Python does the same
 
 
 def where() -> dict[str, Any]:
@@ -124,6 +93,8 @@ def work_and_sleep() -> dict[str, Any]:
 
 def draw_and_sleep(path: pathlib.Path) -> None:
     """Begin a plot that takes longer than any test, and say so."""
+    from mjbeer.output import files
+
     with files.atomic_write(path.with_name(f"{path.name}.svg")):
         print("drawing", flush=True)
         time.sleep(3600)

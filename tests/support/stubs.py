@@ -69,7 +69,7 @@ def validate(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
 def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     """Make the audit one of confirmed equations with an error each, and the bound 1e-3."""
     rows = [
-        Claim(name, "a stub", Witness("none", lambda error=error: error), Bound(1e-3, ""), lambda e: (1.0 + e, -1.0))
+        Claim(name, "a stub", Witness("none", lambda error=error: error), Bound(1e-3, ""), "1 + seen - 1")
         for name, error in errors.items()
     ]
     monkeypatch.setattr(paper, "claims", lambda: rows)

@@ -1,15 +1,16 @@
 """A claim of the paper, an equation or a statement: its witness, and what is wrong with it, if anything is.
 
-The terms of an equation stand on one side, so that they sum to zero where it holds. The same function of the constants
-gives numbers when a claim is measured, and symbols when its equation is derived.
+The terms of an equation stand on one side, so that they sum to zero where it holds. The same text gives numbers when a
+claim is measured, and symbols when its equation is derived.
 """
 
 import ast
-import math
 import re
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from functools import cache
+from types import CodeType, SimpleNamespace
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -18,35 +19,26 @@ from mjbeer.checks import Result
 if TYPE_CHECKING:
     from mjbeer.theory.scene import Scene
 
-Terms = tuple[Any, ...]  # the terms of an equation, which sum to zero where it holds, or of a quantity, which sum to it
-
 CONFIRMED, CORRECTED, LIMIT = "confirmed", "confirmed after correction", "limit of validity"
 MISPRINT, APPROXIMATION, CONSEQUENCE = "misprint", "approximation", "consequence"
 """Kinds of what is wrong: a slip; orders left out, of which the paper does not speak; what follows from a slip."""
 
 
-@dataclass(frozen=True)
-class SceneConstants:
-    """Constants of a scene: numbers, or symbols where an equation is derived."""
+class Seen(SimpleNamespace):
+    """The constants of a scene and what a witness measured of it, by the names that equations have for them.
 
-    a: Any  # radius of the can [m]
-    b: Any  # distance of the load's centre of mass from the axis [m]
-    m: Any  # mass of the load [kg]
-    inertia: Any  # moment of inertia I_cm of the load about its centre of mass [kg m^2]
-    can_mass: Any  # mass m_can of the can [kg]; M in appendix B
-    can_inertia: Any  # moment of inertia I_can of the can about its axis [kg m^2]
-    g: Any
-    alpha: Any
-    sin_alpha: Any
-    cos_alpha: Any
+    Masses are `m` of the load and `can_mass` of the can (M in appendix B) [kg]. Inertias are `inertia`, I_cm of the
+    load about its centre of mass, and `can_inertia`, I_can of the can about its axis [kg m^2]. `a` is the can's radius,
+    and `b` the distance of the load's centre of mass from the axis [m]. `g` and `alpha` are gravity and the incline.
+    """
 
     @classmethod
-    def of(cls, scene: "Scene", **motion: Any) -> Self:
-        """Return the constants of a scene; `Motion.of` takes the fields of the motion as keyword arguments."""
+    def of(cls, scene: "Scene", **measured: Any) -> Self:
+        """Return the constants of a scene, with what was measured."""
         can, load = scene.can, scene.load
-        masses = can.radius, load.offset, load.mass, load.inertia, can.mass, can.inertia
-        incline = scene.incline, math.sin(scene.incline), math.cos(scene.incline)
-        return cls(*masses, scene.gravity, *incline, **motion)
+        constants = {"a": can.radius, "b": load.offset, "m": load.mass, "inertia": load.inertia}
+        constants |= {"can_mass": can.mass, "can_inertia": can.inertia, "g": scene.gravity, "alpha": scene.incline}
+        return cls(**constants, **measured)
 
     @property
     def axial(self) -> Any:
@@ -59,44 +51,25 @@ class SceneConstants:
         return self.can_mass + self.can_inertia / self.a**2
 
     @property
-    def spread(self) -> Any:
-        """delta = (m b^2/2)/(m b^2/2 + I_cm): how much the inertia about C of eq. (3) varies over a turn."""
+    def delta(self) -> Any:
+        """(m b^2/2)/(m b^2/2 + I_cm): how much the inertia about C of eq. (3) varies over a turn."""
         return (self.m * self.b**2 / 2) / (self.m * self.b**2 / 2 + self.inertia)
 
 
-@dataclass(frozen=True, eq=False)
-class Motion(SceneConstants):
-    """The constants of a scene and a motion in the coordinates of Fig. 3, in SI units, with one entry a sample."""
+def terms(equation: str, seen: Any) -> tuple[Any, ...]:
+    """Return the terms of an equation: "u - s - b*sin(phi)" has three.
 
-    s: Any
-    s_dot: Any
-    s_ddot: Any
-    u: Any
-    u_dot: Any
-    u_ddot: Any
-    phi: Any
-    phi_dot: Any
-    phi_ddot: Any
-    sin_phi: Any
-    cos_phi: Any
-    sin_theta: Any
-    cos_theta: Any
-    theta: Any = None  # angle [rad] between gravity and the line from the axis to the load's centre of mass
-    time: Any = None
-    across: Any = None  # how far the load's centre of mass is from the axis, away from the incline [m]
-    across_dot: Any = None
-    across_ddot: Any = None
-    height: Any = None  # height [m] of the load's centre of mass above where the axis starts
-    kinetic: Any = None  # kinetic energy of the whole [J]
-    potential: Any = None  # potential energy of the whole [J], zero where the axis starts
-    friction: Any = None  # force [N] of the incline on the can, uphill, where a constraint makes it roll; otherwise 0
-
-
-def equation(text: str) -> Callable[[Any], Terms]:
-    """Return what gives the terms of an equation from a motion, whose fields it names: "u - s - b*sin_phi" has three.
-
-    What is in parentheses after a sign is one term; functions are NumPy's.
+    It names what was seen, of which `seen` is the whole, and functions of NumPy's. What is in parentheses after a sign
+    is one term.
     """
+    names, codes = _compiled(equation)
+    named = {name: getattr(seen if hasattr(seen, name) else np, name) for name in names}
+    return tuple(eval(code, named | {"seen": seen}) for code in codes)
+
+
+@cache
+def _compiled(equation: str) -> tuple[set[str], list[CodeType]]:
+    """Return the names in an equation, and its terms."""
 
     def split(node: ast.expr) -> Generator[ast.expr]:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
@@ -105,35 +78,39 @@ def equation(text: str) -> Callable[[Any], Terms]:
         else:
             yield node
 
-    terms = [ast.fix_missing_locations(ast.Expression(each)) for each in split(ast.parse(text, mode="eval").body)]
-    codes = [compile(each, text, "eval") for each in terms]
-
-    def evaluate(motion: Any) -> Terms:
-        names = {name for code in codes for name in code.co_names}
-        named = {name: getattr(motion if hasattr(motion, name) else np, name) for name in names}
-        return tuple(eval(code, named) for code in codes)
-
-    return evaluate
+    whole = ast.parse(equation.strip(), mode="eval").body
+    names = {node.id for node in ast.walk(whole) if isinstance(node, ast.Name)} - {"seen"}
+    found = (ast.fix_missing_locations(ast.Expression(each)) for each in split(whole))
+    return names, [compile(each, equation, "eval") for each in found]
 
 
-@dataclass(frozen=True)
-class Witness:
+def value(equation: str, seen: Any) -> Any:
+    """Return the sum of the terms, for a text that is one side of an equation."""
+    return sum(terms(equation, seen))
+
+
+def relative_residual(terms: tuple[Any, ...]) -> float:
+    """Return the largest sum of the terms at any sample, divided by the largest term; NaN if all are zero."""
+    columns = [np.asarray(term, dtype=float) for term in terms]
+    largest = max(float(np.abs(column).max()) for column in columns)
+    return float(np.abs(np.asarray(sum(columns))).max()) / largest if largest > 0 else float("nan")
+
+
+class Witness(NamedTuple):
     """What a claim is compared with, by its name, and what computes it: a motion, or numbers."""
 
     name: str
     see: Callable[[], Any]
 
 
-@dataclass(frozen=True)
-class Bound:
+class Bound(NamedTuple):
     """Largest error that what is right may have, and what causes it."""
 
     error: float
     reason: str
 
 
-@dataclass(frozen=True)
-class Limit:
+class Limit(NamedTuple):
     """Where a claim that holds only in a limit no longer does: the error that it must have there, and what is seen."""
 
     expected_error: float
@@ -145,7 +122,7 @@ class Misprint:
     """What the paper prints in place of what is right."""
 
     expected_error: float  # error that it must have
-    terms: Callable[[Any], Terms]
+    wrong: str  # the equation as it is printed
     about: str  # what the formula is of, as a heading
     latex: str  # the formula, with `<printed|right>` where the two differ; `\\` begins a new line
     kind: str = MISPRINT
@@ -154,12 +131,19 @@ class Misprint:
     @property
     def printed(self) -> str:
         r"""The formula as printed, in LaTeX; what differs stands in `\textcolor{differs}{...}`."""
-        return _side(self.latex, 1)
+        return self._side(1)
 
     @property
     def right(self) -> str:
         """The same as it is right."""
-        return _side(self.latex, 2)
+        return self._side(2)
+
+    def _side(self, side: int) -> str:
+        def marked(found: re.Match[str]) -> str:
+            lines = [rf"\textcolor{{differs}}{{{line}}}" for line in found[side].split(r"\\ ") if line]
+            return r"\\ ".join(lines)
+
+        return re.sub(r"<([^|>]*)\|([^>]*)>", marked, self.latex)
 
 
 @dataclass(frozen=True)
@@ -170,7 +154,7 @@ class Claim:
     quantity: str  # what is claimed of what
     witness: Witness
     bound: Bound
-    terms: Callable[[Any], Terms]  # terms of what is right, from what the witness saw
+    right: str  # the equation as it is right, whose terms sum to zero
     misprint: Misprint | None = None  # what is printed instead
     limit: Limit | None = None  # where it no longer holds
     quote: str = ""  # the paper's own words, where the claim rests on these
@@ -181,43 +165,19 @@ class Claim:
         return LIMIT if self.limit else CORRECTED if self.misprint else CONFIRMED
 
     @property
-    def printed(self) -> Callable[[Any], Terms]:
-        """The terms as the paper prints them."""
-        return (self.misprint or self).terms
-
-    @property
-    def expected_error(self) -> float | None:
-        """Error of what is printed, or of what is beyond the limit; None where the paper is right."""
-        other = self.misprint or self.limit
-        return other.expected_error if other else None
+    def printed(self) -> str:
+        """The equation as the paper prints it."""
+        return self.misprint.wrong if self.misprint else self.right
 
     def measure(self) -> Result:
         """Compute the errors of what is right and of what is printed, or of what is beyond the limit.
 
         An error is the largest sum of the terms at any sample, divided by the largest single term.
         """
-        seen = self.witness.see()
-        error = relative_residual(self.terms(seen))
+        seen, wrong = self.witness.see(), self.misprint or self.limit
         values: dict[str, Any] = {"verdict": self.verdict}
-        if self.misprint or self.limit:
-            printed = relative_residual(self.printed(self.limit.see() if self.limit else seen))
-            values |= {"printed": printed, "expected_error": self.expected_error}
+        if wrong:
+            printed = terms(self.printed, self.limit.see() if self.limit else seen)
+            values |= {"printed": relative_residual(printed), "expected_error": wrong.expected_error}
         given = self.equation, self.quantity, self.witness.name, self.bound.error, "", self.bound.reason
-        return Result(*given, error, values)
-
-
-def relative_residual(terms: Terms) -> float:
-    """Return the largest sum of the terms at any sample, divided by the largest term; NaN if all are zero."""
-    columns = [np.asarray(term, dtype=float) for term in terms]
-    largest = max(float(np.abs(column).max()) for column in columns)
-    return float(np.abs(np.asarray(sum(columns))).max()) / largest if largest > 0 else float("nan")
-
-
-def _side(latex: str, side: int) -> str:
-    """Return one side of a formula with alternatives, each line of which is marked."""
-
-    def marked(found: re.Match[str]) -> str:
-        lines = [rf"\textcolor{{differs}}{{{line}}}" for line in found[side].split(r"\\ ") if line]
-        return r"\\ ".join(lines)
-
-    return re.sub(r"<([^|>]*)\|([^>]*)>", marked, latex)
+        return Result(*given, relative_residual(terms(self.right, seen)), values)

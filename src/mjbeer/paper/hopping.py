@@ -5,7 +5,8 @@ M/m, and phi [rad] is 0 where the point mass is at the bottom.
 """
 
 import math
-from functools import cache, partial
+from functools import partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,13 +14,16 @@ from scipy.optimize import brentq, minimize_scalar
 
 from mjbeer.model.setting import Rolling
 from mjbeer.paper.claim import Bound, Claim, Limit, Witness
-from mjbeer.paper.witness import CONTACT, GRIP, TOP
+from mjbeer.paper.witness import CONTACT, GRIP
+from mjbeer.simulation.run import Run
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import hoop
 
 RATIO = 1 / 20  # M/m of the hoop that hops
 MU = 0.8  # friction coefficient of the hoop that skids: the kinetic one in the paper's last figure
+TOP = math.pi - 0.05
+"""Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in balance."""
 
 
 def rate(ratio: float, phi: float | np.ndarray) -> Any:
@@ -76,34 +80,35 @@ def slip(ratio: float, mu: float) -> float:
     return math.pi - float(brentq(margin, angles[slips[0] + 1], angles[slips[0]], xtol=1e-14))
 
 
-@cache
 def _threshold() -> float:
     """Return the M/m below which the least N is negative."""
     return float(brentq(lambda ratio: _least_normal(ratio)[0], 0.05, 0.1, xtol=1e-14))
 
 
-def _light_hoop() -> Scene:
-    return hoop(hoop_mass=0.2 * RATIO, load_mass=0.2)
+def _hoop(ratio: float) -> Scene:
+    return hoop(hoop_mass=0.2 * ratio, load_mass=0.2)
 
 
-@cache
-def _event(friction: float) -> float:
-    """Return the angle from the top [rad] at which a falling hoop lifts off if it cannot slip, or else skids.
+def fall(ratio: float, friction: float, timestep: float) -> Run:
+    """Return half a second of a hoop in contact that is let go at `TOP`: one that lifts off has done so by then."""
+    return simulate(_hoop(ratio), 0.5, TOP, rolling="contact", timestep=timestep, friction=friction)
 
-    It skids where the rim slides faster than 1e-5 of the axis's top speed.
-    """
-    run = simulate(_light_hoop(), 0.5, TOP, rolling="contact", timestep=2e-5, friction=friction)
-    if friction == GRIP:
-        angle = run.takeoff()
-        return math.nan if angle is None else angle
+
+def _lifts_off() -> SimpleNamespace:
+    return SimpleNamespace(angle=fall(RATIO, GRIP, 2e-5).takeoff(), theory=lift_off(RATIO))
+
+
+def _skids() -> SimpleNamespace:
+    """Return the angle from the top [rad] at which the rim slides faster than 1e-5 of the axis's top speed."""
+    run = fall(RATIO, MU, 2e-5)
     rim = np.abs(run.u_dot - run.scene.can.radius * run.roll_dot)
-    return math.pi - float(run.phi[np.argmax(rim > 1e-5 * np.abs(run.u_dot).max())])
+    angle = math.pi - float(run.phi[np.argmax(rim > 1e-5 * np.abs(run.u_dot).max())])
+    return SimpleNamespace(angle=angle, theory=slip(RATIO, MU))
 
 
-@cache
 def _height(rolling: Rolling) -> np.ndarray:
     """Return how high the axis of a hoop that starts with a push is, in radii."""
-    run = simulate(_light_hoop(), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)
+    run = simulate(_hoop(RATIO), 0.3, -3.0, 16.0, rolling=rolling, timestep=1e-4, friction=GRIP)
     return 1 + np.maximum(run.lift / run.scene.can.radius, 0.0)
 
 
@@ -116,26 +121,25 @@ _THEORY = "exact theory"
 # fmt: off
 CLAIMS = (
     Claim("sec. A.4", "Littlewood: lifts off at 90 degrees: beyond, at M/m = 1/20; within, at 1e-9",
-        Witness(_THEORY, partial(lift_off, 1e-9)), Bound(1e-8, "M/m"), lambda angle: (math.pi / 2, -angle),
+        Witness(_THEORY, partial(lift_off, 1e-9)), Bound(1e-8, "M/m"), "pi/2 - seen",
         limit=Limit(0.091, partial(lift_off, RATIO)),
         quote="The hoop lifts off the ground when the radius vector to the weight becomes horizontal."),
     Claim("sec. A.4", "angle of lift-off at M/m = 1/20, by theory 99.0 degrees",
-        Witness(CONTACT, partial(_event, GRIP)),
-        Bound(5e-3, "penetration of the contact, which unloads late"), lambda angle: (angle, -lift_off(RATIO)),
+        Witness(CONTACT, _lifts_off), Bound(5e-3, "penetration of the contact, which unloads late"), "angle - theory",
         quote="the can leaves the surface briefly"),
     Claim("sec. A.4", "Pritchett: hops from rest below M/m = 1/13",
-        Witness(_THEORY, _threshold), Bound(1e-9, "the search for the least N"), lambda ratio: (1 / 13, -ratio),
+        Witness(_THEORY, _threshold), Bound(1e-9, "the search for the least N"), "1/13 - seen",
         quote="valid only if the mass of the unloaded hoop is nonzero"),
     Claim("sec. A.4", "in practice it skids first: at mu = 0.8 from 94.2 degrees on, by theory",
-        Witness(CONTACT, partial(_event, MU)), Bound(5e-3, "what counts as skidding, and the push that starts it"),
-        lambda angle: (angle, -slip(RATIO, MU)), quote="In actual practice the hoop skids first."),
+        Witness(CONTACT, _skids), Bound(5e-3, "what counts as skidding, and the push that starts it"), "angle - theory",
+        quote="In actual practice the hoop skids first."),
     Claim("sec. A.4", "rolling without slipping cannot hop: beyond, held by friction alone; within, by a constraint",
-        Witness(CONTACT, partial(_height, "equality")), Bound(0.0, "it hops or not"),
-        lambda height: (height, -np.ones_like(height)), limit=Limit(0.58, partial(_height, "contact")),
+        Witness(CONTACT, partial(_height, "equality")), Bound(0.0, "it hops or not"), "seen - 1",
+        limit=Limit(0.58, partial(_height, "contact")),
         quote="A rigid can that is somehow constrained to roll without slipping cannot hop."),
     Claim("footnote 10", "nothing pushes at 90 degrees: beyond, the friction at lift-off for M/m = 1/20; within, 1e-9",
         Witness(_THEORY, partial(_friction_at_lift_off, 1e-9)), Bound(1e-8, "M/m"),
-        lambda force: (1.0, force, -1.0),  # the error is a share of m g
+        "1 + seen - 1",  # the error is a share of m g
         limit=Limit(0.146, partial(_friction_at_lift_off, RATIO)),
         quote="valid only if the mass of the unloaded hoop is nonzero, in contrast to Littlewood's idealization"),
 )

@@ -1,115 +1,168 @@
-"""Section 3.1 of the paper, equations (39)-(49): a can with mass, partially filled.
+"""Section 3.1 of the paper, equations (39)-(49): a can with mass, partially filled; and appendix B, (56)-(61).
 
-Where the wheel of appendix B, whose K is 2M, has the same equation, K is the name `rolling`.
+The hoop wheel of appendix B, of mass M = `can_mass`, with a pendulum, has the equations of the can with I_can/a^2 =
+m_can = M and I_cm = 0, as the paper says: K, the name `rolling`, is 2M.
 """
 
+import math
 from functools import partial
-from typing import Any
 
-from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, SceneConstants, Witness, equation
+from mjbeer.paper.claim import CONSEQUENCE, Bound, Claim, Limit, Misprint, Seen, Witness
 from mjbeer.paper.sliding import KINETIC_11, POTENTIAL_14, POTENTIAL_17
-from mjbeer.paper.witness import DRIFT, EQUALITY, EXACT, HELD, METAL, resting
+from mjbeer.paper.witness import DRIFT, EXACT, HELD, METAL, REDUCED, SMALL, WHEEL, oscillate, simulated
 from mjbeer.theory.can import Can
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.scenes import pendulum, sliding
 
-CAN_39 = "rolling/2*s_dot**2 + rolling*b*cos_phi*s_dot*phi_dot + rolling/2*b**2*{}_phi**2*phi_dot**2"
+_CAN_39 = "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*{}(phi)**2*phi_dot**2"
 """T_can [J] in s and phi; its last term has the cosine, printed with the sine."""
-POTENTIAL_40 = "- can_mass*g*s*sin_alpha - can_mass*g*b*sin_phi*sin_alpha"  # V_can [J] in s and phi
-BEER_43 = "u_dot**2 - 2*b*cos_phi*u_dot*phi_dot + b**2*phi_dot**2"  # v_beer^2 [m^2/s^2] in u and theta
-TWICE_44 = "m/2*u_dot**2 - m*b*cos_phi*u_dot*phi_dot + m/2*b**2*phi_dot**2"  # m v_beer^2/2 [J]
-MOTION_46 = "(m + rolling)*u_ddot - m*b*cos_phi*phi_ddot + m*b*sin_phi*phi_dot**2 - (m + can_mass)*g*sin_alpha"
-MOTION_47 = "{}*{} - m*b*cos_phi*u_ddot + m*g*b*sin_theta"
+_POTENTIAL_40 = "- can_mass*g*s*sin(alpha) - can_mass*g*b*sin(phi)*sin(alpha)"  # V_can [J] in s and phi
+_TWICE_44 = "m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m/2*b**2*phi_dot**2"  # m v_beer^2/2 [J]
+_MOTION_46 = "(m + rolling)*u_ddot - m*b*cos(phi)*phi_ddot + m*b*sin(phi)*phi_dot**2 - (m + can_mass)*g*sin(alpha)"
+_MOTION_47 = "{}*{} - m*b*cos(phi)*u_ddot + m*g*b*sin(theta)"
 """I_axis theta_ddot - m b cos(phi) u_ddot = -m g b sin(theta); a misprint has other factors in the first term."""
-MOTION_48 = (
-    "(m + rolling)*s_ddot + rolling*b*cos_phi*phi_ddot - rolling*b*sin_phi*phi_dot**2 - (m + can_mass)*g*sin_alpha"
+_MOTION_48 = (
+    "(m + rolling)*s_ddot + rolling*b*cos(phi)*phi_ddot - rolling*b*sin(phi)*phi_dot**2 - (m + can_mass)*g*sin(alpha)"
 )
 _MOTION_16 = (
-    "(inertia + m*b**2*sin_phi**2)*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 + m*g*b*cos_alpha*sin_phi "
-    "+ rolling*b*cos_phi*s_ddot"
+    "(inertia + m*b**2*sin(phi)**2)*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 + m*g*b*cos(alpha)*sin(phi) "
+    "+ rolling*b*cos(phi)*s_ddot"
 )
-MOTION_49 = (
-    f"{_MOTION_16} + rolling*b**2*cos_phi**2*phi_ddot - rolling*b**2*sin_phi*cos_phi*phi_dot**2 "
-    "- can_mass*g*b*sin_alpha*cos_phi"
+_MOTION_49 = (
+    f"{_MOTION_16} + rolling*b**2*cos(phi)**2*phi_ddot - rolling*b**2*sin(phi)*cos(phi)*phi_dot**2 "
+    "- can_mass*g*b*sin(alpha)*cos(phi)"
 )
-PRINTED_49 = f"{_MOTION_16} + rolling*b**2*sin_phi**2*phi_ddot"
+_PRINTED_49 = f"{_MOTION_16} + rolling*b**2*sin(phi)**2*phi_ddot"
 """Eq. (16) with what the can adds to it, corrected and as printed."""
 _OF_THE_WHOLE = "rolling*u_dot**2/2 - kinetic"
-_OF_THE_CAN = "- can_mass*g*u*sin_alpha - potential"
+_OF_THE_CAN = "- can_mass*g*u*sin(alpha) - potential"
 """The can's kinetic energy, or its potential energy, less that of the whole."""
-
-
-def steady(c: SceneConstants, k: Any) -> Any:
-    """Return the acceleration [m/s^2] of footnote 4 for a can whose beer does not swing."""
-    return c.g * c.sin_alpha * (c.m + c.can_mass) / (c.m + k)
+_STEADY = "g*sin(alpha)*(m + can_mass)/(m + {})"  # acceleration [m/s^2] of a can whose beer does not swing
+_BOB_59 = "m*s_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2"
 
 
 def _rests(scene: Scene) -> Witness:
-    return Witness(EQUALITY, partial(resting, scene))
+    return simulated(scene, scene.equilibrium())
 
 
-_FULL, _NEARLY_EMPTY = sliding(can=Can.sheet_metal()), sliding(fill=1e-4, can=Can.sheet_metal())
-_HOOP = sliding(fill=1e-4, can=Can.hoop(mass=0.05))
+def _of_the_wheel(equation: str) -> str:
+    """Return the equation of a can with K = 2M."""
+    return equation.replace("rolling", "2*can_mass")
+
+
+def _bob(ratio: float, heavy: bool = False) -> Seen:
+    """Return the frequency of a bob of `ratio` wheel masses, over some twenty small swings.
+
+    A swing of a heavy bob is small only if phi^2 is well below 2M/m.
+    """
+    scene = pendulum(load_mass=0.2 * ratio)
+    amplitude = SMALL / math.sqrt(ratio / 2) if heavy else SMALL
+    return oscillate(scene, scene.equilibrium() + amplitude, 120 / scene.frequency())
+
+
+_FULL, _NEARLY_EMPTY = (_rests(sliding(fill=fill, can=Can.sheet_metal())) for fill in (0.5, 1e-4))
+_HOOP = _rests(sliding(fill=1e-4, can=Can.hoop(mass=0.05)))
 _LEFT_49 = r"(I_{\text{cm}}+mb^2\sin^2\!\varphi)\,\ddot\varphi+mb^2\sin\varphi\,\cos\varphi\,\dot\varphi^2\\ {}+"
 _CAN = r"\Bigl(m_{\text{can}}+\frac{I_{\text{can}}}{a^2}\Bigr)"
-BRACKET_49 = (
+_BRACKET_49 = (
     r"b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\ddot\varphi"
     r"\\ {}<|{}-b^2\sin\varphi\,\cos\varphi\,\dot\varphi^2>+b\cos\varphi\,\ddot s)\\ {}=-mgb\cos\alpha\,\sin\varphi"
 )
+_AS_IN_3 = "the considerations in sec. 3 above with m_can → M, I_can/a² → M and I_cm → 0"
+_LIMITS = "can be analyzed simply only in the limits that m ≪ M or m ≫ M"
 
 # fmt: off
 CLAIMS = (
-    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, equation("phi - theta + alpha"),
-        Misprint(0.16, equation("phi - theta - alpha"), "The two angles of the beer",
+    Claim("sec. 3.1", "phi = theta - alpha; printed theta + alpha", METAL, EXACT, "phi - theta + alpha",
+        Misprint(0.16, "phi - theta - alpha", "The two angles of the beer",
             r"\varphi=\theta\,<+|->\,\alpha"),
         quote="θ or φ = θ + α as the independent coordinates"),
-    Claim("(39)", "T_can in u", METAL, HELD, equation(f"rolling*u_dot**2/2 - (kinetic - ({KINETIC_11}))")),
+    Claim("(39)", "T_can in u", METAL, HELD, f"rolling*u_dot**2/2 - (kinetic - ({KINETIC_11}))"),
     Claim("(39)", "T_can in s and phi: its last term has cos^2; printed sin^2", METAL, HELD,
-        equation(f"{CAN_39.format('cos')} - (kinetic - ({KINETIC_11}))"),
-        Misprint(0.060, equation(f"{CAN_39.format('sin')} - (kinetic - ({KINETIC_11}))"), "Kinetic energy of the can",
+        f"{_CAN_39.format('cos')} - (kinetic - ({KINETIC_11}))",
+        Misprint(0.060, f"{_CAN_39.format('sin')} - (kinetic - ({KINETIC_11}))", "Kinetic energy of the can",
             r"\frac12" + _CAN + r"\bigl(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi\\ "
             r"{}+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2\bigr)")),
-    Claim("(40)", "V_can in u", METAL, EXACT, equation(POTENTIAL_14 + _OF_THE_CAN)),
-    Claim("(40)", "V_can in s and phi", METAL, EXACT, equation(POTENTIAL_40 + POTENTIAL_14 + "- potential")),
-    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, equation("u - b*sin_phi - s")),
-    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, equation("-b*cos_phi - across")),
+    Claim("(40)", "V_can in u", METAL, EXACT, POTENTIAL_14 + _OF_THE_CAN),
+    Claim("(40)", "V_can in s and phi", METAL, EXACT, _POTENTIAL_40 + POTENTIAL_14 + "- potential"),
+    Claim("(41)", "x of the beer's centre of mass", METAL, EXACT, "u - b*sin(phi) - s"),
+    Claim("(41)", "y of the beer's centre of mass", METAL, EXACT, "-b*cos(phi) - across"),
     Claim("(42)", "x_dot = s_dot; printed s_dot^2 (in SI units)", METAL, EXACT,
-        equation("s_dot - u_dot + b*cos_phi*phi_dot"),
-        Misprint(0.39, equation("s_dot**2 - u_dot + b*cos_phi*phi_dot"),
+        "s_dot - u_dot + b*cos(phi)*phi_dot",
+        Misprint(0.39, "s_dot**2 - u_dot + b*cos(phi)*phi_dot",
             "Velocity of the centre of mass along the incline", r"\dot x=<\dot s^2|\dot s>")),
-    Claim("(42)", "y_dot", METAL, EXACT, equation("b*sin_phi*phi_dot - across_dot")),
-    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT, equation(BEER_43 + "- (s_dot**2 + across_dot**2)")),
+    Claim("(42)", "y_dot", METAL, EXACT, "b*sin(phi)*phi_dot - across_dot"),
+    Claim("(43)", "v_beer^2 in u and theta", METAL, EXACT,
+        "u_dot**2 - 2*b*cos(phi)*u_dot*phi_dot + b**2*phi_dot**2 - (s_dot**2 + across_dot**2)"),
     Claim("(43)", "v_beer^2 in s and phi", METAL, EXACT,
-        equation("s_dot**2 + b**2*sin_phi**2*phi_dot**2 - (s_dot**2 + across_dot**2)")),
+        "s_dot**2 + b**2*sin(phi)**2*phi_dot**2 - (s_dot**2 + across_dot**2)"),
     Claim("(44)", "T_beer in u and theta", METAL, HELD,
-        equation(f"{TWICE_44} + inertia*phi_dot**2/2 + {_OF_THE_WHOLE}")),
-    Claim("(44)", "T_beer in s and phi", METAL, HELD, equation(f"{KINETIC_11} + {_OF_THE_WHOLE}")),
-    Claim("(45)", "V_beer in u and theta", METAL, EXACT, equation(POTENTIAL_17 + _OF_THE_CAN)),
-    Claim("(45)", "V_beer in s and phi", METAL, EXACT, equation(POTENTIAL_14 + _OF_THE_CAN)),
-    Claim("(46)", "equation of motion of u", METAL, HELD, equation(MOTION_46)),
+        f"{_TWICE_44} + inertia*phi_dot**2/2 + {_OF_THE_WHOLE}"),
+    Claim("(44)", "T_beer in s and phi", METAL, HELD, f"{KINETIC_11} + {_OF_THE_WHOLE}"),
+    Claim("(45)", "V_beer in u and theta", METAL, EXACT, POTENTIAL_17 + _OF_THE_CAN),
+    Claim("(45)", "V_beer in s and phi", METAL, EXACT, POTENTIAL_14 + _OF_THE_CAN),
+    Claim("(46)", "equation of motion of u", METAL, HELD, _MOTION_46),
     Claim("(47)", "equation of motion of theta: I_axis; printed m a^2 (for m a^2/2 of a half can)", METAL, HELD,
-        equation(MOTION_47.format("axial", "phi_ddot")),
-        Misprint(0.50, equation(MOTION_47.format("m*a**2", "phi_ddot")), "Massive can: equation of motion of θ",
+        _MOTION_47.format("axial", "phi_ddot"),
+        Misprint(0.50, _MOTION_47.format("m*a**2", "phi_ddot"), "Massive can: equation of motion of θ",
             r"<ma^2|I_{\text{axis}}>\,\ddot\theta-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta"),
         quote="recalling that mb² + I_cm = ma²"),
-    Claim("(48)", "equation of motion of s", METAL, HELD, equation(MOTION_48)),
+    Claim("(48)", "equation of motion of s", METAL, HELD, _MOTION_48),
     Claim("(49)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", METAL, HELD,
-        equation(MOTION_49),
-        Misprint(0.059, equation(PRINTED_49), "Massive can: equation of motion of φ",
-            _LEFT_49 + _CAN + "(" + BRACKET_49 + r"<|{}+m_{\text{can}}gb\sin\alpha\,\cos\varphi>")),
-    Claim("footnote 4", "acceleration of a can whose beer does not swing", _rests(_FULL), HELD,
-        lambda q: (q.u_ddot, -steady(q, q.rolling)),
+        _MOTION_49,
+        Misprint(0.059, _PRINTED_49, "Massive can: equation of motion of φ",
+            _LEFT_49 + _CAN + "(" + _BRACKET_49 + r"<|{}+m_{\text{can}}gb\sin\alpha\,\cos\varphi>")),
+    Claim("footnote 4", "acceleration of a can whose beer does not swing", _FULL, HELD,
+        f"u_ddot - {_STEADY.format('rolling')}",
         quote="the acceleration of the center of the can would be constant, with value "
         "g sin α(m + m_can)/(m + m_can + I_can/a²)"),
     Claim("footnote 4", "the same with I_can = m_can a^2: beyond, the metal can; within, a hoop",
-        _rests(_HOOP), Bound(1e-7, DRIFT), lambda q: (q.u_ddot, -steady(q, 2 * q.can_mass)),
-        limit=Limit(4.2e-3, _rests(_FULL).see), quote="≈ g sin α(m + m_can)/(m + 2m_can)"),
+        _HOOP, Bound(1e-7, DRIFT), f"u_ddot - {_STEADY.format('2*can_mass')}",
+        limit=Limit(4.2e-3, _FULL.see), quote="≈ g sin α(m + m_can)/(m + 2m_can)"),
     Claim("sec. 3.1", "(g/2) sin(alpha) of a nearly empty can: beyond, of sheet metal; within, a hoop",
-        _rests(_HOOP), Bound(1e-4, "what beer is left (fill 1e-4)"), equation("u_ddot - g*sin_alpha/2"),
-        limit=Limit(0.054, _rests(_NEARLY_EMPTY).see),
+        _HOOP, Bound(1e-4, "what beer is left (fill 1e-4)"), "u_ddot - g*sin(alpha)/2",
+        limit=Limit(0.054, _NEARLY_EMPTY.see),
         quote="nearly the same as that of an empty can, with acceleration (g/2) sin α down the incline"),
-    Claim("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _rests(_FULL), HELD,
-        lambda q: (q.sin_phi / q.cos_phi, -(steady(q, q.rolling) - q.g * q.sin_alpha) / (q.g * q.cos_alpha)),
+    Claim("sec. 3.1", "tilt of the beer that does not swing, which the paper leaves open", _FULL, HELD,
+        f"tan(phi) - ({_STEADY.format('rolling')} - g*sin(alpha))/(g*cos(alpha))",
         quote="small oscillations of the “beer” about an equilibrium"),
+)
+OF_THE_WHEEL = (
+    Claim("(56)", "T in u and theta: the sign of u_dot theta_dot, and b^2 theta_dot^2", WHEEL, HELD,
+        f"can_mass*u_dot**2 + {_TWICE_44} - kinetic",
+        Misprint(0.70, "can_mass*u_dot**2 + m/2*u_dot**2 + m*b*cos(phi)*u_dot*phi_dot - kinetic",
+            "Pendulum in a wheel: kinetic energy",
+            r"M\dot u^2+\frac m2\bigl[\dot u^2<{}+2b\cos(\theta-\alpha)\,\dot u\,\dot\theta|"
+            r"{}-2b\cos(\theta-\alpha)\,\dot u\,\dot\theta+b^2\dot\theta^2>\bigr]")),
+    Claim("(56)", "V in u and theta", WHEEL, EXACT,
+        "-(can_mass + m)*g*u*sin(alpha) - m*g*b*cos(theta) - potential"),
+    Claim("(57)", "equation of motion of u", WHEEL, HELD, _of_the_wheel(_MOTION_46)),
+    Claim("(58)", "equation of motion of theta: theta_ddot; printed theta (in SI units)", WHEEL, HELD,
+        _MOTION_47.format("m*b**2", "phi_ddot"),
+        Misprint(1.12, _MOTION_47.format("m*b**2", "theta"), "Pendulum in a wheel: equation of motion of θ",
+            r"mb^2<\theta|\ddot\theta>-mb\cos(\theta-\alpha)\,\ddot u=-mgb\sin\theta")),
+    Claim("(59)", "T in s and phi: cos^2; printed sin^2", WHEEL, HELD,
+        _of_the_wheel(f"{_CAN_39.format('cos')} + {_BOB_59} - kinetic"),
+        Misprint(0.28, _of_the_wheel(f"{_CAN_39.format('sin')} + {_BOB_59} - kinetic"),
+            "Pendulum in a wheel: kinetic energy of the wheel",
+            r"M(\dot s^2+2b\cos\varphi\,\dot s\,\dot\varphi+b^2<\sin^2\!\varphi|\cos^2\!\varphi>\,\dot\varphi^2)",
+            CONSEQUENCE, "(39)"),
+        quote=_AS_IN_3),
+    Claim("(59)", "V in s and phi", WHEEL, EXACT, _POTENTIAL_40 + POTENTIAL_14 + "- potential"),
+    Claim("(60)", "equation of motion of s", WHEEL, HELD, _of_the_wheel(_MOTION_48)),
+    Claim("(61)", "equation of motion of phi: cos^2 for sin^2, and two terms that are not printed", WHEEL, HELD,
+        _of_the_wheel(_MOTION_49),
+        Misprint(1.09, _of_the_wheel(_PRINTED_49), "Pendulum in a wheel: equation of motion of φ",
+            r"mb^2(\sin^2\!\varphi\,\ddot\varphi+\sin\varphi\,\cos\varphi\,\dot\varphi^2)\\ {}+2M(" + _BRACKET_49
+            + r"<|{}+Mgb\sin\alpha\,\cos\varphi>", CONSEQUENCE, "(49)"),
+        quote=_AS_IN_3),
+    Claim("appendix B", "m << M: a pendulum in a frame at (g/2) sin(alpha): beyond, m = M; within, m = 1e-6 M",
+        Witness(REDUCED, partial(_bob, 1e-6)), Bound(2e-6, "m/M = 1e-6"),
+        "sqrt(g*hypot(cos(alpha), sin(alpha)/2)/b) - omega",
+        limit=Limit(0.182, partial(_bob, 1.0)), quote=_LIMITS),
+    Claim("appendix B", "m >> M: omega^2 = g cos(alpha) m/(2 M b), without bound: beyond, m = M; within, 1e4 M",
+        Witness(REDUCED, partial(_bob, 1e4, True)), Bound(2e-4, "M/m = 1e-4"),
+        "sqrt(g*cos(alpha)*m/(2*can_mass*b)) - omega",
+        limit=Limit(0.42, partial(_bob, 1.0, True)), quote=_LIMITS),
 )
 # fmt: on

@@ -4,24 +4,20 @@ Lengths are in can radii a, areas in a^2 and inertias in m a^2, unless a unit is
 that the beer subtends at the axis.
 """
 
-import math
-from collections.abc import Callable
 from functools import cache, partial
-from typing import Any
+from types import SimpleNamespace
 
 import mujoco
 import numpy as np
 
 from mjbeer.model.build import build
-from mjbeer.paper.claim import Bound, Claim, Misprint, Terms, Witness, equation
+from mjbeer.paper.claim import Bound, Claim, Misprint, Witness
 from mjbeer.theory.can import ALUMINIUM, LENGTH, RADIUS, THICKNESS, Can
-from mjbeer.theory.load import BEER, Load, Segment, segment
+from mjbeer.theory.load import BEER, Load, segment
 from mjbeer.theory.scenes import sliding
 
 FILLS = (0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95)
 """Fills at which the formulas of section 3 are compared with quadrature, on both sides of a half-full can."""
-
-
 _TWICE_AREA = "(2*beta - sin(2*beta))"
 """Twice the area by the last form of eq. (33)."""
 _SECOND_36 = (
@@ -31,29 +27,20 @@ _SECOND_36 = (
 _THIRD_36 = f"4/3*(3*beta/4 - 3*sin(2*beta)/8 + sin(2*beta)*sin(beta)**2/{{}})/{_TWICE_AREA}"
 _LAST_36 = f"(1 + 2*sin(2*beta)*sin(beta)**2/(3*{_TWICE_AREA}))/2"
 """I_axis/(m a^2) by the second line of eq. (36), with its integrals evaluated, its third line, and its last form."""
-_AXIAL = " - (inertia + offset**2)"  # less I_axis/(m a^2) by quadrature
+_AXIAL = " - (inertia + b**2)"  # less I_axis/(m a^2) by quadrature
+
+_PAPER = {"a": RADIUS, "l": LENGTH, "t": THICKNESS, "rho": ALUMINIUM, "rho_beer": BEER}
+"""The letters of sizes [m] and densities [kg/m^3]."""
 
 
-def _of_segment(text: str) -> Callable[[Any], Terms]:
-    """Return an equation of a segment with half the angle beta."""
-    return equation(text.replace("beta", "half_angle"))
-
-
-@cache
-def _segments(fills: tuple[float, ...] = FILLS) -> Segment:
-    """Return the segments of some fills, by quadrature, as one whose fields are arrays."""
-    columns: Any = np.transpose([segment(fill) for fill in fills])
-    return Segment(*columns)
-
-
-def _chord(shape: Segment) -> Terms:
-    """Return the terms of eq. (32), with h/a from half the length of the chord that subtends the angle 2 beta."""
-    below = np.where(np.array(FILLS) <= 0.5, 1.0, -1.0)
-    return 1 - np.cos(shape.half_angle), below * np.sqrt(1 - np.sin(shape.half_angle) ** 2) - 1
+def _segments(*fills: float) -> SimpleNamespace:
+    """Return the angle beta, the area, b, I_cm and the mass [kg] of beer with some fills, by quadrature, as arrays."""
+    columns = np.transpose([(*segment(fill)[:4], Load.segment(fill=fill).mass) for fill in fills])
+    return SimpleNamespace(**dict(zip(("beta", "area", "b", "inertia", "mass"), columns, strict=True)), **_PAPER)
 
 
 @cache
-def _shell() -> tuple[float, float]:
+def _shell() -> SimpleNamespace:
     """Return the mass [kg] and the axial inertia [kg m^2] that MuJoCo computes for a closed cylinder of sheet metal."""
     spec = mujoco.MjSpec()
     spec.worldbody.add_body(name="can").add_geom(
@@ -66,79 +53,71 @@ def _shell() -> tuple[float, float]:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     can, axes = model.body("can"), data.body("can").ximat.reshape(3, 3)
-    return float(can.mass[0]), float((axes @ np.diag(can.inertia) @ axes.T)[2, 2])
+    inertia = float((axes @ np.diag(can.inertia) @ axes.T)[2, 2])
+    return SimpleNamespace(mass=float(can.mass[0]), inertia=inertia, **_PAPER)
 
 
-def _centre_of_mass() -> tuple[float, float]:
-    """Return the distance [m] of the common centre of mass from the axis by MuJoCo, and d = m b/(m + m_can) of (38)."""
+def _centre_of_mass() -> SimpleNamespace:
+    """Return the distance [m] of the common centre of mass from the axis by MuJoCo, and what (38) names."""
     scene = sliding(can=Can.sheet_metal())
     model = build(scene, "equality")
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    seen = float(np.linalg.norm(data.subtree_com[model.body("can").id] - data.body("can").xpos))
-    return seen, scene.load.mass / (scene.load.mass + scene.can.mass) * scene.load.offset
+    distance = float(np.linalg.norm(data.subtree_com[model.body("can").id] - data.body("can").xpos))
+    return SimpleNamespace(distance=distance, m=scene.load.mass, can_mass=scene.can.mass, b=scene.load.offset)
 
 
-_QUADRATURE, _METAL = "segment quadrature", "MuJoCo's shell of a cylinder"
-_HALF = Witness(_QUADRATURE, partial(segment, 0.5))
-_FILLED = Witness(_QUADRATURE, _segments)
-_THOUSAND = Witness(_QUADRATURE, lambda: _segments(tuple(np.linspace(1e-3, 1, 1000).tolist())))
-_SHELL = Witness(_METAL, _shell)
+def _by_quadrature(*fills: float) -> Witness:
+    return Witness("segment quadrature", partial(_segments, *fills))
+
+
+_HALF, _FILLED, _THOUSAND = _by_quadrature(0.5), _by_quadrature(*FILLS), _by_quadrature(*np.linspace(1e-3, 1, 1000))
+_SHELL = Witness("MuJoCo's shell of a cylinder", _shell)
 _CLOSED = Bound(1e-13, "rounding; the closed forms cancel at small fills")
 _ROUNDING = Bound(1e-13, "rounding")
 _DIGIT = "half a unit of the last digit"
 
 # fmt: off
 CLAIMS = (
-    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, equation("4/(3*pi) - offset")),
-    Claim("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED, equation("0.5 - inertia - offset**2")),
-    Claim("(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED, equation("-inertia + (0.5 - (4/(3*pi))**2)")),
-    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), equation("0.32 - inertia")),
-    Claim("(30)", "m_can", _SHELL, _ROUNDING,
-        lambda shell: (2 * math.pi * RADIUS * THICKNESS * (LENGTH + RADIUS) * ALUMINIUM, -shell[0])),
-    Claim("(31)", "I_can", _SHELL, _ROUNDING,
-        lambda shell: (math.pi * RADIUS**3 * THICKNESS * (2 * LENGTH + RADIUS) * ALUMINIUM, -shell[1])),
-    Claim("(31)", "I_can/(m_can a^2)", _SHELL, _ROUNDING,
-        lambda shell: ((2 * LENGTH + RADIUS) / (2 * (LENGTH + RADIUS)), -shell[1] / (shell[0] * RADIUS**2))),
-    Claim("(31)", "I_can = 0.89 m_can a^2", _SHELL, Bound(5.6e-3, _DIGIT),
-        lambda shell: (0.89, -shell[1] / (shell[0] * RADIUS**2))),
-    Claim("(32)", "h/a", Witness("chord of a circle", _segments), _CLOSED, _chord),
-    Claim("(34)", "mass of the beer",
-        Witness(_QUADRATURE, lambda: np.array([Load.segment(fill=fill).mass for fill in FILLS])), _CLOSED,
-        lambda mass: (RADIUS**2 * LENGTH * BEER * sum(_of_segment(f"{_TWICE_AREA}/2")(_segments())), -mass)),
-    Claim("(33)", "area, middle form", _FILLED, _CLOSED,
-        _of_segment("-area + (pi/2 - cos(beta)*sin(beta) - arcsin(cos(beta)))")),
-    Claim("(33)", "area, last form", _FILLED, _CLOSED, _of_segment(f"{_TWICE_AREA}/2 - area")),
-    Claim("(35)", "b, with A", _FILLED, _CLOSED, _of_segment(f"2*sin(beta)**3/(3*({_TWICE_AREA}/2)) - offset")),
-    Claim("(35)", "b, last form", _FILLED, _CLOSED, _of_segment(f"4*sin(beta)**3/(3*{_TWICE_AREA}) - offset")),
-    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, _of_segment(_SECOND_36 + _AXIAL)),
-    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, _of_segment(_LAST_36 + _AXIAL)),
-    Claim("(37)", "I_cm", _FILLED, _CLOSED,
-        _of_segment(f"-inertia + ({_LAST_36} - 16*sin(beta)**6/(9*{_TWICE_AREA}**2))")),
+    Claim("(7)", "b/a of a half cylinder", _HALF, _CLOSED, "4/(3*pi) - b"),
+    Claim("(8)", "I_axis/(m a^2) of a half cylinder", _HALF, _CLOSED, "0.5 - inertia - b**2"),
+    Claim("(9)", "I_cm/(m a^2) of a half cylinder", _HALF, _CLOSED, "-inertia + (0.5 - (4/(3*pi))**2)"),
+    Claim("(9)", "I_cm = 0.32 m a^2", _HALF, Bound(1.6e-2, _DIGIT), "0.32 - inertia"),
+    Claim("(30)", "m_can", _SHELL, _ROUNDING, "2*pi*a*t*(l + a)*rho - mass"),
+    Claim("(31)", "I_can", _SHELL, _ROUNDING, "pi*a**3*t*(2*l + a)*rho - inertia"),
+    Claim("(31)", "I_can/(m_can a^2)", _SHELL, _ROUNDING, "(2*l + a)/(2*(l + a)) - inertia/(mass*a**2)"),
+    Claim("(31)", "I_can = 0.89 m_can a^2", _SHELL, Bound(5.6e-3, _DIGIT), "0.89 - inertia/(mass*a**2)"),
+    Claim("(32)", "h/a", Witness("chord of a circle", _FILLED.see), _CLOSED,
+        # From the axis to the chord, by half its length, and that by the angle 2 beta that it subtends.
+        "-1 + where(beta < pi/2, 1, -1)*sqrt(1 - sin(beta)**2) + (1 - cos(beta))"),
+    Claim("(34)", "mass of the beer", _FILLED, _CLOSED, f"a**2*l*rho_beer*{_TWICE_AREA}/2 - mass"),
+    Claim("(33)", "area, middle form", _FILLED, _CLOSED, "-area + (pi/2 - cos(beta)*sin(beta) - arcsin(cos(beta)))"),
+    Claim("(33)", "area, last form", _FILLED, _CLOSED, f"{_TWICE_AREA}/2 - area"),
+    Claim("(35)", "b, with A", _FILLED, _CLOSED, f"2*sin(beta)**3/(3*({_TWICE_AREA}/2)) - b"),
+    Claim("(35)", "b, last form", _FILLED, _CLOSED, f"4*sin(beta)**3/(3*{_TWICE_AREA}) - b"),
+    Claim("(36)", "I_axis, second line", _FILLED, _CLOSED, _SECOND_36 + _AXIAL),
+    Claim("(36)", "I_axis, last form", _FILLED, _CLOSED, _LAST_36 + _AXIAL),
+    Claim("(37)", "I_cm", _FILLED, _CLOSED, f"-inertia + ({_LAST_36} - 16*sin(beta)**6/(9*{_TWICE_AREA}**2))"),
     Claim("(36)", "I_axis, third line: sin(2 beta) sin^2(beta)/4; printed /8", _FILLED, _CLOSED,
-        _of_segment(_THIRD_36.format(4) + _AXIAL),
-        Misprint(0.23, _of_segment(_THIRD_36.format(8) + _AXIAL),
-            "The beer's inertia about the can's axis, third line",
+        _THIRD_36.format(4) + _AXIAL,
+        Misprint(0.23, _THIRD_36.format(8) + _AXIAL, "The beer's inertia about the can's axis, third line",
             r"\frac{2\rho_{\text{beer}}a^4l}{3}\Bigl(\frac{3\beta}{4}-\frac{3\sin2\beta}{8}"
             r"+\frac{\sin2\beta\,\sin^2\!\beta}{<8|4>}\Bigr)")),
     Claim("(38)", "centre of mass of can and beer", Witness("MuJoCo, subtree_com", _centre_of_mass), _ROUNDING,
-        lambda found: (found[1], -found[0])),
+        "m*b/(m + can_mass) - distance"),
     Claim("figure of (36)", "k is 1/2 at beta = pi/2 and at pi",
-        Witness(_QUADRATURE, lambda: _segments((0.5, 1.0))), _CLOSED, equation("0.5" + _AXIAL),
+        _by_quadrature(0.5, 1.0), _CLOSED, "0.5" + _AXIAL,
         quote="k decreases from 1 … to 1/2 at β = π/2 …, then dips slightly and returns to k = 1/2 at β = π"),
-    Claim("figure of (36)", "k is 1 for a film (fill 1e-5)", Witness(_QUADRATURE, partial(segment, 1e-5)),
-        Bound(1e-4, "the film's height"), equation("1" + _AXIAL),
+    Claim("figure of (36)", "k is 1 for a film (fill 1e-5)",
+        _by_quadrature(1e-5), Bound(1e-4, "the film's height"), "1" + _AXIAL,
         quote="decreases from 1 (for a point mass at distance a from the axis)"),
     Claim("figure of (36)", "in between k dips, to 0.456 at 115 degrees", _THOUSAND,
-        Bound(2e-3, f"{_DIGIT}; the paper gives no number"), lambda at: (0.456, -(at.inertia + at.offset**2).min()),
-        quote="then dips slightly"),
+        Bound(2e-3, f"{_DIGIT}; the paper gives no number"), "0.456 - min(inertia + b**2)", quote="then dips slightly"),
     Claim("figure of (37)", "k rises all the way: it is never below what it was", _THOUSAND, _ROUNDING,
-        lambda at: (at.inertia, -np.maximum.accumulate(at.inertia)),
-        quote="as angle β increases from 0 to π, k increases"),
+        "inertia - maximum.accumulate(inertia)", quote="as angle β increases from 0 to π, k increases"),
     Claim("figure of (37)", "k goes from 0 by 0.32 at beta = pi/2 to 0.5",
-        Witness(_QUADRATURE, lambda: _segments((1e-5, 0.5, 1.0))), Bound(1e-3, _DIGIT),
-        lambda at: (np.array([0.0, 0.32, 0.5]), -at.inertia),
+        _by_quadrature(1e-5, 0.5, 1.0), Bound(1e-3, _DIGIT), "array([0, 0.32, 0.5]) - inertia",
         quote="k increases from 0 … to 0.32 at β = π/2 …, and then continues to increase to 0.5 at β = π"),
 )
 # fmt: on

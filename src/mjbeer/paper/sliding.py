@@ -1,159 +1,115 @@
 """Section 2 of the paper, equations (1)-(24): beer that slides without friction in a massless can."""
 
-import math
-from functools import cache, partial
-from typing import Any
+from functools import partial
 
-import numpy as np
-
-from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Motion, SceneConstants, Witness, equation
+from mjbeer.paper.claim import Bound, Claim, Limit, Misprint, Witness
 from mjbeer.paper.witness import (
     DRIFT,
-    EQUALITY,
     EXACT,
+    METAL,
     NARROW,
     REDUCED,
     SMALL,
     SWING,
     WIDE,
     balanced,
-    frequency,
-    metal,
-    resting,
-    simulate_motion,
-    swing,
+    oscillate,
+    simulated,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import sliding
 
-
-def eq_6(c: SceneConstants) -> Any:
-    """Return omega^2 = m b g cos(alpha) / I_cm [1/s^2]."""
-    return c.m * c.b * c.g * c.cos_alpha / c.inertia
-
-
-def eq_10(c: SceneConstants, pi: Any) -> Any:
-    """Return omega^2 = 24 pi g cos(alpha) / ((9 pi^2 - 32) a) [1/s^2] of a half can; corrected."""
-    return printed_10(c, pi) / c.a
-
-
-def printed_10(c: SceneConstants, pi: Any) -> Any:
-    """Return 24 pi g cos(alpha) / (9 pi^2 - 32) [m/s^2]: the misprint lacks the radius."""
-    return 24 * pi * c.g * c.cos_alpha / (9 * pi**2 - 32)
-
-
-def frequency_10(scene: Scene) -> float:
-    """Return omega [rad/s] by eq. (10), corrected."""
-    return math.sqrt(eq_10(SceneConstants.of(scene), math.pi))
-
-
-def eq_24(c: SceneConstants) -> Any:
-    """Return omega^2 = 2 b g cos(alpha) / (a^2 - 2 b^2) [1/s^2] of a half can; also the first form of eq. (10)."""
-    return 2 * c.b * c.g * c.cos_alpha / (c.a**2 - 2 * c.b**2)
-
-
-KINETIC_11 = "m*s_dot**2/2 + m*b**2*sin_phi**2*phi_dot**2/2 + inertia*phi_dot**2/2"
+EQ_6 = "m*b*g*cos(alpha)/inertia"  # omega^2 [1/s^2]
+PRINTED_10 = "24*pi*g*cos(alpha)/(9*pi**2 - 32)"  # the misprint lacks the radius
+EQ_10 = f"{PRINTED_10}/a"  # omega^2 of a half can
+EQ_24 = "2*b*g*cos(alpha)/(a**2 - 2*b**2)"  # omega^2 of a half can; also the first form of eq. (10)
+KINETIC_11 = "m*s_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2 + inertia*phi_dot**2/2"
 """T [J] of the beer in any can, also the second line of eq. (44)."""
-POTENTIAL_14 = "- m*g*s*sin_alpha - m*g*b*cos_alpha*cos_phi"
-POTENTIAL_17 = "- m*g*u*sin_alpha - m*g*b*cos_theta"
+POTENTIAL_14 = "- m*g*s*sin(alpha) - m*g*b*cos(alpha)*cos(phi)"
+POTENTIAL_17 = "- m*g*u*sin(alpha) - m*g*b*cos(theta)"
 """V [J] of the beer in s and phi, and in u and theta, which (20) and (45) have too."""
-_EQ_19 = "a**2/2*phi_ddot - b*cos_phi*u_ddot + {}*b*sin_theta"
-_TORQUE = "m*g*cos_alpha*(u - s)"
+_EQ_19 = "a**2/2*phi_ddot - b*cos(phi)*u_ddot + {}*b*sin(theta)"
+_TORQUE = "m*g*cos(alpha)*(u - s)"
 """Torque of gravity about C [N m], clockwise, with the lever arm of MuJoCo's positions."""
 _TURNS_ABOUT_C = "across_dot - phi_dot*(u - s)"  # the centre of mass moves across the incline at phi_dot (u - s) [m/s]
 
-
-@cache
-def _in_a_light_can() -> Motion:
-    """Return a swing in a can of a ten-thousandth of the metal can's mass."""
-    return simulate_motion(sliding(can=Can.sheet_metal(thickness=1e-8)), "equality", 1.0, 2.0)
-
-
-@cache
-def _beer() -> SceneConstants:
-    return SceneConstants.of(sliding())
-
-
-_SMALL_SWING = Witness(REDUCED, lambda: frequency(sliding(), SMALL))
+_LIGHT_CAN = simulated(sliding(can=Can.sheet_metal(thickness=1e-8)), 2.0)  # a ten-thousandth of the metal can's mass
+_LEVEL = simulated(sliding(0.0), 2.0)
+_SMALL_SWING = Witness(REDUCED, partial(oscillate, sliding(), SMALL))
 
 # fmt: off
 CLAIMS = (
-    Claim("(1)", "s(t) from rest", SWING, Bound(1e-12, "rounding of DOP853"),
-        equation("s - g*sin_alpha*time**2/2")),
+    Claim("(1)", "s(t) from rest", SWING, Bound(1e-12, "rounding of DOP853"), "s - g*sin(alpha)*time**2/2"),
     Claim("footnote 1",
         "no friction between can and incline: beyond, the metal can; within, one of a ten-thousandth of it",
-        Witness(EQUALITY, _in_a_light_can), Bound(1e-4, "the can's share of the mass"),
-        equation("m*g*sin_alpha - friction - m*g*sin_alpha"),  # the error: a share of the weight
-        limit=Limit(0.25, metal),
+        _LIGHT_CAN, Bound(1e-4, "the can's share of the mass"),
+        "m*g*sin(alpha) - friction - m*g*sin(alpha)",  # the error: a share of the weight
+        limit=Limit(0.25, METAL.see),
         quote="in the limit of a massless can, the force of friction is zero, so we neglect friction"),
     *(Claim("footnote 2", f"a cylinder of inertia {k:g} m a^2 has g sin(alpha)/(1 + k)",
-        Witness(EQUALITY, partial(resting, balanced(k))), Bound(1e-7, DRIFT),
-        equation(f"u_ddot - g*sin_alpha/(1 + {k})"),
+        simulated(balanced(k), 0.0), Bound(1e-7, DRIFT), f"u_ddot - g*sin(alpha)/(1 + {k})",
         quote="a uniform cylinder with moment of inertia I = kma² about its axis has acceleration g sin α/(1 + k)")
       for k in (1.0, 0.5)),
     Claim("Fig. 1", "at phi = 0 the surface stays parallel to the incline, and u = g sin(alpha) t^2/2",
-        Witness(REDUCED, partial(resting, sliding(), "reduced")), EXACT, equation("u - g*sin_alpha*time**2/2 + phi"),
+        simulated(sliding(), sliding().equilibrium()), EXACT, "u - g*sin(alpha)*time**2/2 + phi",
         quote="slide down a frictionless incline of angle α without oscillation if its flat side is parallel to the "
         "incline"),
     Claim("footnote 6", "sliding beer can be at rest: beyond, at 10 degrees; within, on level ground",
-        Witness(REDUCED, partial(swing, incline=0.0)), EXACT, equation("g + s_ddot - g"),
-        limit=Limit(0.174, swing), quote="a stable equilibrium exists only for α = 0"),
-    Claim("(2)", "torque about the instantaneous centre", SWING, EXACT, equation(
-        f"(inertia + m*b**2*sin_phi**2)*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 + {_TORQUE}")),
+        _LEVEL, EXACT, "g + s_ddot - g",
+        limit=Limit(0.174, SWING.see), quote="a stable equilibrium exists only for α = 0"),
+    Claim("(2)", "torque about the instantaneous centre", SWING, EXACT,
+        f"(inertia + m*b**2*sin(phi)**2)*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 + {_TORQUE}"),
     Claim("Fig. 2",
         "C moves with the centre of mass along the incline; the caption puts it on a line along the surface",
-        WIDE, EXACT, equation(_TURNS_ABOUT_C),
+        WIDE, EXACT, _TURNS_ABOUT_C,
         # Turning about a C that is lower by b tan(phi) sin(phi) adds a velocity along the incline.
-        Misprint(0.93, equation(_TURNS_ABOUT_C + " - phi_dot*b*sin_phi**2/cos_phi"),
+        Misprint(0.93, _TURNS_ABOUT_C + " - phi_dot*b*sin(phi)**2/cos(phi)",
             "The line through the centre of mass on which the instantaneous centre C lies",
             r"<\text{along the flat surface of the beer}|\text{along the incline}>"),
         quote="the line parallel to the flat surface that passes through the center of mass"),
-    Claim("(3)", "I_C, exact form", SWING, EXACT, equation(
-        "inertia*phi_dot**2/2 + m*b**2*sin_phi**2*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)")),
+    Claim("(3)", "I_C, exact form", SWING, EXACT,
+        "inertia*phi_dot**2/2 + m*b**2*sin(phi)**2*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)"),
     Claim("(3)", "I_C = I_cm: beyond, a swing of 1 rad; within, of 1e-3 rad",
         NARROW, Bound(1e-6, "the amplitude: (m b^2/I_cm) phi^2 = 6e-7"),
-        equation("inertia*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)"), limit=Limit(0.095, WIDE.see)),
-    Claim("(4)", "torque about C, exact form", SWING, EXACT, equation(f"-m*g*cos_alpha*b*sin_phi + {_TORQUE}")),
+        "inertia*phi_dot**2/2 + (m*s_dot**2/2 - kinetic)", limit=Limit(0.095, WIDE.see)),
+    Claim("(4)", "torque about C, exact form", SWING, EXACT, f"-m*g*cos(alpha)*b*sin(phi) + {_TORQUE}"),
     Claim("(4)", "torque about C, linear form: its sign", NARROW, Bound(3e-7, "the amplitude: phi^2/6 = 1.7e-7"),
-        equation(f"-m*b*g*cos_alpha*phi + {_TORQUE}"),
-        Misprint(2.0, equation(f"m*b*g*cos_alpha*phi + {_TORQUE}"),
+        f"-m*b*g*cos(alpha)*phi + {_TORQUE}",
+        Misprint(2.0, f"m*b*g*cos(alpha)*phi + {_TORQUE}",
             "Torque about the instantaneous centre, for small angles",
             r"\tau_C\approx<+|->\,mbg\cos\alpha\,\varphi")),
     Claim("(5), (23)", "linear equation of motion: beyond, a swing of 1 rad; within, of 1e-3 rad",
         NARROW, Bound(1e-6, "the amplitude: (1/6 + m b^2/I_cm) phi^2 = 7e-7"),
-        equation("inertia*phi_ddot + m*b*g*cos_alpha*phi"), limit=Limit(0.40, WIDE.see)),
+        "inertia*phi_ddot + m*b*g*cos(alpha)*phi", limit=Limit(0.40, WIDE.see)),
     Claim("(6), (24)", "omega of small oscillations: beyond, a swing of 1 rad; within, of 1e-3 rad",
-        _SMALL_SWING, Bound(3e-7, "the amplitude: 2e-7"),
-        lambda omega: (np.sqrt([eq_6(_beer()), eq_24(_beer())]), -omega),
-        limit=Limit(0.15, lambda: frequency(sliding(), 1.0))),
+        _SMALL_SWING, Bound(3e-7, "the amplitude: 2e-7"), f"sqrt(array([{EQ_6}, {EQ_24}])) - omega",
+        limit=Limit(0.15, partial(oscillate, sliding(), 1.0))),
     Claim("(10)", "omega^2, middle form: it lacks 1/a (in SI units)", _SMALL_SWING, Bound(6e-7, "the amplitude: 4e-7"),
-        lambda omega: (eq_10(_beer(), math.pi), -(omega**2)),
-        Misprint(0.967, lambda omega: (printed_10(_beer(), math.pi), -(omega**2)),
-            "Frequency of small swings of a half-full can",
+        f"{EQ_10} - omega**2",
+        Misprint(0.967, f"{PRINTED_10} - omega**2", "Frequency of small swings of a half-full can",
             r"\omega^2=\frac{24\pi g\cos\alpha}{9\pi^2-32}<|\cdot\frac1a>")),
     Claim("(10)", "omega^2 = 1.33 g cos(alpha)/a", _SMALL_SWING, Bound(3.8e-3, "half a unit of the last digit"),
-        lambda omega: (1.33 * _beer().g * _beer().cos_alpha / _beer().a, -(omega**2))),
-    Claim("(11)", "T", SWING, EXACT, equation(KINETIC_11 + " - kinetic")),
-    Claim("(12)", "u = s + b sin(phi)", SWING, EXACT, equation("u - s - b*sin_phi")),
-    Claim("(12), Fig. 3", "theta = alpha + phi", SWING, EXACT, equation("theta - phi - alpha")),
-    Claim("(13)", "z in u and theta", SWING, EXACT, equation("-u*sin_alpha - b*cos_theta - height")),
-    Claim("(13)", "z in s and phi", SWING, EXACT, equation("-s*sin_alpha - b*cos_alpha*cos_phi - height")),
-    Claim("(14)", "V, its first form: -mgz for +mgz", SWING, EXACT, equation(POTENTIAL_14 + " - potential"),
-        Misprint(1.92, equation("m*g*s*sin_alpha + m*g*b*cos_alpha*cos_phi - potential"),
+        "1.33*g*cos(alpha)/a - omega**2"),
+    Claim("(11)", "T", SWING, EXACT, f"{KINETIC_11} - kinetic"),
+    Claim("(12)", "u = s + b sin(phi)", SWING, EXACT, "u - s - b*sin(phi)"),
+    Claim("(12), Fig. 3", "theta = alpha + phi", SWING, EXACT, "theta - phi - alpha"),
+    Claim("(13)", "z in u and theta", SWING, EXACT, "-u*sin(alpha) - b*cos(theta) - height"),
+    Claim("(13)", "z in s and phi", SWING, EXACT, "-s*sin(alpha) - b*cos(alpha)*cos(phi) - height"),
+    Claim("(14)", "V, its first form: -mgz for +mgz", SWING, EXACT, f"{POTENTIAL_14} - potential",
+        Misprint(1.92, "m*g*s*sin(alpha) + m*g*b*cos(alpha)*cos(phi) - potential",
             "Potential energy of the beer", "V=<-|+>mgz")),
-    Claim("(15)", "s_ddot", SWING, EXACT, equation("s_ddot - g*sin_alpha")),
-    Claim("(16)", "equation of motion of phi", SWING, EXACT, equation(
-        "m*b**2*sin_phi**2*phi_ddot + inertia*phi_ddot + m*b**2*sin_phi*cos_phi*phi_dot**2 "
-        "+ m*b*g*cos_alpha*sin_phi")),
-    Claim("(17), (20)", "T", SWING, EXACT, equation(
-        "m/2*u_dot**2 - m*b*cos_phi*u_dot*phi_dot + m*a**2/4*phi_dot**2 - kinetic")),
-    Claim("(17), (20)", "V", SWING, EXACT, equation(POTENTIAL_17 + " - potential")),
+    Claim("(15)", "s_ddot", SWING, EXACT, "s_ddot - g*sin(alpha)"),
+    Claim("(16)", "equation of motion of phi", SWING, EXACT,
+        "m*b**2*sin(phi)**2*phi_ddot + inertia*phi_ddot + m*b**2*sin(phi)*cos(phi)*phi_dot**2 "
+        "+ m*b*g*cos(alpha)*sin(phi)"),
+    Claim("(17), (20)", "T", SWING, EXACT,
+        "m/2*u_dot**2 - m*b*cos(phi)*u_dot*phi_dot + m*a**2/4*phi_dot**2 - kinetic"),
+    Claim("(17), (20)", "V", SWING, EXACT, f"{POTENTIAL_17} - potential"),
     Claim("(18), (21)", "equation of motion of u", SWING, EXACT,
-        equation("u_ddot - b*cos_phi*phi_ddot + b*sin_phi*phi_dot**2 - g*sin_alpha")),
+        "u_ddot - b*cos(phi)*phi_ddot + b*sin(phi)*phi_dot**2 - g*sin(alpha)"),
     Claim("(19), (22)", "equation of motion of phi or theta: its right side lacks g (in SI units)", SWING, EXACT,
-        equation(_EQ_19.format("g")),
-        Misprint(0.61, equation(_EQ_19.format("1")), "Equation of motion of φ, and that of θ alike",
+        _EQ_19.format("g"),
+        Misprint(0.61, _EQ_19.format("1"), "Equation of motion of φ, and that of θ alike",
             r"\frac{a^2}{2}\ddot\varphi-b\cos\varphi\,\ddot u=-<|g>b\sin(\alpha+\varphi)")),
 )
 # fmt: on

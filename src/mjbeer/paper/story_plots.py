@@ -23,14 +23,15 @@ from mjbeer.output.plots import (
     ticks,
 )
 from mjbeer.paper import hopping, oscillation
-from mjbeer.paper.claim import SceneConstants
+from mjbeer.paper.claim import Seen, value
+from mjbeer.paper.frozen import PRINTED_8
 from mjbeer.paper.hopping import MU
 from mjbeer.paper.oscillation import SLOW
-from mjbeer.paper.witness import GRIP, fall_from_top, loop
+from mjbeer.paper.witness import GRIP, loop
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.exact import exact
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, hoop, sliding
+from mjbeer.theory.scenes import frozen, sliding
 from mjbeer.theory.trajectory import Trajectory
 
 SWING = math.radians(60)  # amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down
@@ -84,20 +85,18 @@ def draw_hesitation(panels: Sequence[Axes]) -> None:
 
 def draw_looping(panels: Sequence[Axes]) -> None:
     """Draw how unevenly beer loops, slowly and fast, beside eqs. (26) and (28)."""
-    scene = sliding()
-    c = SceneConstants.of(scene)
     phase = np.linspace(0, 2 * math.pi, 201)
     x = np.degrees(phase)
     for axes, start, about in zip(panels, (SLOW, 400.0), ("Slowly", "Fast, in a can held down"), strict=True):
-        turn = loop(scene, start)
-        phi = sum(turn.phi[k] * np.sin(k * phase) for k in range(1, 40))
-        once = oscillation.corrected_28(c, turn.rate) * np.sin(phase)
-        corrected = np.degrees(once + c.spread / 4 * np.sin(2 * phase))
-        printed = np.degrees(oscillation.epsilon_28(c, turn.rate) * np.sin(phase))
+        turn = loop(sliding(), start)
+        phi = sum(turn.ripple[k] * np.sin(k * phase) for k in range(1, 40))
+        once = value(oscillation.CORRECTED_28, turn) * np.sin(phase)
+        corrected = np.degrees(once + turn.delta / 4 * np.sin(2 * phase))
+        printed = np.degrees(value(oscillation.PRINTED_28, turn) * np.sin(phase))
         axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **PRINTED)
         axes.plot(x[::5], corrected[::5], "k.", label="and a second, twice in a turn: corrected")
         axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
-        label(axes, "", "beer ahead, φ − Ωt [°]", f"{about}: Ω = {turn.rate:.0f} rad/s in the mean")
+        label(axes, "", "beer ahead, φ − Ωt [°]", f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean")
         axes.set_xticks(range(0, 361, 90))
     panels[-1].set_xlabel("even turning, Ωt [°]")
     name_below(panels, 1)
@@ -105,13 +104,12 @@ def draw_looping(panels: Sequence[Axes]) -> None:
 
 def footnote_8_as_printed(scene: Scene, times: np.ndarray, phi0: float) -> np.ndarray:
     """Return phi [rad] of a half-full massless can by footnote 8's equation as printed, from rest at `phi0` [rad]."""
-    a, b, g = scene.can.radius, scene.load.offset, scene.gravity
 
     def slope(_: float, state: np.ndarray) -> list[float]:
         phi, rate = state
-        pull = g * (a * math.sin(scene.incline) - b * math.sin(scene.incline + phi))
-        turning = (pull - a * b / 2 * math.sin(phi) * rate**2) / (1.5 * a**2 - 2 * a * b * math.cos(phi))
-        return [rate, turning]
+        moved = {"phi": phi, "theta": scene.incline + phi, "phi_dot": rate}
+        still, turning = (value(PRINTED_8, Seen.of(scene, **moved, phi_ddot=each)) for each in (0.0, 1.0))
+        return [rate, still / (still - turning)]  # the equation is linear in phi_ddot
 
     return solve_ivp(slope, (0, times[-1]), [phi0, 0.0], t_eval=times, rtol=1e-10, atol=1e-12).y[0]
 
@@ -193,7 +191,7 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     # The angle of lift-off rises like a square root just below 1/13, so that the points are denser there.
     ratios = np.unique(np.append(np.geomspace(1e-3, 0.07, 300), 1 / 13 * (1 - np.geomspace(0.1, 1e-6, 20))))
     few = np.array([2e-3, 8e-3, 0.03, 0.06])
-    found = [fall_from_top(hoop(hoop_mass=0.2 * float(ratio)), 5e-5, GRIP).takeoff() for ratio in few]
+    found = [hopping.fall(float(ratio), GRIP, 5e-5).takeoff() for ratio in few]
     measured = [math.nan if angle is None else math.degrees(angle) for angle in found]
     lifts = [math.degrees(hopping.lift_off(float(ratio))) for ratio in ratios]
     (axes,) = panels

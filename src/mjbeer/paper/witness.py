@@ -1,97 +1,86 @@
 """MuJoCo as a witness: what its forward dynamics computes along a motion; and the motions that several claims share."""
 
 import math
-from dataclasses import dataclass
 from functools import cache, partial
+from typing import Any
 
 import mujoco
 import numpy as np
 
-from mjbeer import require
 from mjbeer.model.build import build
 from mjbeer.model.joints import joint_addresses, to_states
 from mjbeer.model.mechanics import Mechanics
-from mjbeer.model.setting import DOP853, ROLLINGS, Rolling, Setting
-from mjbeer.paper.claim import Bound, Motion, Witness
+from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting, supported
+from mjbeer.paper.claim import Bound, Seen, Witness
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
-from mjbeer.theory.exact import exact
 from mjbeer.theory.load import Load
-from mjbeer.theory.scene import INCLINE, Scene
+from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import frozen, pendulum, sliding
-from mjbeer.theory.trajectory import Trajectory
 
 
-def simulate_motion(
-    scene: Scene, rolling: Rolling, duration: float, phi0: float, phi_dot0: float = 0.0, samples: int = 101
-) -> Motion:
-    """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it.
+def simulated(scene: Scene, phi0: float, *more: Any, **settings: Any) -> Witness:
+    """Return the witness of a motion; the arguments are those of `watch`.
 
-    With `rolling` "equality" the can and the load are two bodies that a constraint couples: that model contains none
-    of the paper's theory.
+    Unless told otherwise the can is rolled by a constraint between two joints: that model contains none of the paper's
+    theory. A massless can around a sliding load is beyond it, and is reduced.
+    """
+    settings.setdefault("rolling", "equality" if supported(scene, "equality") else "reduced")
+    return Witness(f"MuJoCo, {settings['rolling']}", partial(watch, scene, phi0, *more, **settings))
+
+
+@cache
+def watch(
+    scene: Scene,
+    phi0: float,
+    duration: float = 1.0,
+    phi_dot0: float = 0.0,
+    rolling: Rolling = "reduced",
+    samples: int = 101,
+    integrator: Integrator = DOP853,
+    timestep: float = 5e-4,
+) -> Seen:
+    """Simulate a motion and return what MuJoCo computes at evenly spaced samples of it, in the coordinates of Fig. 3.
+
+    `s` is read from the position of the load's centre of mass, `across` is how far it is from the axis, away from the
+    incline, and `height` how far above where the axis starts. `theta` [rad] is the angle between gravity and the line
+    from the axis to it. Accelerations are those of mj_forward; `kinetic` and `potential` are energies of the whole [J],
+    and `friction` is the force [N] of the incline on the can, uphill, where a constraint makes it roll, otherwise 0.
     """
     times = np.linspace(0, duration, samples)
-    return measure_motion(simulate(scene, duration, phi0, phi_dot0, rolling, DOP853, timestep=5e-4, times=times))
-
-
-def measure_motion(run: Trajectory) -> Motion:
-    """Return what MuJoCo computes at each sample of a simulated motion.
-
-    s is read from the position of the load's centre of mass, and accelerations are those of mj_forward.
-    """
-    scene, timestep = run.scene, run.timestep or 1e-3
-    setting = Setting(require.choice("rolling", run.rolling, ROLLINGS), DOP853, timestep)
-    model, unit = build(scene, setting.rolling, integrator=DOP853, timestep=timestep), Mechanics.of(scene, setting).unit
-    data = mujoco.MjData(model)
-    samples = [_evaluate(model, data, scene, state) for state in to_states(model, run)]
-    axis, load, turn, energy, force = (np.array(column) for column in zip(*samples, strict=True))
-    energy, force = energy / unit, force / unit
-    arm = load[:, 0] - axis[:, 0]
-    across = load[:, :, 2] - axis[:, :, 2]
-    down = model.opt.gravity / scene.gravity
-    side = np.array([-down[2], 0, down[0]])  # a quarter turn from gravity, downhill
-    return Motion.of(
-        scene,
-        **dict(zip(("s", "s_dot", "s_ddot"), load[:, :, 0].T, strict=True)),
-        **dict(zip(("u", "u_dot", "u_ddot"), axis[:, :, 0].T, strict=True)),
-        **dict(zip(("across", "across_dot", "across_ddot"), across.T, strict=True)),
-        phi=run.phi,
-        phi_dot=turn[:, 0],
-        phi_ddot=turn[:, 1],
-        sin_phi=np.sin(run.phi),
-        cos_phi=np.cos(run.phi),
-        sin_theta=np.sin(run.phi + scene.incline),
-        cos_theta=np.cos(run.phi + scene.incline),
-        theta=np.arctan2(-arm @ side, arm @ down),
-        time=run.time,
-        height=-(load[:, 0] - [0, 0, axis[0, 0, 2]]) @ down,
-        kinetic=energy[:, 1],
-        potential=energy[:, 0] + scene.mass * model.opt.gravity[2] * axis[0, 0, 2],
-        friction=-force,
-    )
-
-
-def _evaluate(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, state: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return what MuJoCo computes in a state: how the axis and the load's centre of mass move, the load's angular
-    velocity and acceleration, the energies, and the constraint's force along the incline."""
-    data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
-    names = joint_addresses(model)
-    mujoco.mj_forward(model, data)
-    mujoco.mj_energyPos(model, data)
-    mujoco.mj_energyVel(model, data)
-    can = model.body("can").id
+    run = simulate(scene, duration, phi0, phi_dot0, rolling, integrator, timestep, times=times)
+    model = build(scene, rolling, integrator=DOP853, timestep=timestep)
+    data, unit = mujoco.MjData(model), Mechanics.of(scene, Setting(rolling, DOP853, timestep)).unit
+    names, can = joint_addresses(model), model.body("can").id
     carrier = model.body("load").id if "swing" in names else can
-    at = data.xpos[carrier] - data.xmat[carrier].reshape(3, 3)[:, 2] * scene.load.offset
-    force = data.qfrc_constraint[model.joint("slide").dofadr[0]] if "slide" in names else 0.0
-    turn = np.zeros((3, model.nv))
-    mujoco.mj_jac(model, data, None, turn, data.xpos[carrier], carrier)
-    return (
-        _point_motion(model, data, data.xpos[can].copy(), can),
-        _point_motion(model, data, at, carrier),
-        np.array([turn[1] @ data.qvel, turn[1] @ data.qacc]),
-        data.energy.copy(),
-        np.array(force),
-    )
+    axis, load = np.empty((2, samples, 3, 3))
+    phi_dot, phi_ddot, potential, kinetic, friction = np.zeros((5, samples))
+    for k, state in enumerate(to_states(model, run)):
+        data.qpos[:], data.qvel[:] = np.split(state, [model.nq])
+        mujoco.mj_forward(model, data)
+        mujoco.mj_energyPos(model, data)
+        mujoco.mj_energyVel(model, data)
+        centre = data.xpos[carrier] - data.xmat[carrier].reshape(3, 3)[:, 2] * scene.load.offset
+        axis[k] = _point_motion(model, data, data.xpos[can].copy(), can)
+        load[k] = _point_motion(model, data, centre, carrier)
+        turn = np.zeros((3, model.nv))
+        mujoco.mj_jac(model, data, None, turn, data.xpos[carrier], carrier)
+        phi_dot[k], phi_ddot[k] = turn[1] @ data.qvel, turn[1] @ data.qacc
+        potential[k], kinetic[k] = data.energy / unit
+        if "slide" in names:
+            friction[k] = -data.qfrc_constraint[model.joint("slide").dofadr[0]] / unit
+    down, start = model.opt.gravity / scene.gravity, axis[0, 0, 2]
+    arm, side = load[:, 0] - axis[:, 0], np.array([-down[2], 0, down[0]])  # a quarter turn from gravity, downhill
+    coordinates = {"s": load[:, :, 0], "u": axis[:, :, 0], "across": load[:, :, 2] - axis[:, :, 2]}
+    moved = {
+        name + dots: column
+        for name, columns in coordinates.items()
+        for dots, column in zip(("", "_dot", "_ddot"), columns.T, strict=True)
+    }
+    moved |= {"phi": run.phi, "phi_dot": phi_dot, "phi_ddot": phi_ddot, "theta": np.arctan2(-arm @ side, arm @ down)}
+    height, level = -(load[:, 0] - [0, 0, start]) @ down, scene.mass * model.opt.gravity[2] * start
+    forces = {"kinetic": kinetic, "potential": potential + level, "friction": friction}
+    return Seen.of(scene, time=run.time, height=height, **moved, **forces)
 
 
 def _point_motion(model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray, body: int) -> np.ndarray:
@@ -103,43 +92,10 @@ def _point_motion(model: mujoco.MjModel, data: mujoco.MjData, point: np.ndarray,
 
 
 @cache
-def swing(amplitude: float = 2.0, incline: float = INCLINE) -> Motion:
-    """Return a second of beer that slides in a massless can, let go at an amplitude on an incline [rad].
-
-    At 2 rad every term of an equation matters; 1 rad is clearly not small, and 1e-3 rad is.
-    """
-    return simulate_motion(sliding(incline), "reduced", 1.0, amplitude)
-
-
-@cache
-def metal() -> Motion:
-    """Return a second of beer that slides in the 12-oz can of sheet metal, let go at 2 rad."""
-    return simulate_motion(sliding(can=Can.sheet_metal()), "equality", 1.0, 2.0)
-
-
-@cache
-def wheel() -> Motion:
-    """Return a second of a pendulum in a wheel, let go at 2 rad."""
-    return simulate_motion(pendulum(), "equality", 1.0, 2.0)
-
-
-@cache
-def rolling_down(scene: Scene | None = None) -> Motion:
-    """Return the first 0.8 s of a can with frozen beer that rolls down, let go with the beer on top."""
-    return simulate_motion(scene or frozen(), "equality", 0.8, math.pi)
-
-
-@cache
-def resting(scene: Scene, rolling: Rolling = "equality") -> Motion:
-    """Return a second that starts at the equilibrium; a balanced load starts at phi = 0."""
-    return simulate_motion(scene, rolling, 1.0, scene.equilibrium() if scene.load.offset else 0.0)
-
-
-@cache
-def frequency(scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced") -> float:
-    """Return the frequency omega [rad/s] of a swing that is simulated in 4000 steps."""
+def oscillate(scene: Scene, phi0: float, duration: float = 4.0, rolling: Rolling = "reduced") -> Seen:
+    """Return the frequency `omega` [rad/s] of a swing that is simulated in 4000 steps, and its `rest` [rad]."""
     run = simulate(scene, duration, phi0, rolling=rolling, integrator=DOP853, timestep=duration / 4000)
-    return run.frequency()
+    return Seen.of(scene, omega=run.frequency(), rest=scene.equilibrium())
 
 
 def footnote_scene(part: float = 1.0) -> Scene:
@@ -159,60 +115,35 @@ def balanced(k: float) -> Scene:
 
 REDUCED, EQUALITY, CONTACT = "MuJoCo, reduced", "MuJoCo, equality", "MuJoCo, contact"
 SMALL = 1e-3  # amplitude [rad] of a small swing
-SWING = Witness(REDUCED, swing)
-WIDE, NARROW = (Witness(REDUCED, partial(swing, amplitude)) for amplitude in (1.0, SMALL))
-METAL, WHEEL = Witness(EQUALITY, metal), Witness(EQUALITY, wheel)
-ROLL_DOWN = Witness(EQUALITY, rolling_down)
-FOOTNOTE_8 = Witness(EQUALITY, partial(rolling_down, footnote_scene()))
+# At 2 rad every term of an equation matters; 1 rad is clearly not small.
+SWING, WIDE, TENTH, NARROW = (simulated(sliding(), amplitude) for amplitude in (2.0, 1.0, 0.1, SMALL))
+METAL, WHEEL = simulated(sliding(can=Can.sheet_metal()), 2.0), simulated(pendulum(), 2.0)
+ROLL_DOWN, FOOTNOTE_8 = (simulated(scene, math.pi, 0.8) for scene in (frozen(), footnote_scene()))
 EXACT = Bound(1e-12, "rounding of MuJoCo's forward dynamics")
 DRIFT = "what MuJoCo's joint equality takes back of its drift"
 HELD = Bound(2e-8, DRIFT)
 
-TOP = math.pi - 0.05
-"""Angle phi [rad] from which a hoop falls: a little beside pi, the top, where it would stay in balance."""
 GRIP = 1e6  # friction coefficient so large that nothing slips
-
-
-def fall_from_top(scene: Scene, timestep: float, friction: float) -> Trajectory:
-    """Return the fall of a hoop in contact, let go at `TOP`, until just after it lifts off or passes the bottom."""
-    times = np.linspace(0, 3, 3001)
-    fall = exact(scene, times, TOP)
-    parts = fall.rolls_until()
-    duration = parts * 1.02 if math.isfinite(parts) else float(times[np.argmax(fall.phi < 0)])
-    return simulate(scene, duration, TOP, rolling="contact", timestep=timestep, friction=friction)
-
-
-DECADE = (50.0, 100.0, 200.0, 400.0)
-"""Rates phi_dot [rad/s] at phi = 0 of loads that loop; their mean rates span a decade, 35 to 354 rad/s."""
 _SAMPLES = 256  # samples of one turn; ripples up to the 128th multiple of the rate can be measured
 
 
-@dataclass(frozen=True)
-class Looping:
-    """The ripples of a load that loops, over one turn."""
+@cache
+def loop(scene: Scene, phi_dot0: float) -> Seen:
+    """Simulate one turn of a load that loops from phi = 0, for which `phi_dot0` [rad/s] must be enough.
 
-    rate: float  # mean rate Omega of phi [rad/s]
-    phi: np.ndarray  # amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k
-    sway: np.ndarray  # amplitudes [m] of sin(k Omega t) in u less its steady acceleration, at index k
-
-
-def loop(scene: Scene, phi_dot0: float) -> Looping:
-    """Simulate one turn from phi = 0 and return its ripples; `phi_dot0` [rad/s] must be enough for a turn."""
-    turn = 2 * math.pi / require.positive("phi_dot0", phi_dot0, "rad/s")
+    Its mean rate is `Omega` [rad/s]. `ripple` has the amplitudes [rad] of sin(k Omega t) in phi - Omega t, at index k,
+    and `sway` those [m] in u less its steady acceleration.
+    """
+    turn = 2 * math.pi / phi_dot0
     for _ in range(8):  # Newton's method for the time of a turn
         end = simulate(scene, turn, 0.0, phi_dot0, integrator=DOP853, timestep=turn / 64, times=np.array([0, turn]))
         turn += (2 * math.pi - end.phi[-1]) / end.phi_dot[-1]
-    times = turn * np.arange(_SAMPLES) / _SAMPLES
+    times, rate = turn * np.arange(_SAMPLES) / _SAMPLES, 2 * math.pi / turn
     run = simulate(scene, turn, 0.0, phi_dot0, integrator=DOP853, timestep=turn / 64, times=times)
-    rate = 2 * math.pi / turn
-    return Looping(rate, sines(run.phi - rate * times), sines(run.u - scene.acceleration() * times**2 / 2))
+    sway = sines(run.u - scene.acceleration() * times**2 / 2)
+    return Seen.of(scene, Omega=rate, ripple=sines(run.phi - rate * times), sway=sway)
 
 
 def sines(values: np.ndarray) -> np.ndarray:
     """Return the amplitudes of sin(2 pi k x), at index k, in values that are evenly spaced over one period of x."""
     return -np.fft.rfft(values).imag * 2 / len(values)
-
-
-def cosines(values: np.ndarray) -> np.ndarray:
-    """Return the amplitudes of cos(2 pi k x), as `sines` does; the one at k = 0 is twice the mean."""
-    return np.fft.rfft(values).real * 2 / len(values)
