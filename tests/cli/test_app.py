@@ -143,5 +143,5 @@ def test_what_a_liquid_uses_is_told_and_what_speaks_against_it(capsys: pytest.Ca
 
 
 def test_an_equation_that_is_not_solved_is_told(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main("simulate frozen --duration 0.5 --integrator Euler --timestep 4e-3".split()) == 0
+    assert main(["simulate", "frozen", "--duration", "0.5", "--integrator", "Euler", "--timestep", "4e-3"]) == 0
     assert capsys.readouterr().err.startswith("equations not solved: energy or momentum drift like an error of ")
