@@ -9,7 +9,7 @@ from mjbeer import exact, frozen
 from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race
 from mjbeer.paper import stories
-from mjbeer.report import races
+from mjbeer.report import films
 from mjbeer.report.films import FILMS
 from mjbeer.theory.liquid import LIQUIDS, liquid_in
 
@@ -36,13 +36,13 @@ def test_nothing_turns_so_fast_that_the_eye_is_deceived(name: str) -> None:
 @pytest.mark.slow
 def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     """All of its numbers are those of the simulated cans, and honey is last with half and twice its viscosity."""
-    cans = {can.name: can for can in races.of_liquids()}
-    finish = {name: can.finish(races.LENGTH) for name, can in cans.items()}
+    cans = {can.name: can for can in films.of_liquids()}
+    finish = {name: can.finish(films.LENGTH) for name, can in cans.items()}
     assert sorted(finish, key=lambda name: finish[name]) == ["water", "olive oil", "ice", "honey"]
     assert finish["honey"] < np.inf
-    way, speed = cans["honey"].positions(np.array([finish["ice"]]))[0, 0], races.with_liquid("honey").terminal_speed()
-    told = races.told_of_liquids()
-    honey = liquid_in("honey", cans["honey"].trajectory.scene.incline, 0.75, races.METAL)
+    way, speed = cans["honey"].positions(np.array([finish["ice"]]))[0, 0], films.with_liquid("honey").terminal_speed()
+    told = films.told_of_liquids()
+    honey = liquid_in("honey", cans["honey"].trajectory.scene.incline, 0.75, films.METAL)
     for words in (
         f"the wall carries up to {100 * honey.carried:.0f} % round with it",
         f"Water wins after {finish['water']:.2f} s",
@@ -55,7 +55,7 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     own = LIQUIDS["honey"].viscosity
     for viscosity in (own / 2, 2 * own):
         thinner = exact(
-            races.with_liquid("honey", viscosity), np.array([0.0, finish["ice"]]), cans["honey"].trajectory.phi0
+            films.with_liquid("honey", viscosity), np.array([0.0, finish["ice"]]), cans["honey"].trajectory.phi0
         )
         assert thinner.u[1] - thinner.u[0] < 0.4
     assert not any(can.trajectory.solver_warnings or can.trajectory.rolling_warnings for can in cans.values())
@@ -63,13 +63,13 @@ def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
 
 def test_ice_rolls_over_and_honey_does_not_because_of_the_incline() -> None:
     """Let go with a level surface, ice would swing back on up to 6.93 degrees; here it hesitates on top."""
-    ice = exact(races.with_ice(), TIMES, -races.with_ice().incline)
+    ice = exact(films.with_ice(), TIMES, -films.with_ice().incline)
     slowest = np.abs(ice.u_dot[TIMES > 0.3]).min()
     assert slowest < 0.1
     for incline, swings in ((6.93, True), (6.94, False)):
-        level = frozen(np.radians(incline), 0.75, races.METAL, 917.0)
+        level = frozen(np.radians(incline), 0.75, films.METAL, 917.0)
         assert (level.separatrix()[0] < -level.incline < level.separatrix()[1]) is swings
-    honey = exact(races.with_liquid("honey"), TIMES, -races.with_ice().incline)
+    honey = exact(films.with_liquid("honey"), TIMES, -films.with_ice().incline)
     assert np.abs(honey.phi).max() < np.pi
     assert np.abs(ice.phi).max() > 2 * np.pi
 

@@ -49,7 +49,7 @@ def test_a_folder_that_cannot_be_made_is_known_before_the_work(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     studies = "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"
-    for work in ("report.write.validate", *studies):
+    for work in ("report.page.validate", *studies):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
     (tmp_path / "file").touch()
     missing = f"there is no folder {tmp_path / 'misspelt'}; the nearest one that exists is {tmp_path}"

@@ -81,7 +81,7 @@ def report(given: Namespace) -> int:
 
     The exit status is 1 if a check fails. Without OpenGL there are no films.
     """
-    from mjbeer.report.write import write
+    from mjbeer.report.page import write
 
     validation, not_drawn = write(given.output, given.quick, STDERR)
     if not_drawn:
