@@ -10,7 +10,7 @@ from mjbeer.drawing.film import Film, MotionFilm
 from mjbeer.drawing.race import Race
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
-from mjbeer.report import races
+from mjbeer.report import films
 from mjbeer.report.films import FILMS
 from mjbeer.theory.liquid import LIQUIDS
 from mjbeer.theory.trajectory import Trajectory
@@ -59,14 +59,14 @@ def test_films_of_stories_show_what_they_say(story: stories.Story) -> None:
 @pytest.mark.slow
 def test_the_race_of_liquids_ends_as_its_caption_says() -> None:
     """Honey is last, also with half and twice its viscosity."""
-    cans = {can.name: can for can in races.of_liquids()}
-    finish = {name: can.finish(races.LENGTH) for name, can in cans.items()}
+    cans = {can.name: can for can in films.of_liquids()}
+    finish = {name: can.finish(films.LENGTH) for name, can in cans.items()}
     assert sorted(finish, key=lambda name: finish[name]) == ["water", "olive oil", "ice", "honey"]
     assert finish["honey"] < np.inf
     own = LIQUIDS["honey"].viscosity
     for viscosity in (own / 2, 2 * own):
         thinner = exact(
-            races.with_liquid("honey", viscosity), np.array([0.0, finish["ice"]]), cans["honey"].trajectory.phi0
+            films.with_liquid("honey", viscosity), np.array([0.0, finish["ice"]]), cans["honey"].trajectory.phi0
         )
         assert thinner.u[1] - thinner.u[0] < 0.4
     assert not any(can.trajectory.solver_warnings or can.trajectory.rolling_warnings for can in cans.values())

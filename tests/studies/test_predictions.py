@@ -3,6 +3,7 @@
 import math
 
 import mpmath
+import mujoco
 import numpy as np
 import pytest
 from scipy.integrate import DOP853

@@ -1,30 +1,56 @@
 """The entry point of `mjbeer`: read the command line, run the command, and turn errors into exit statuses."""
 
-import functools
+import argparse
 import re
 import signal
 import sys
 import warnings
 from argparse import Namespace
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from types import FrameType
 from typing import Any, NoReturn, cast
 
 import mjbeer
-from mjbeer.cli import fit, motions, studies
-from mjbeer.cli.arguments import SCENE_MEANINGS, STANDING, STANDING_OPTIONS, Command, Parser, scene_options
+from mjbeer.cli import motions, studies
+from mjbeer.cli.arguments import OPTIONS, SCENES, STANDING, Option, of_scene
 from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
-_ERROR = 2
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
+COMMANDS = {name: getattr(motions, name, None) or getattr(studies, name) for name in OPTIONS}
+"""The functions that run commands, whose docstrings are their help."""
+OF_SCENES: dict[str, dict[str, Callable[..., Any]]] = {
+    **dict.fromkeys(("simulate", "render", "fit", "sweep"), SCENES),
+    **dict.fromkeys(("view", "export"), SCENES | STANDING),
+}
+"""The scenes of which one must follow a command."""
 
-_NAMES = "sweep", "validate", "benchmark", "stability", "paper", "report"
-COMMANDS: dict[str, Command] = {name: getattr(motions, name) for name in ("simulate", "render", "view", "export")}
-COMMANDS |= {"fit": fit.fit} | {name: getattr(studies, name) for name in _NAMES}
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors are one line each."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)
+        self._negative_number_matcher = re.compile(r"-[\d.]")  # -1e-3 and -1:1:5 are values and not options
+
+    def error(self, message: str) -> NoReturn:
+        raise ParameterError(f"{message}; see `{self.prog} --help`")
+
+    def add_options(self, options: Iterable[Option]) -> None:
+        """Add options, whose help ends with their defaults."""
+        for name, meaning, default, kind in options:
+            how: dict[str, Any] = {"help": meaning, "default": default}
+            how |= {"choices": kind} if isinstance(kind, tuple) else {"type": kind, "metavar": kind.__name__.upper()}
+            if isinstance(default, list):
+                how["nargs"] = "+" if name.startswith("-") else "*"
+            elif default is False:
+                how = {"help": meaning, "action": "store_true"}
+            elif default is not None:
+                how["help"] += " (default: %(default)s)"
+            self.add_argument(name, **how)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -42,18 +68,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with terminal.printing():
             given = parse(words)
-        command = COMMANDS[given.command]
         opengl.import_mujoco_without_gl()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
             warnings.simplefilter("ignore", AngleWarning)  # angles are in degrees here
             # A study goes where a liquid is no lump on purpose, and its documents say so.
-            warnings.simplefilter("always" if command.numbers else "ignore", LiquidWarning)
-            cast("Any", warnings).showwarning = functools.partial(_show, warnings.showwarning)
-            return command.run(given)
+            warnings.simplefilter("always" if given.command in OF_SCENES else "ignore", LiquidWarning)
+            cast("Any", warnings).showwarning = lambda message, *_: say(f"note: {message}", "yellow")
+            return COMMANDS[given.command](given)
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")
-        return _ERROR
+        return 2
     except KeyboardInterrupt as error:
         say("mjbeer: interrupted; what was written is whole", "red")
         (signum,) = error.args or (signal.SIGINT,)
@@ -69,36 +94,28 @@ def parse(words: Sequence[str]) -> Namespace:
     """
     top = Parser(description=_DESCRIPTION, prog="mjbeer")
     top.add_argument("--version", action="version", version=f"mjbeer {mjbeer.__version__}")
-    parsers = top.add_words("commands", "COMMAND", {name: str(each.run.__doc__) for name, each in COMMANDS.items()})
-    # Only the command that is meant gets its options, which are many.
-    if name := next((word for word in words if word in COMMANDS), ""):
-        at, command = parsers[name], COMMANDS[name]
-        if command.numbers is None:
-            at.add_options(command.options)
-        else:
-            if command.file:
-                at.add_argument("file", metavar="FILE", help=command.file)
-            scenes = SCENE_MEANINGS | ({"standing": STANDING} if command.standing else {})
-            for scene, below in at.add_words("scenes", "SCENE", scenes, f"{command.run.__doc__} The scene: ").items():
-                if scene == "standing":
-                    below.add_options((*STANDING_OPTIONS, *command.standing))
-                else:
-                    below.add_options((*scene_options(scene, command.numbers), *command.options))
-    # argparse takes -1e-3 and -1:1:5 for options, unless they are joined to theirs.
-    joined = re.sub(r"\0(?=-[\d.])", "=", "\0".join(["", *words])).split("\0")[1:]
-    given, others = top.parse_known_args(joined)
+    parsers = top.add_subparsers(title="commands", dest="command", metavar="COMMAND", required=True)
+    for name, run in COMMANDS.items():
+        parser = parsers.add_parser(name, help=_first_sentence(run), description=run.__doc__)
+        if name not in OF_SCENES:
+            parser.add_options(OPTIONS[name])
+        elif name in words:  # only the command that is meant gets the options of all scenes, which are many
+            if name == "fit":
+                parser.add_argument("file", metavar="FILE", help="table of the track, as Tracker or phyphox export it")
+            below = parser.add_subparsers(title="scenes", dest="scene", metavar="SCENE", required=True)
+            for scene, make in OF_SCENES[name].items():
+                parser = below.add_parser(scene, usage="%(prog)s [options]", help=_first_sentence(make))
+                parser.description = f"{run.__doc__} The scene: {_first_sentence(make)}."
+                parser.add_options(of_scene(scene, name))
+    given, others = top.parse_known_args(words)
     if others:
         place = " ".join(filter(None, ("mjbeer", given.command, getattr(given, "scene", ""))))
         raise ParameterError(f"{others[0]} is not understood here; see `{place} --help`")
     return given
 
 
-def _show(otherwise: Callable[..., None], message: Warning | str, category: type[Warning], *place: Any) -> None:
-    """Say what a liquid's warning says in one line, and show any other warning as Python does."""
-    if issubclass(category, LiquidWarning):
-        say(f"note: {message}", "yellow")
-    else:
-        otherwise(message, category, *place)
+def _first_sentence(function: Callable[..., Any]) -> str:
+    return re.split(r"\.(\n|$)", str(function.__doc__))[0].removeprefix("Return ").removeprefix("the scene of ")
 
 
 def _interrupt(signum: int, _: FrameType | None) -> NoReturn:

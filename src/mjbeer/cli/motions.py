@@ -1,51 +1,29 @@
-"""The commands about one motion: simulate, render, view and export."""
+"""The commands about one motion: simulate, render, view, export and fit."""
 
+import json
 import math
 import os
-import pathlib
 import tempfile
 import warnings
 from argparse import Namespace
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from mjbeer.cli.arguments import (
-    REQUIRED,
-    STEPS,
-    Option,
-    command,
-    model_options,
-    run_options,
-    scene,
-    standing_can,
-    start,
-    steps,
-)
-from mjbeer.drawing.camera import CAMERAS
+from mjbeer.cli.arguments import angle, scene, start, steps
+from mjbeer.cli.summary import Summary
 from mjbeer.exceptions import LiquidWarning, ParameterError, RenderingError
 from mjbeer.model.setting import supported
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import say
-
-if TYPE_CHECKING:
-    from mjbeer.cli.summary import Summary
-    from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, csv
 
 _FPS = 30  # pictures per second of a video
-_SPEED = Option("speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0)
-_CAMERA = (
-    "fixed (stands still and shows the whole motion), pan (moves along with a constant acceleration), close (goes "
-    "with the can), or auto: fixed, unless the can would be too small"
-)
-_PORTABLE = (
-    "write MJCF that MuJoCo 3.3.1, MJX, mujoco_warp and dm_control load too, with Euler, implicitfast or RK4 as "
-    "integrator; docs/portability.md has each tool's error"
-)
 
 
-def trajectory_of(given: Namespace) -> "Trajectory":
+def trajectory_of(given: Namespace) -> Trajectory:
     """Simulate the scene that was asked for and return its trajectory."""
     from mjbeer.simulation.simulate import simulate
 
@@ -54,17 +32,8 @@ def trajectory_of(given: Namespace) -> "Trajectory":
         return simulate(thing, given.duration, **start(given), **steps(given))
 
 
-@command(
-    *run_options(),
-    Option("output", 'CSV file to write; "-" is standard output', None, pathlib.Path, "no CSV"),
-    Option("json", "print the key figures and the warnings as JSON", kind=bool),
-    numbers=float,
-)
 def simulate(given: Namespace) -> int:
     """Simulate a scene and print its key figures, with an estimate of the error."""
-    from mjbeer.cli.summary import Summary
-    from mjbeer.theory.trajectory import csv
-
     to_output = str(given.output) == "-"
     if to_output and given.json:
         raise ParameterError("standard output takes one of them: the JSON, or the CSV of --output -")
@@ -83,18 +52,8 @@ def simulate(given: Namespace) -> int:
     return 0
 
 
-@command(
-    *run_options(),
-    Option("output", "MP4 file to write", pathlib.Path("mjbeer.mp4"), pathlib.Path),
-    _SPEED,
-    Option("camera", _CAMERA, "auto", CAMERAS),
-    Option("width", "width of the video [pixels]", 1280, int),
-    Option("height", "height of the video [pixels]", 720, int),
-    numbers=float,
-)
 def render(given: Namespace) -> int:
     """Simulate a scene and draw it as a video (MP4)."""
-    from mjbeer.cli.summary import Summary
     from mjbeer.drawing.video import render
 
     trajectory = trajectory_of(given)
@@ -104,13 +63,11 @@ def render(given: Namespace) -> int:
     if turn > 1:
         fast = f"can or load turn by up to {math.degrees(turn):.0f} degrees from picture to picture"
         say(f"note: {fast}; a --speed below {given.speed / turn:.2g} shows it better", "yellow")
-    picture = {name: getattr(given, name) for name in ("width", "height", "speed", "camera")}
-    render(trajectory, given.output, fps=_FPS, **picture)
+    render(trajectory, given.output, given.width, given.height, _FPS, given.speed, given.camera)
     say(f"wrote {given.output}")
     return 0
 
 
-@command(*model_options(rolling=None), numbers=float, standing=STEPS)
 def view(given: Namespace) -> int:
     """Open a scene in MuJoCo's viewer, which runs it at once.
 
@@ -123,13 +80,13 @@ def view(given: Namespace) -> int:
     from mjbeer.model.build import START
     from mjbeer.model.export import export
 
-    thing, begin = _scene_and_start(given)
-    how = steps(given)
-    if given.scene != "standing" and given.rolling is None:
-        how["rolling"] = "equality" if supported(thing, "equality") else "reduced"
+    thing = scene(given)
+    how: dict[str, Any] = start(given) | steps(given)
+    if given.scene != "standing" and supported(thing, "equality"):
+        how = {"rolling": "equality"} | how
     with tempfile.TemporaryDirectory() as folder:
-        path = pathlib.Path(folder) / "scene.xml"
-        export(thing, path, **begin, **how)
+        path = Path(folder) / "scene.xml"
+        export(thing, path, **how)
         model = mujoco.MjModel.from_xml_path(str(path))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(START).id)
@@ -145,32 +102,53 @@ def view(given: Namespace) -> int:
     return 0
 
 
-_WRITTEN = (
-    Option("output", 'MJCF file to write (.xml); its keyframe "start" is the start', None, pathlib.Path, REQUIRED),
-    Option("portable", _PORTABLE, kind=bool),
-)
-
-
-@command(*model_options(), *_WRITTEN, numbers=float, standing=(*STEPS, *_WRITTEN))
 def export(given: Namespace) -> int:
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
     from mjbeer.model.export import export
 
-    thing, begin = _scene_and_start(given)
-    export(thing, given.output, **begin, **steps(given), portable=given.portable)
+    export(scene(given), given.output, **start(given), **steps(given), portable=given.portable)
     keyframe = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
     say(f"wrote {given.output}; {keyframe}")
     return 0
 
 
-def _scene_and_start(given: Namespace) -> tuple[Any, dict[str, Any]]:
-    """Return what was asked for, a scene or a standing can, and the start of a scene."""
-    return (standing_can(given), {}) if given.scene == "standing" else (scene(given), start(given))
-
-
-def _warn(summary: "Summary") -> None:
+def _warn(summary: Summary) -> None:
     run = summary.trajectory
     lines = [f"equations not solved: {warning}" for warning in run.solver_warnings]
     lines += [f"model does not hold: {warning}" for warning in (*run.rolling_warnings, *run.liquid_warnings)]
     for line in (*lines, *(f"note: {note}" for note in summary.notes)):
         say(line, "yellow")
+
+
+def fit(given: Namespace) -> int:
+    """Tell from the track of a filmed can what was in it, and on which incline it rolled."""
+    from mjbeer.tracks.fit import fit
+    from mjbeer.tracks.track import read_track
+
+    output, phi0 = given.output, given.phi0
+    if output and output.suffix not in (".svg", ".png", ".mp4"):
+        raise ParameterError(f"the file's name must end in .svg or .png or .mp4, got {str(output)!r}")
+    try:
+        phi0 = phi0 if phi0 in ("level", "free") else angle(phi0)
+    except ValueError:
+        raise ParameterError(f"phi0 must be level, free, or a number [degrees], got {phi0!r}") from None
+    track = read_track(given.file, dict(each.partition("=")[::2] for each in given.columns), given.rate)
+    with warnings.catch_warnings(action="ignore", category=LiquidWarning):  # of a guess
+        guess = scene(given)
+    found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
+    if given.json:
+        told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
+        terminal.write(json.dumps(told, indent=2) + "\n")
+    else:
+        terminal.write("\n".join([found.title, *found.lines()]) + "\n")
+        for each in found.warnings:
+            say(f"note: {each}", "yellow")
+    if output and output.suffix == ".mp4":
+        found.video(output)
+    elif output:
+        with files.atomic_write(output) as temporary:
+            figure: Any = found.plot()[0].figure
+            figure.savefig(temporary, facecolor="white", dpi=150)
+    if output:
+        say(f"wrote {output}")
+    return 0

@@ -3,15 +3,14 @@
 import contextlib
 import functools
 import math
-import pathlib
-import time
 from argparse import Namespace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.cli.arguments import SCENES, Option, command, make, run_options, scene_arguments, several, start, steps
+from mjbeer.cli.arguments import SCENES, make, scene_arguments, start, steps
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
@@ -23,47 +22,23 @@ if TYPE_CHECKING:
     from mjbeer.studies.validation.validate import Validation
 
 _FAILED = 1
-_KEPT = "folder to write to; an interrupted study in it is continued"
+_PLOTS = (".png", ".svg")
+_ENDINGS = (*_PLOTS, ".csv", ".nc")
 
 
-def _folder(name: str, told: str = "folder to write to") -> Option:
-    return Option("output", told, pathlib.Path(name), pathlib.Path)
-
-
-_flag = functools.partial(Option, kind=bool)
-PLOTS = (".png", ".svg")
-ENDINGS = (*PLOTS, ".csv", ".nc")
-_OF_A_RUN = "phi u phi_dot u_dot error lowest_normal friction_needed parting_time energy_drift"
-QUANTITIES = (*_OF_A_RUN.split(), "trusted", "status", "period")
-_QUANTITY = (
-    "quantity of the plot; files have all of them. phi, u, phi_dot and u_dot are those at the end, error is the "
-    "estimate, and parting_time the time from which N < 0. period is measured only if it is asked for"
-)
-_OUTPUT = (
-    "file to write: a plot (.png or .svg) over one or two options, a table (.csv), or NetCDF (.nc), with all arrays; "
-    "an interrupted sweep to .nc goes on where it was"
-)
-
-
-@command(
-    *run_options(several),
-    Option("quantity", _QUANTITY, "phi", QUANTITIES),
-    Option("output", _OUTPUT, pathlib.Path("sweep.png"), pathlib.Path),
-    numbers=several,
-)
 def sweep(given: Namespace) -> int:
     """Simulate a scene for ranges of its options, as --incline 1:20:39, which is 39 numbers from 1 to 20.
 
-    NUMBERS are one number, several as 1,2,5, or such a range.
+    NUMBERS and ANGLES are one number, several as 1,2,5, or such a range.
     """
     from mjbeer.studies.sweep import sweep
     from mjbeer.studies.sweep_runs import STATUSES, WELL
 
-    if given.output.suffix not in ENDINGS:
-        raise ParameterError(f"the file's name must end in {' or '.join(ENDINGS)}, got {str(given.output)!r}")
+    if given.output.suffix not in _ENDINGS:
+        raise ParameterError(f"the file's name must end in {' or '.join(_ENDINGS)}, got {str(given.output)!r}")
     options = scene_arguments(given) | start(given)
     varied = [each for each in options.values() if isinstance(each, np.ndarray)]
-    if given.output.suffix in PLOTS and len(varied) not in (1, 2):
+    if given.output.suffix in _PLOTS and len(varied) not in (1, 2):
         raise ParameterError(
             f"a plot needs one or two options with several values, got {len(varied)}: write .csv or .nc instead"
         )
@@ -75,7 +50,7 @@ def sweep(given: Namespace) -> int:
     with files.atomic_write(given.output) if resumed is None else contextlib.nullcontext() as temporary:
         options |= {"quantity": given.quantity, "output": resumed, **steps(given)}
         result = sweep(maker, given.duration, **options)
-        if temporary and given.output.suffix in PLOTS:
+        if temporary and given.output.suffix in _PLOTS:
             _plot(result, given.quantity, temporary)
         elif temporary:
             result.to_dataframe().to_csv(temporary, float_format="%.17g", index=bool(result.dims))
@@ -89,47 +64,32 @@ def sweep(given: Namespace) -> int:
     return 0
 
 
-@command(_flag("table", "print every row, not only those that failed"), _flag("json", "print the results as JSON"))
 def validate(given: Namespace) -> int:
     """Check models and paper against exact theory; exit status 1 if a check fails."""
     from mjbeer.studies.validation.validate import validate
 
-    began = time.perf_counter()
     validation = validate(STDERR)
     if given.json:
         terminal.write(validation.json())
     elif given.table:
         show(*validation.tables())
-    return _conclude(validation, began)
+    return _conclude(validation)
 
 
-@command(
-    _folder("report"),
-    _flag("quick", "draw smaller videos with fewer frames, and no films for the paper's scenarios"),
-    _flag("table", "also print the tables of the validation, which are on the page"),
-)
 def report(given: Namespace) -> int:
     """Validate, draw the scenes and the paper's stories, and write a page that shows it all.
 
     The exit status is 1 if a check fails. Without OpenGL there are no films.
     """
-    from mjbeer.report.write import write
+    from mjbeer.report.page import write
 
-    began = time.perf_counter()
     validation, not_drawn = write(given.output, given.quick, STDERR)
-    if given.table:
-        show(*validation.tables())
     if not_drawn:
         say(not_drawn, "yellow")
     say(f"the report is in {given.output / 'index.html'}")
-    return _conclude(validation, began)
+    return _conclude(validation)
 
 
-@command(
-    Option("scenes", f"scenes to measure, of {', '.join(CASES)}", tuple(CASES)),
-    _folder("benchmark"),
-    _flag("quick", "try fewer timesteps and tolerances; takes two minutes"),
-)
 def benchmark(given: Namespace) -> int:
     """Measure error against run time of integrators and other tools, in seven minutes."""
     from mjbeer.studies.benchmark import benchmark_tables, timing
@@ -143,11 +103,6 @@ def benchmark(given: Namespace) -> int:
     return 0
 
 
-@command(
-    _folder("stability", _KEPT),
-    _flag("quick", "make coarser maps, for three integrators, and 250 random runs in place of 3000; takes two minutes"),
-    _flag("json", "print the results as JSON"),
-)
 def stability(given: Namespace) -> int:
     """Test stiff and extreme cases and the limits of stability, in eight minutes; exit status 1 if theory disagrees."""
     from mjbeer.studies.stability import stability_study as stability
@@ -165,7 +120,6 @@ def stability(given: Namespace) -> int:
     return _FAILED if study.failed else 0
 
 
-@command(_folder("paper"), _flag("films", "also draw films of the motions"))
 def paper(given: Namespace) -> int:
     """Plot each of the paper's scenarios, and write a folder with a summary."""
     from mjbeer.paper import stories
@@ -177,26 +131,23 @@ def paper(given: Namespace) -> int:
     return 0
 
 
-def _conclude(validation: "Validation", began: float) -> int:
-    """Print what failed and, on the last line, what passed since the moment `began`; return the exit status."""
+def _conclude(validation: "Validation") -> int:
+    """Print what failed and, on the last line, what passed; return the exit status."""
     for failure in validation.failures:
         say(f"FAILED: {failure}", "red")
-    say(f"{validation.sentence}, in {time.perf_counter() - began:.0f} s", "green" if validation.passed else "red")
+    say(validation.sentence, "green" if validation.passed else "red")
     return 0 if validation.passed else _FAILED
 
 
-def _plot(result: "xarray.Dataset", quantity: str, path: pathlib.Path) -> None:
+def _plot(result: "xarray.Dataset", quantity: str, path: Path) -> None:
     """Plot a quantity over one parameter, or as a map over two, with angles in degrees."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     from mjbeer.output.plots import STYLE
 
-    shown = result[quantity].where(np.isfinite(result[quantity]))
-    angles = {name: of for name, of in shown.coords.items() if of.attrs.get("units") == "rad"}
-    shown = shown.assign_coords({name: (of.dims, np.degrees(of.values), {"units": "°"}) for name, of in angles.items()})
-    if "rad" in (unit := shown.attrs.get("units", "")) and quantity != "error":
-        shown = (shown * math.degrees(1)).assign_attrs(shown.attrs | {"units": unit.replace("rad", "°")})
+    shown = _in_degrees(result[quantity].where(np.isfinite(result[quantity])))
+    shown = shown.assign_coords({name: _in_degrees(of) for name, of in shown.coords.items()})
     with mpl.rc_context(STYLE | {"axes.grid": shown.ndim == 1}):
         figure = Figure((7, 4.5), layout="constrained")
         axes = figure.subplots()
@@ -204,3 +155,10 @@ def _plot(result: "xarray.Dataset", quantity: str, path: pathlib.Path) -> None:
         shown.plot(ax=axes, **(of_map if shown.ndim == 2 else {"marker": "."}))
         axes.set_title(f"{result.attrs['make']}, {result.attrs['duration']:.6g} s")
         figure.savefig(path, dpi=150)
+
+
+def _in_degrees(values: "xarray.DataArray") -> "xarray.DataArray":
+    """Return values in degrees if they are angles or their rates."""
+    if "rad" not in (unit := values.attrs.get("units", "")):
+        return values
+    return (math.degrees(1) * values).assign_attrs(values.attrs | {"units": unit.replace("rad", "°")})

@@ -1,8 +1,7 @@
-"""The summary of a trajectory: one table, from which its text and its JSON are written."""
+"""The key figures of a trajectory: one table, from which its text and its JSON are written."""
 
 import json
 import math
-from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -28,46 +27,37 @@ KeyFigure = tuple[str, Any, str, str]
 
 @dataclass(frozen=True, eq=False)
 class Summary:
-    """The key figures of a trajectory, and until when a can would roll with some coefficients of friction."""
+    """The key figures of a trajectory, and until when a can would roll with a coefficient of friction."""
 
     trajectory: Trajectory
-    friction: float = FRICTION  # the coefficient of friction that was asked for; besides it, the summary has that of 1
+    friction: float = FRICTION
 
     @cached_property
-    def rolls_until(self) -> Mapping[float, float]:
-        """Return until when [s] rolling is possible at each coefficient of friction; infinity is to the end."""
-        needed = self.trajectory.record.needed_friction
+    def rolls_until(self) -> float:
+        """Until when [s] rolling is possible with that friction; infinity is to the end."""
         # Where rolling needs no more than there is, this saves the run that looks for the first time at which it does.
-        return {
-            friction: math.inf if needed <= friction else self.trajectory.rolls_until(friction)
-            for friction in sorted({FRICTION, self.friction})
-        }
+        enough = self.trajectory.record.needed_friction <= self.friction
+        return math.inf if enough else self.trajectory.rolls_until(self.friction)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return what a real can would do otherwise although the run is right: a sentence, or none.
+        """What a real can would do otherwise although the run is right: a sentence, or none.
 
         In contact the can simply slips, and the run's own warnings say so.
         """
-        slips = {friction: until for friction, until in self.rolls_until.items() if math.isfinite(until)}
-        if self.trajectory.rolling == "contact" or not slips:
-            return ()
-        times = [f"from t = {until:.6g} s with a friction coefficient of {each:g}" for each, until in slips.items()]
-        return (f"a real can would slip {', '.join(times)}",)
+        until = self.rolls_until
+        slips = f"a real can would slip from t = {until:.6g} s with a friction coefficient of {self.friction:g}"
+        return () if self.trajectory.rolling == "contact" or math.isinf(until) else (slips,)
 
     @cached_property
     def key_figures(self) -> tuple[KeyFigure, ...]:
         """The figures in the order of the text."""
-        run, radius = self.trajectory, self.trajectory.scene.can.radius
+        run, radius, until = self.trajectory, self.trajectory.scene.can.radius, self.rolls_until
         slip, lift, normal = run.slip / radius, run.lift / radius, run.forces.normal
         solved = not run.solver_warnings
-        rolls = run.rolling == "contact" or math.isinf(self.rolls_until[self.friction])
-        holds = rolls and not (run.rolling_warnings or run.liquid_warnings)
+        holds = not (run.rolling_warnings or run.liquid_warnings or self.notes)
         scale = "the swing's largest kinetic energy" if run.scene.load.offset else "the largest kinetic energy"
-        until = self.rolls_until.items()
-        frictions = [{"friction coefficient": of, "to the end": math.isinf(end), "until [s]": end} for of, end in until]
-        ends = [f"until t = {end:.6g} s with friction {of:g}" for of, end in until]
-        in_words = f"\n{'':<32}".join(ends).replace("until t = inf s", "to the end")
+        end = "the end" if math.isinf(until) else f"t = {until:.6g} s"
         return (
             ("rolling", run.rolling, "", "{}"),
             ("integrator", run.integrator, "", "{}"),
@@ -84,7 +74,7 @@ class Summary:
             ("least normal force needed", normal.min(), "N", "{:.4g}"),
             ("largest normal force needed", normal.max(), "N", "{:.4g}"),
             ("friction coefficient needed", run.record.needed_friction, "", _needed(run)),
-            ("can roll without slipping", frictions, "", in_words),
+            ("can roll without slipping until", until, "s", f"{end} with friction {self.friction:g}"),
             *_steady(run.scene),
             ("estimated error of phi and u/a", run.error_estimate, "rad", "{:.2e}"),
             ("equations solved", solved, "", f"{'yes' if solved else 'no'}: those of {_EQUATIONS[run.rolling]}"),
@@ -114,21 +104,17 @@ def _needed(run: Trajectory) -> str:
     return f"none is enough: {ends if math.isfinite(run.record.rolling_ends_at) else 'nothing presses (N = 0)'}"
 
 
-def _steady(scene: Scene) -> Generator[KeyFigure]:
-    """Yield what takes energy from a motion, and the steady rolling to which it may come."""
+def _steady(scene: Scene) -> list[KeyFigure]:
+    """Return what takes energy from a motion, and the steady rolling to which it may come."""
     if not scene.dissipates:
-        return
-    yield "damping torque over slip rate", damping_in_words(scene), "", "{}"
-    yield "drag of the air", scene.drag, "kg/m", "{:.4g}"
+        return []
+    figures: list[KeyFigure] = [("damping torque over slip rate", damping_in_words(scene), "", "{}")]
+    figures += [("drag of the air", scene.drag, "kg/m", "{:.4g}")]
     try:
         speed, tilt, roots = scene.terminal_speed(), math.degrees(scene.terminal_tilt()), scene.modes().tolist()
-        reason = ""
-    except MjbeerError as error:
-        speed = tilt = roots = None
-        reason, *_ = str(error).split(":")  # the first clause says what there is not
-    yield "terminal speed", speed, "m/s", reason or "{:.6g}"
-    yield "terminal tilt", tilt, "degrees", "{:.6g}"
-    creep = [f"{root.real:.4g}" for root in roots or () if root.imag == 0]
-    swing = [f"{root.real:.4g} +- {root.imag:.4g}i" for root in roots or () if root.imag > 0]
-    pairs = [[root.real, root.imag] for root in roots] if roots else None
-    yield "modes, real and imaginary parts", pairs, "1/s", f"{', '.join([*creep, *swing])} 1/s" if roots else "{}"
+    except MjbeerError as error:  # its first clause says what there is not
+        return [*figures, ("terminal speed", None, "m/s", str(error).partition(":")[0])]
+    figures += [("terminal speed", speed, "m/s", "{:.6g}"), ("terminal tilt", tilt, "degrees", "{:.6g}")]
+    pairs = [[root.real, root.imag] for root in roots]
+    shown = ", ".join(f"{root:.4g}" if root.imag else f"{root.real:.4g}" for root in roots)
+    return [*figures, ("modes, real and imaginary parts", pairs, "1/s", f"{shown} 1/s")]

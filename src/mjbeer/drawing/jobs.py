@@ -18,7 +18,7 @@ from PIL import Image
 from mjbeer.drawing import video
 from mjbeer.drawing.film import Film
 from mjbeer.exceptions import AngleWarning, LiquidWarning, RenderingError, UntrustedWarning
-from mjbeer.output import processes
+from mjbeer.output import files
 from mjbeer.output.plots import Picture
 from mjbeer.output.terminal import progress_bar
 
@@ -71,7 +71,7 @@ def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
       RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
       OutputError: if a file cannot be written.
     """
-    with _cleaned_up(orders), progress_bar(console, len(orders)) as begin, processes.pool(len(orders)) as executor:
+    with _cleaned_up(orders), progress_bar(console, len(orders)) as begin, files.pool(len(orders)) as executor:
         futures = {executor.submit(_done, order): order for order in orders}
         for future in as_completed(futures):
             try:

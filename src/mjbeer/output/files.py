@@ -1,12 +1,18 @@
-"""Writing files whole or not at all, and locking a folder so that one command at a time works in it."""
+"""What an interruption leaves: files that are whole or not there, a folder free for the next command, no process."""
 
 import os
 import pathlib
 import secrets
+import signal
+import threading
 from collections.abc import Generator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
 
 from mjbeer.exceptions import OutputError
+
+if TYPE_CHECKING:
+    from concurrent.futures import ProcessPoolExecutor
 
 
 @contextmanager
@@ -47,22 +53,17 @@ def locked(folder: pathlib.Path) -> Generator[None]:
     The system releases the lock when the process ends, even if it is killed; the hidden file of the lock stays.
 
     Raises:
-      OutputError: if another command holds the lock, or the folder cannot be created or written to.
+      OutputError: if another command holds the lock, or the folder cannot be created.
     """
     from filelock import FileLock, Timeout  # which only studies need, and which takes long to import
 
     make_folder(folder)
-    lock = FileLock(folder / ".lock", blocking=False)
     try:
-        lock.acquire()
+        held = FileLock(folder / ".lock", blocking=False).acquire()
     except Timeout:
         raise OutputError(f"cannot write to {folder}: another command is at work there") from None
-    except OSError as error:
-        raise _failure(folder, error) from error
-    try:
+    with held:
         yield
-    finally:
-        lock.release()
 
 
 def write(path: str | os.PathLike[str], text: str) -> None:
@@ -97,3 +98,36 @@ def _require_folder(path: str | os.PathLike[str], folder: pathlib.Path) -> None:
 
 def _failure(path: str | os.PathLike[str], error: OSError) -> OutputError:
     return OutputError(f"cannot write {path}: {error.strerror or error}")
+
+
+@contextmanager
+def pool(most: int) -> Generator["ProcessPoolExecutor"]:
+    """Yield an executor with a process for each core, but not more than `most`; they start when work is submitted.
+
+    At the end of the block, or when it is interrupted, the processes are ended.
+    """
+    import multiprocessing
+    from concurrent.futures import ProcessPoolExecutor
+
+    # Not forked: a copy of a process with several threads may hang, and a copy of OpenGL is of no use.
+    # Threads for linear algebra would take the cores from other processes; NumPy asks when it is loaded.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    context, count = multiprocessing.get_context("spawn"), max(1, min(os.cpu_count() or 1, most))
+    executor = ProcessPoolExecutor(count, context, _follow_parent)
+    try:
+        yield executor
+    except BaseException:
+        for child in multiprocessing.active_children():
+            child.terminate()
+        raise
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def _follow_parent() -> None:
+    """Make this process leave interruptions to its parent, and end when the parent does, even if that is killed."""
+    import multiprocessing
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent: Any = multiprocessing.parent_process()
+    threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()

@@ -1,7 +1,6 @@
 """The style that all plots share, and writing each plot as SVG."""
 
 import io
-import math
 import pathlib
 import re
 import textwrap
@@ -19,7 +18,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, FuncFormatter, LogFormatter, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from mjbeer.output import files
 
@@ -61,7 +60,6 @@ _EDGE = 0.1  # distance of the title from the edge [inches]
 _LETTERS = 8.3  # letters of the title in an inch; the subtitle's are narrower
 _TOOLTIPS = "tooltips "
 """Begins the name of a line in an SVG whose points have tooltips."""
-_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 @dataclass
@@ -71,8 +69,6 @@ class Picture:
     name: str
     title: str = ""
     subtitle: str = ""
-    width: float = 0.0
-    """Width [inches]."""
     svg: str = ""
 
 
@@ -106,9 +102,6 @@ def chart(
             used += line
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
-        for axis in (axis for axes in panels for axis in (axes.xaxis, axes.yaxis)):
-            if isinstance(axis.get_major_formatter(), LogFormatter):
-                axis.set_major_formatter(FuncFormatter(_power))
         # Set out here and not by `savefig`, which would draw the whole plot for it first.
         ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)).execute(figure)
         named = {"Title": title, "Description": subtitle} if used else dict.fromkeys(("Creator", "Format", "Type"))
@@ -116,7 +109,7 @@ def chart(
         figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata={"Date": None, **named})
         svg = _with_tooltips(file.getvalue())
         if isinstance(path, Picture):
-            path.title, path.subtitle, path.width, path.svg = title, subtitle, width, svg[svg.index("<svg") :]
+            path.title, path.subtitle, path.svg = title, subtitle, svg[svg.index("<svg") :]
         else:
             files.write(path.with_name(path.name + ".svg"), svg)
 
@@ -152,19 +145,14 @@ def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = (
     axes[0].figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
 
 
-def _power(value: float, _: int | None) -> str:
-    """Return a power of ten as one text; matplotlib's own would set each digit by itself, which SVGs pay for."""
-    return "10" + str(round(math.log10(value))).translate(_RAISED)
-
-
 def _with_tooltips(svg: str) -> str:
     """Return an SVG in which each point of `add_tooltips` has its text as a title."""
 
     def line(found: re.Match[str]) -> str:
         texts = found[1].split("\n")
-        points = iter(texts)
+        left = iter(texts)
         told = re.sub(
-            "(<use [^>]*)/>", lambda use: f"{use[1]}><title>{next(points)}</title></use>", found[2], count=len(texts)
+            "(<use [^>]*)/>", lambda use: f"{use[1]}><title>{next(left)}</title></use>", found[2], count=len(texts)
         )
         return f"<g>{told}"
 

@@ -1,27 +1,18 @@
 """Printing to standard output and standard error, with errors raised if that fails: texts, tables, a progress bar."""
 
-import errno
 import os
 import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-import rich.console
 import rich.table
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.table import Column
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import Progress
 from rich.text import Text
 
 from mjbeer.exceptions import OutputError
-
-
-class Console(rich.console.Console):
-    """A rich console that raises an error when its output is no longer read, instead of ending the program."""
-
-    def on_broken_pipe(self) -> None:
-        raise BrokenPipeError(errno.EPIPE, os.strerror(errno.EPIPE))
-
 
 STDOUT = Console()
 STDERR = Console(stderr=True)
@@ -74,12 +65,12 @@ def show(*tables: Table) -> None:
     Several tables then have an empty line between them, and each its title above it, after a #. The errors are those
     of `printing`.
     """
-    if not is_read_by_eye():
-        titled = [f"# {table.title}\n" if len(tables) > 1 else "" for table in tables]
-        write("\n".join(title + table.tabbed() for title, table in zip(titled, tables, strict=True)))
-        return
-    with printing():
-        STDOUT.print(*tables)
+    if is_read_by_eye():
+        with printing():
+            STDOUT.print(*tables)
+    else:
+        titled = [f"# {table.title}\n" * (len(tables) > 1) + table.tabbed() for table in tables]
+        write("\n".join(titled))
 
 
 def say(text: str, style: str = "") -> None:
@@ -88,20 +79,15 @@ def say(text: str, style: str = "") -> None:
 
 
 @contextmanager
-def progress_bar(console: rich.console.Console | None, total: int) -> Generator[Callable[[str], None]]:
+def progress_bar(console: Console | None, total: int) -> Generator[Callable[[str], None]]:
     """Yield a function to be called at the start of each of `total` pieces of work, with the name of the piece.
 
-    The bar shows the name, how many pieces have been started, the time since the block began, and the time left at the
-    present pace. No bar is shown if `console` is None or not a terminal.
+    No bar is shown if `console` is None or not a terminal.
     """
-    whole, bar = Column(ratio=1, no_wrap=True, overflow="ellipsis"), BarColumn(bar_width=20)
-    name = TextColumn("{task.description}", markup=False, table_column=whole)
-    counted = TextColumn("{task.completed}/{task.total}")
-    times = TimeElapsedColumn(), TimeRemainingColumn(), TextColumn("left")
     hidden = console is None or not console.is_terminal
-    with Progress(name, bar, counted, *times, console=console, transient=True, disable=hidden, expand=True) as progress:
+    with Progress(console=console, transient=True, disable=hidden, expand=True) as progress:
         task = progress.add_task("", total=total)
-        yield lambda name: progress.update(task, description=name, advance=1)
+        yield lambda name: progress.update(task, description=escape(name), advance=1)
 
 
 @contextmanager

@@ -1,67 +1,93 @@
-"""The page of the report: everything in one file that opens from the disk, and that fetches nothing."""
+"""The report: one page that opens from the disk and fetches nothing; more maps and a race to play lie beside it."""
 
 import base64
+import html
 import pathlib
 import re
+import tempfile
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
+from types import SimpleNamespace
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from latex2mathml.converter import convert
 from markupsafe import Markup, escape
+from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.checks import Result
-from mjbeer.drawing.film import MotionFilm
+from mjbeer.drawing import jobs, opengl
 from mjbeer.drawing.jobs import PlotJob
+from mjbeer.output import files
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
-from mjbeer.paper.claim import Claim
-from mjbeer.report.films import COMMANDS, FILMS, RACES
-from mjbeer.report.formulas import letters, mathml
+from mjbeer.report.films import COMMANDS, FILMS, RACES, film_jobs
 from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stability_maps
 from mjbeer.studies.study import machine
-from mjbeer.studies.validation.validate import Validation
+from mjbeer.studies.validation.validate import Validation, validate
 
-_MAP = "stability-solref"  # the maps on the page; the others lie beside it
-_SMALL = 1e-3  # a smaller share is a power of ten and not a percentage
-_FAILED = re.compile(r"\*\*(.+?)\*\*")
+_HERE = pathlib.Path(__file__).parent
+_LIVE = _HERE / "web" / "live.html", _HERE.parents[2] / "docs" / "live.html"  # in a wheel, and in a checkout
+_MAP = "stability-solref"  # the map on the page; the others lie beside it
+_MATHML = {
+    'display="block"': 'display="inline" displaystyle="true"',
+    'mathcolor="differs"': 'class="differs"',
+    "<mi>sin</mi>": '<mi class="function">sin</mi>',  # so that the style can set them apart from the letters around
+    "<mi>cos</mi>": '<mi class="function">cos</mi>',
+    '<mspace width="negativethinmathspace" />': "",  # a name of MathML 2, which browsers no longer know
+}
+_GREEK = r"(?<![A-Za-z])(alpha|beta|delta|epsilon|theta|mu|pi|phi|omega|Omega)(?![A-Za-z])"
+_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
 Film = tuple[bytes, bytes]  # a film as MP4, and a picture from the midst of it as WebP
 
 
-@dataclass(frozen=True)
-class Exhibit:
-    """A film, a plot, or both, as the page shows them."""
+def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
+    """Write index.html and live.html into a folder, each whole or not at all; that of an earlier report goes first.
 
-    name: str
-    title: str
-    caption: str
-    command: str
-    plot: Picture | None = None
-    film: Film | None = None
+    Quickly, the films are smaller and the stories have plots and no films. Where there is no OpenGL, there are no
+    films. What comes back is the validation, and the line that says which films are missing, or "".
+
+    Raises:
+      OutputError: if the folder cannot be written to.
+      RenderingError: if a film cannot be drawn for another reason.
+    """
+    files.make_folder(folder)
+    with files.atomic_write(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
+        (folder / "index.html").unlink(missing_ok=True)
+        filmed = film_jobs(pathlib.Path(work), quick)
+        not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
+        filmed = [] if not_drawn else filmed
+        # The checks take longest, and compile what the films run; plots are quick.
+        checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
+        validation, *made = jobs.produce([checks, *filmed, *plot_jobs(folder)], console)
+        stills, plots = made[: len(filmed)], made[len(filmed) :]
+        shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
+        pictures = {plot.name: plot for plot in plots if plot}
+        files.write(folder / "live.html", next(filter(pathlib.Path.is_file, _LIVE)).read_text(encoding="utf-8"))
+        index.write_text(page(validation, shown, pictures, quick, not_drawn), encoding="utf-8")
+    return validation, not_drawn
 
 
 def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
     """Return the plots of the page, by the names of files in a folder, into which maps are drawn that lie beside it."""
-    benchmark = Benchmark.load(SHIPPED)
-    scenes = {case: replace(benchmark, points=benchmark.of(case)) for case in benchmark.cases}
+    benchmark, maps = Benchmark.load(SHIPPED), stability_maps.figures(stability_maps.load())
     drawn: dict[str, Callable[[Any], None]] = {
-        f"error-{case}": partial(benchmark_tables.draw, scene) for case, scene in scenes.items()
+        f"error-{case}": partial(benchmark_tables.draw, replace(benchmark, points=benchmark.of(case)))
+        for case in benchmark.cases
     }
-    drawn |= {story.name: story.plot for story in stories.STORIES}
-    maps = stability_maps.figures(stability_maps.load())
-    return [PlotJob(draw, folder / name, name not in maps or name == _MAP) for name, draw in (drawn | maps).items()]
+    drawn |= {story.name: story.plot for story in stories.STORIES} | maps
+    return [PlotJob(draw, folder / name, name not in maps or name == _MAP) for name, draw in drawn.items()]
 
 
-def html(
+def page(
     validation: Validation, films: Mapping[str, Film], plots: Mapping[str, Picture], quick: bool, not_drawn: str
 ) -> str:
-    """Return the page, with films of scenes and stories and plots by their names.
+    """Return the page as HTML, with films of scenes and stories and plots by their names.
 
     `not_drawn` says why films are missing, or is "".
     """
@@ -73,15 +99,18 @@ def html(
         lstrip_blocks=True,
     )
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data, "inline": _inline}
-    made = "mjbeer paper" + " --films" * (not quick)
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
-    scenes = {name: _scene(name, films.get(name)) for name in FILMS}
     runs, border = stability_maps.summary(maps["maps"])
-    wrong, others = _misprints(validation), [name for name in stability_maps.FAMILIES if name not in _MAP]
+    claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
+    misprints = [
+        (result, claims[name]) for result in validation.audit if (name := (result.group, result.name)) in claims
+    ]
     return environment.get_template("page.html").render(
         sketch=stories.letters(),
-        races=[scenes.pop(name) for name in RACES],
-        films=list(scenes.values()),
+        races=RACES,
+        films=FILMS,
+        commands=COMMANDS,
+        drawn=films,
         not_drawn=not_drawn,
         errors=[plots[f"error-{case}"] for case in benchmark.cases],
         benchmark=benchmark,
@@ -90,17 +119,14 @@ def html(
         heyoka=_range(benchmark, "heyoka"),
         maps=maps,
         map=plots[_MAP],
-        other_maps={f"stability-{name}.svg": stability_maps.FAMILIES[name].title for name in others},
+        families=stability_maps.FAMILIES,
         runs=runs,
         border=border,
-        misprints=wrong,
-        kinds=Counter(claim.misprint.kind for _, claim in wrong if claim.misprint),
+        misprints=misprints,
+        kinds=Counter(claim.misprint.kind for _, claim in misprints if claim.misprint),
         quoted=[claim for claim in paper.claims() if claim.quote and not claim.misprint],
-        claims=len(validation.audit),
-        stories=[
-            Exhibit(each.name, each.title, each.caption, made, plots[each.name], films.get(each.name))
-            for each in stories.STORIES
-        ],
+        stories=stories.STORIES,
+        plots=plots,
         validation=validation,
         tables=validation.tables(document=True),
         machine=machine(),
@@ -110,18 +136,29 @@ def html(
 
 def share(value: float) -> Markup:
     """Return a share of the largest term as HTML: a percentage in two digits, three from 100 on, or a power of ten."""
-    if abs(value) >= _SMALL or value == 0:
+    if abs(value) >= 1e-3 or value == 0:
         return escape(f"{100 * value:.3g} %" if abs(value) >= 1 else f"{100 * value:.2g} %")
     digits, power = f"{value:.1e}".split("e")
     return Markup("{}&thinsp;·&thinsp;10<sup>{}</sup>").format(digits, f"{int(power)}".replace("-", "\N{MINUS SIGN}"))
 
 
-def _scene(name: str, drawn: Film | None) -> Exhibit:
-    """Return a film of the scenes, or what there is of it if it was not drawn."""
-    film = FILMS[name]
-    command = f"{COMMANDS[name]} --output {name}.mp4" if name in COMMANDS else "mjbeer report"
-    head = film.look if isinstance(film, MotionFilm) else film
-    return Exhibit(name, head.title if head else name, film.caption, command, film=drawn)
+def mathml(latex: str) -> Markup:
+    r"""Return the MathML of a formula, one `math` element for each line; `\\` separates the lines.
+
+    `\textcolor{differs}{...}` becomes an element of the class "differs".
+    """
+    text = "".join(convert(line, display="block") for line in re.split(r"\\\\\s", latex))
+    for old, new in _MATHML.items():
+        text = text.replace(old, new)
+    return Markup(text)
+
+
+def letters(text: str) -> str:
+    """Return a text of the audit with phi as φ, phi_dot as φ̇, a^2 as a² and phi_0 as φ₀."""
+    text = re.sub(_GREEK, lambda name: html.unescape(f"&{name[1]};"), text)
+    text = re.sub(r"(?<![A-Za-z])(\w)_ddot", "\\1\N{COMBINING DIAERESIS}", text)
+    text = re.sub(r"(?<![A-Za-z])(\w)_dot", "\\1\N{COMBINING DOT ABOVE}", text)
+    return re.sub(r"\^(\d)(?!\d)", lambda power: power[1].translate(_RAISED), text).replace("_0", "₀")
 
 
 def _data(content: bytes | str, kind: str) -> str:
@@ -141,13 +178,6 @@ def _range(benchmark: Benchmark, name: str) -> str:
     return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(benchmark, name)))
 
 
-def _misprints(validation: Validation) -> list[tuple[Result, Claim]]:
-    """Return the results of what is wrong in the paper, each with its claim."""
-    claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
-    named = [((result.group, result.name), result) for result in validation.audit]
-    return [(result, claims[name]) for name, result in named if name in claims]
-
-
 def _marked(cell: str) -> Markup:
     """Return a text of a table as HTML, with Greek letters; what stands between two pairs of asterisks is strong."""
-    return Markup(_FAILED.sub(r"<strong>\1</strong>", str(escape(letters(cell)))))
+    return Markup(re.sub(r"\*\*(.+?)\*\*", r"<strong>\1</strong>", str(escape(letters(cell)))))

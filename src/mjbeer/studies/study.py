@@ -19,7 +19,6 @@ from rich.console import Console
 from mjbeer.checks import Check, Result, json_values, line
 from mjbeer.exceptions import OutputError, ParameterError
 from mjbeer.output import files
-from mjbeer.output.processes import pool
 from mjbeer.output.terminal import Table, progress_bar
 
 PASSED = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
@@ -114,7 +113,7 @@ def measured(checks: Sequence[Check], begin: Callable[[str], None]) -> Generator
             begin(check.name)
             yield check.result()
         return
-    with pool(processes) as executor:
+    with files.pool(processes) as executor:
         try:
             for done in as_completed([executor.submit(_in_silence, check) for check in checks]):
                 result = done.result()
