@@ -77,7 +77,7 @@ _LAZY = {
     "Track": "mjbeer.tracks.track",
     "read_track": "mjbeer.tracks.track",
 }
-load_drawing[:] = [lambda: import_module("mjbeer.drawing.notebook")]
+load_drawing[:] = [lambda name: import_module(f"mjbeer.drawing.{name}")]
 
 
 def __getattr__(name: str) -> object:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
-from mjbeer.drawing.camera import CameraPath, View, on_incline, scale
+from mjbeer.drawing.camera import View, follow, on_incline, scale
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.drawing.overlay import Look, header_height
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
@@ -29,7 +29,7 @@ def motion(incline: float = 0.2) -> Trajectory:
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
     """Return the view of the film of a motion without charts and marks, below its title: 1.35 radii around its can."""
     plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return CameraPath.fit(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels, 1.35, 1.75).view(0.0)
+    return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels, 1.35, 1.75)[0](0.0)
 
 
 def picture(run: Trajectory, time: float, width: int, height: int) -> np.ndarray:
@@ -119,12 +119,12 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
 def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
     moved = motion()
     display, view = Display.of([moved.scene]), still_view(moved, SIZE)
-    scenery, pictures = Scenery(moved.scene, display.model), []
+    pictures = []
     for still in (False, True):
         sheet = Sheet(*SIZE)
-        with closing(Painter(display, scenery, *SIZE, still)) as painter:
+        with closing(Painter(display, SIZE, still)) as painter:
             for u in (0.0, 0.01):
-                painter.paint(sheet, view, np.array([[u, 0.5, 0.5, 0.002]]), 0)
+                painter.paint(sheet, view, np.array([[u, 0.5, 0.5, 0.002]]))
         pictures.append(sheet.picture())
     assert np.array_equal(*pictures)
     assert np.ptp(pictures[0]) > 200
@@ -142,12 +142,11 @@ def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
     model.geom_group[:] = 5
     model.geom_group[flat] = 0
     points = np.concatenate([display.outline(0, np.array([u, 0.0, 0.0, 0.0])).reshape(-1, 3) for u in (-0.2, 0.4)])
-    above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0.01)
-    scenery = Scenery(scene, model)
+    above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0, 0.01)
     for view in (still_view(motion(scene.incline), (400, 200)), above):
         sheet = Sheet(*view.pixels)
-        scenery.draw(sheet, view, 0)
-        with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
+        Scenery(display).draw(sheet, view)
+        with closing(Painter(display, view.pixels)) as painter:
             drawn = painter._draw(view, 0)
         assert (drawn[..., 3] == 255).all()
         difference = np.abs(sheet.picture().astype(int) - drawn[..., :3]).max(axis=2)

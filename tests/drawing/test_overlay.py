@@ -1,15 +1,14 @@
 """What is drawn at the can is what it says: the angle, the paths, the forces, and even acceleration."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
-from mjbeer.drawing.camera import Camera, CameraPath, View, on_incline, scale
-from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides, head
+from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.drawing.camera import Camera, View, follow, on_incline, scale
+from mjbeer.drawing.overlay import LONGEST, Board, Look, Mark, Marks, head, spans
 from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.drawing.sheet import Box, Sheet, overlap
 from mjbeer.model.looks import WALL
@@ -57,10 +56,10 @@ class Recorder(Sheet):
 def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
     """Draw marks, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
-    view = CameraPath.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
+    view = follow(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS)[0](time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
-    Marks(motion, kinds, PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
+    Marks(motion, Look("", marks=kinds), PLANE, TIMES, positions).draw(sheet, view, time, now)
     return sheet, view, now
 
 
@@ -139,10 +138,10 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
 
 def guided(scene: Scene, times: np.ndarray, camera: Camera) -> tuple[Recorder, Board, View]:
     motion, display = exact(scene, times, 1.0), Display.of([scene])
-    board = Board.of(scene, display.model)
-    view = CameraPath.fit(scene, camera, times, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    board = Board(display)
+    view = follow(scene, camera, times, motion.u, motion.lift, display.front(), PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
-    guides(sheet, board, view, 0)
+    board.draw(sheet, view)
     return sheet, board, view
 
 
@@ -185,29 +184,51 @@ def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -
 def test_distances_begin_where_the_can_is_let_go() -> None:
     """Frozen beer on top begins at u = pi a; the axis has the number 0 below it there."""
     motion, display = exact(frozen(), FEW, math.pi), Display.of([frozen()])
-    view = CameraPath.fit(motion.scene, "fixed", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    view = follow(motion.scene, "fixed", FEW, motion.u, motion.lift, display.front(), PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
-    guides(sheet, Board.of(motion.scene, display.model, motion.u[0]), view, 0)
+    Board(display, motion.u[0]).draw(sheet, view)
     numbers = [words for words in sheet.words if words.endswith(" m")]
     tick = sheet.lines[2:][numbers.index("0 m")][0]
-    x, z = on_incline(motion.scene, math.pi * RADIUS, Board.of(motion.scene, display.model).under)
+    x, z = on_incline(motion.scene, math.pi * RADIUS, Board(display).under)
     assert tick == pytest.approx(view.pixel(np.array([x, display.model.geom("board").pos[1] - 0.075, z])), abs=PIXEL)
 
 
-def test_the_gap_is_as_high_as_the_can_flies() -> None:
-    motion = replace(exact(frozen(), TIMES, 2.0), lift=np.full_like(TIMES, 0.007))
-    sheet, view, _ = drawn(motion, 0.3, "gap")
-    assert sheet.words == ["7 mm"]
-    ((tail, head),) = sheet.arrows
-    radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
-    assert np.hypot(*(head - tail)) == pytest.approx(0.007 / 0.033 * radius, rel=1e-3)  # perspective
-    assert not drawn(exact(frozen(), TIMES, 2.0), 0.3, "gap")[0].words
+def noted(run: Trajectory, name: str) -> list[tuple[float, float]]:
+    """From when to when a note holds."""
+    (found,) = spans(run, [name]).values()
+    return found
+
+
+def test_notes_are_there_while_it_happens() -> None:
+    """Frozen beer let go on top with mu = 1: it slips, flies from 0.83 s on by some mm, and lands."""
+    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=1.0)
+    ((first, last),) = noted(run, "flies")
+    high = run.lift > 1e-3
+    assert run.time[high].min() > first > 0.83
+    assert run.time[high].max() < last < 0.97
+    slips = noted(run, "slips")
+    assert len(slips) == 3  # short rests do not interrupt them
+    assert slips[0][0] == pytest.approx(0.73, abs=0.01)
+    below = noted(run, "heavy")
+    assert all(np.cos(np.interp((first + last) / 2, run.time, run.phi)) > 0.7 for first, last in below[:3])
+    assert all(np.cos(np.interp((first + last) / 2, run.time, run.phi)) < 0 for first, last in noted(run, "light")[:1])
+
+
+@pytest.mark.parametrize("make", [sliding, pendulum])
+def test_a_can_hesitates_while_its_load_is_uphill(make) -> None:
+    """Once a swing; a pause of a few samples does not interrupt the note."""
+    run = simulate(make(), 1.2, 1.0, tolerance=1e-9)
+    swings = 1.2 / make().period(1.0)
+    found = noted(run, "hesitates")
+    assert len(found) == math.ceil(swings)
+    for first, last in found[1:-1]:
+        assert np.interp((first + last) / 2, run.time, run.phi) > 0.8
 
 
 @pytest.mark.parametrize("width", [640, 1280])
 def test_no_title_runs_into_the_time(width: int) -> None:
     sheet = Recorder(width, 360)
-    head(sheet, ("a long title " * 5, "many words " * 8), 0.0, 0.25)
+    head(sheet, "a long title " * 5, "many words " * 8, 0.0, 0.25)
     title, other = (box for box in sheet.boxes if box[0] < width / 4)
     for box in sheet.boxes:
         assert not overlap(box, title) or box == title

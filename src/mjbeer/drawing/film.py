@@ -2,18 +2,18 @@
 
 from collections.abc import Callable, Generator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.camera import CameraPath
-from mjbeer.drawing.overlay import NOTE, STRIP, Board, Look, Marks, guides, header, header_height, note
-from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
+from mjbeer.drawing.camera import follow
+from mjbeer.drawing.overlay import NOTE, STRIP, Board, Look, Marks, header, header_height, note, spans
+from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.strip import Strip, charts, spans
+from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
 
@@ -37,34 +37,31 @@ class RenderPlan:
     def times(self, fps: float) -> np.ndarray:
         """Return the times [s] of the pictures at `fps` frames per second of the video.
 
-        The video lasts as long as the motion, divided by the playback speed.
-
         Raises:
           ParameterError: if `fps` or `speed` is not greater than 0, or the video would have too many frames.
         """
         fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", self.speed)
-        duration = self.end - self.start
-        count = duration / speed * fps
+        count = (self.end - self.start) / speed * fps
         if count > _MOST_FRAMES:
             raise ParameterError(
-                f"a video must have at most {_MOST_FRAMES:g} frames, got {duration:g} s at {fps:g} frames per second "
-                f"and a speed of {speed:g}, which are {count:.3g}"
+                f"a video must have at most {_MOST_FRAMES:g} frames, got {self.end - self.start:g} s at {fps:g} frames "
+                f"per second and a speed of {speed:g}, which are {count:.3g}"
             )
         return self.start + speed / fps * np.arange(max(1, round(count)))
 
 
 class Film(Protocol):
-    """A film. It can be pickled, so that another process can draw it.
-
-    Its caption says what is seen, in whole sentences, for the text beside the film. Its still picture shows a time [s].
-    `plan` computes the motion, and returns what is needed to draw it.
-    """
+    """A film, which can be pickled so that another process can draw it. `plan` computes its motion."""
 
     @property
-    def caption(self) -> str: ...
+    def caption(self) -> str:
+        """Return what is seen, in whole sentences."""
+        ...
 
     @property
-    def still(self) -> float: ...
+    def still(self) -> float:
+        """Return the time [s] of the motion that the film's still picture shows; 0 is a third of the way through."""
+        ...
 
     def plan(self) -> RenderPlan: ...
 
@@ -77,7 +74,6 @@ class MotionFilm:
     speed: float
     look: Look | None = None  # what is drawn; None is the usual look of such a motion
     still: float = 0.0
-    """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""
 
     def plan(self) -> RenderPlan:
@@ -98,32 +94,28 @@ class MotionFilm:
 def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
-    sheet, scene = Sheet(width, height), trajectory.scene
+    sheet, display = Sheet(width, height), Display.of([trajectory.scene])
     has_room = len(trajectory.time) > 1 and width > _NARROW * sheet.unit
     below = round(STRIP * sheet.unit) if has_room and look.strips else 0
     top, spare = header_height(look, sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
     seen = height - top - below  # of the scene, where notes are above what the camera shows
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
-    positions = coordinates(trajectory, fine)
-    display = Display.of([scene])
-    plane, around = display.front(), _AROUND["phi" in look.marks]
+    positions, plane, around = coordinates(trajectory, fine), display.front(), _AROUND["phi" in look.marks]
     under = _BELOW if "normal" in look.marks else max(around, _BOARD)
     motion = fine, positions[:, 0], positions[:, 3]
-    path = CameraPath.fit(scene, look.camera, *motion, plane, (width, seen - spare), around, under)
-    marks = Marks(trajectory, look.marks, plane, fine, positions, look.measured)
-    board = Board.of(scene, display.model, float(trajectory.u[0]))
-    notes = {name: spans(trajectory, name) for name in look.notes}
-    shown, marked = charts(trajectory, look.strips[: 1 if sheet.small else None]), next(iter(notes.values()), ())
-    strip = Strip(shown, width, below, marked) if below else None
-    with closing(Painter(display, Scenery(scene, display.model), width, seen, path.still)) as painter:
+    camera, still = follow(trajectory.scene, look.camera, *motion, plane, (width, seen - spare), around, under)
+    marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
+    notes = spans(trajectory, look.notes)
+    marked = next(iter(notes.values()), ())
+    strip = Strip(charts(trajectory, look.strips), width, below, marked) if below else None
+    with closing(Painter(display, (width, seen), still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
-            view = path.view(time).crop(0, -spare, width, seen - spare)
-            sheet.boxes.clear()
-            painter.paint(sheet, view, now[None], top)
-            marks.draw(sheet, view, top, time, now)
-            guides(sheet, board, view, top)
+            view = replace(camera(time).crop(0, -spare, width, seen - spare), top=top)
+            painter.paint(sheet, view, now[None])
+            marks.draw(sheet, view, time, now)
+            board.draw(sheet, view)
             header(sheet, look, trajectory, time, speed)
-            note(sheet, trajectory, notes, time, top)
+            note(sheet, notes, time, top)
             if strip is not None:
                 strip.draw(sheet, time, height - below)
             yield sheet.picture()

@@ -1,11 +1,10 @@
 """Films and plots to be written, many at once, in one process for each core."""
 
-import contextlib
 import io
 import itertools
 import pathlib
 import warnings
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -71,17 +70,21 @@ def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
       RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
       OutputError: if a file cannot be written.
     """
-    with _cleaned_up(orders), progress_bar(console, len(orders)) as begin, processes.pool(len(orders)) as executor:
-        futures = {executor.submit(_done, order): order for order in orders}
-        for future in as_completed(futures):
-            try:
-                future.result()
-            except BrokenProcessPool as error:
-                raise RenderingError(
-                    f"{futures[future].path.name} was not made: a process died; is memory short?"
-                ) from error
-            begin(f"made {futures[future].path.name}")
-        return [future.result() for future in futures]
+    try:
+        with progress_bar(console, len(orders)) as begin, processes.pool(len(orders)) as executor:
+            futures = {executor.submit(_done, order): order for order in orders}
+            for future in as_completed(futures):
+                name = futures[future].path.name
+                try:
+                    future.result()
+                except BrokenProcessPool as error:
+                    raise RenderingError(f"{name} was not made: a process died; is memory short?") from error
+                begin(f"made {name}")
+            return [future.result() for future in futures]
+    finally:  # a process that was ended while it wrote leaves a hidden file
+        for order in orders:
+            for unfinished in order.path.parent.glob(f".{order.path.stem}-*"):
+                unfinished.unlink(missing_ok=True)
 
 
 def _done(order: Any) -> Any:
@@ -90,14 +93,3 @@ def _done(order: Any) -> Any:
         for kind in (UntrustedWarning, LiquidWarning, AngleWarning):
             warnings.simplefilter("ignore", kind)
         return order.write()
-
-
-@contextlib.contextmanager
-def _cleaned_up(orders: Sequence[Any]) -> Generator[None]:
-    """Remove the hidden files at the end that a process leaves which is ended while it writes."""
-    try:
-        yield
-    finally:
-        for order in orders:
-            for unfinished in order.path.parent.glob(f".{order.path.stem}-*"):
-                unfinished.unlink(missing_ok=True)

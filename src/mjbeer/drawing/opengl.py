@@ -8,8 +8,6 @@ import threading
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from mjbeer.exceptions import RenderingError
 
 INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"
@@ -40,19 +38,6 @@ def context() -> Any:
             ) from error
         atexit.register(_THREAD.context.free)  # later it could not be freed any more
     return _THREAD.context
-
-
-def read(drawn: Any, width: int, height: int) -> np.ndarray:
-    """Return what a MuJoCo context has drawn, with a channel more than MuJoCo returns, shape (height, width, 4), uint8.
-
-    The first row is the lowest. The last channel is 255, and 0 where nothing is drawn. There must be no multisampling.
-    """
-    from OpenGL import GL
-
-    pixels = np.empty((height, width, 4), np.uint8)
-    GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO)
-    GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, pixels)
-    return pixels
 
 
 def problem() -> str | None:

@@ -5,7 +5,7 @@ import errno
 import os
 import pathlib
 import re
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from typing import Any
 
 import numpy as np
@@ -14,11 +14,11 @@ from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS, Camera
 from mjbeer.drawing.film import MotionFilm, RenderPlan
 from mjbeer.drawing.overlay import Look
-from mjbeer.drawing.sheet import require_pixels
 from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.theory.trajectory import Trajectory
 
+_LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
 _RATE = 21  # the rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default
 SMALL_RATE = 24  # that of a film that a page holds: letters are as sharp, and it takes three quarters of the room
 _ENCODED = (
@@ -35,7 +35,7 @@ _DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 def render(
     trajectory: Trajectory,
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None,
     width: int = 1280,
     height: int = 720,
     fps: float = 30,
@@ -45,31 +45,30 @@ def render(
 ) -> None:
     """Write a trajectory as a video, MP4 with H.264; if that fails, no file is left and an existing one is kept.
 
-    `width` and `height` are in pixels, `fps` in frames per second of the video; `speed` is 1 for real time, 0.25 for
-    four times slower. `camera` is "fixed" (it stands still and shows the whole motion), "pan" (it moves with a constant
-    acceleration), "close" (it goes along with the can), or "auto" (fixed, unless the can would be too small). If
-    `progress` is true and standard error is a terminal, it shows a progress bar.
+    Where `path` is None it is shown in a notebook. `width` and `height` are in pixels, `fps` in frames per second of
+    the video; `speed` is 1 for real time, 0.25 for four times slower. `camera` is "fixed" (it stands still and shows
+    the whole motion), "pan" (it moves with a constant acceleration), or "auto" (fixed, unless the can would be too
+    small). If `progress` is true and standard error is a terminal, it shows a progress bar.
 
     Raises:
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    if (target := require.path(path)).suffix.lower() != ".mp4":
+    target = None if path is None else require.path(path)
+    if target and target.suffix.lower() != ".mp4":
         raise ParameterError(f"the file's name must end in .mp4, got {require.format_value(str(path))}")
     console = terminal.STDERR if require.boolean("progress", progress) else None
-    film = _plan(trajectory, camera, require.positive("speed", speed))
+    require.instance("trajectory", trajectory, Trajectory)
+    require.choice("camera", camera, CAMERAS)
+    speed = require.positive("speed", speed)
+    film = MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
+    if target is None:
+        with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
+            mediapy.show_video(pictures, fps=fps, autoplay=False)
+        return
     with terminal.progress_bar(console, len(film.times(fps))) as begin:
         write(film, target, width, height, fps, lambda _: begin(f"drawing {target.name}"))
-
-
-def show(
-    trajectory: Trajectory, width: int, height: int, fps: float = 30, speed: float = 1.0, camera: Camera = "auto"
-) -> None:
-    """Show a trajectory as a video in a notebook. Arguments and errors are those of `render`."""
-    film = _plan(trajectory, camera, require.positive("speed", speed))
-    with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
-        mediapy.show_video(pictures, fps=fps, autoplay=False)
 
 
 def write(
@@ -78,13 +77,13 @@ def write(
     width: int,
     height: int,
     fps: float,
-    seen: Callable[[np.ndarray], None],
+    seen: Callable[[np.ndarray], None] = lambda _: None,
     rate: int = _RATE,
 ) -> None:
     """Write a film as a video, as `render` does, and call `seen` with each picture."""
     with files.atomic_write(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
 
-        def watched() -> Iterator[np.ndarray]:
+        def watched() -> Generator[np.ndarray]:
             for picture in pictures:
                 seen(picture)
                 yield picture
@@ -92,9 +91,7 @@ def write(
         encode(watched(), temporary, int(width), int(height), fps, rate)
 
 
-def encode(
-    pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float, rate: int = _RATE
-) -> None:
+def encode(pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float, rate: int) -> None:
     """Write pictures of shape (height, width, 3), uint8, one at a time, so that memory holds only one.
 
     Raises:
@@ -110,14 +107,17 @@ def encode(
         except BrokenPipeError:
             writer.close()  # which now raises what ffmpeg said
             raise
-    if path.stat().st_size == 0:
-        raise _failure("")
+        if path.stat().st_size == 0:
+            raise RuntimeError("it ended before the video did")
 
 
 def _pictures(plan: RenderPlan, width: int, height: int, fps: float) -> Generator[np.ndarray]:
     for name, pixels in (("width", width), ("height", height)):
-        if require_pixels(name, pixels) % 2 != 0:
-            raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
+        if require.positive(name, pixels) % 2 or pixels > _LARGEST:
+            raise ParameterError(
+                f"{name} must be an even number of pixels up to {_LARGEST}, as H.264 wants it, "
+                f"got {require.format_value(pixels)}"
+            )
     return plan.draw(plan.times(fps), int(width), int(height))
 
 
@@ -131,26 +131,14 @@ def _mediapy() -> Generator[Any]:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
         yield mediapy
     except (OSError, RuntimeError) as error:
-        if not isinstance(
-            error.__context__, OSError | RuntimeError | None
-        ):  # what was drawn failed, or Ctrl-C ended both
+        if not isinstance(error.__context__, OSError | RuntimeError | None):  # drawing failed, or Ctrl-C ended both
             raise error.__context__ from None
         said = re.sub("^Error writing '.*?': ", "", str(error)).strip()  # mediapy's words, before those of ffmpeg
         for number in _DISK:
             if os.strerror(number) in said:
                 raise OSError(number, os.strerror(number)) from error
-        raise _failure(said) from error
-
-
-def _failure(said: str) -> RenderingError:
-    reason = (said or "it ended before the video did").splitlines()[-1]
-    return RenderingError(
-        f"ffmpeg did not write the video: {reason}\nReinstall it (`pip install --force-reinstall imageio-ffmpeg`), or "
-        "name another in IMAGEIO_FFMPEG_EXE"
-    )
-
-
-def _plan(trajectory: Trajectory, camera: Camera, speed: float) -> RenderPlan:
-    require.instance("trajectory", trajectory, Trajectory)
-    require.choice("camera", camera, CAMERAS)
-    return MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
+        reason = (said or "it ended before the video did").splitlines()[-1]
+        raise RenderingError(
+            f"ffmpeg did not write the video: {reason}\nReinstall it (`pip install --force-reinstall imageio-ffmpeg`), "
+            "or name another in IMAGEIO_FFMPEG_EXE"
+        ) from error

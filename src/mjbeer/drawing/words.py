@@ -1,10 +1,12 @@
-"""A scene in words, for titles, captions and tables."""
+"""A scene in words, for titles and captions, and what a notebook shows of a run."""
 
+import html
 import math
 from collections.abc import Collection
 
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
 
 _FILLS = {0.25: "quarter-full", 0.5: "half-full", 0.75: "three-quarters-full", 1.0: "full"}
 
@@ -41,3 +43,21 @@ def damping_in_words(scene: Scene) -> str:
     """Return the torque between can and load over their slip rate w, as "0.001 N m s"; "0" if there is none."""
     shares = zip(scene.damping_law.coefficients, ("N m s", "N m s^2 |w|", "N m s^3 w^2"), strict=True)
     return " + ".join(f"{share:.4g} {unit}" for share, unit in shares if share) or "0"
+
+
+def trajectory_html(trajectory: Trajectory) -> str:
+    """Return the key figures of a trajectory, and what it says about itself, as an HTML table."""
+    time, radius, record = trajectory.time, trajectory.scene.can.radius, trajectory.record
+    rows = {
+        "scene": in_words(trajectory.scene),
+        "rolling, integrator": f"{trajectory.rolling}, {trajectory.integrator}",
+        "samples": f"{len(time)}, from {time[0]:.6g} s to {time[-1]:.6g} s",
+        "φ at the last sample": f"{math.degrees(trajectory.phi[-1]):.6g} degrees",
+        "u at the last sample": f"{trajectory.u[-1]:.6g} m",
+        "largest slip and lift": f"{record.slip / radius:.2g} and {record.lift / radius:.2g} radii",
+    }
+    if trajectory.error_estimate is not None:
+        rows["estimated error of φ and u/a"] = f"{trajectory.error_estimate:.2g} rad"
+    rows["trusted"] = "yes" if trajectory.trusted else "no: " + "; ".join(trajectory.warnings)
+    cells = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(text)}</td></tr>" for name, text in rows.items())
+    return f'<table style="text-align: left">{cells}</table>'

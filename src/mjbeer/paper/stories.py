@@ -68,6 +68,7 @@ STORIES = (
             "One beer swings, one does not: their centres of mass stay abreast",
             _let_go,
             length=0.36,
+            duration=0.65,
             speed=0.1,
             told=str,  # the story has a caption
             still=0.2,
@@ -151,11 +152,10 @@ STORIES = (
             speed=0.04,
             still=0.9,
             look=Look(
-                "Frozen beer rolls down, slips and hops",
+                "With μ = 1, frozen beer slips before it hops",
                 ("lift", "slip"),
-                ("skid", "gap"),
-                "close",
-                "μ = 1; the first 0.68 s are left out",
+                ("normal", "friction"),
+                "pan",
                 ("flies", "slips"),
             ),
         ),

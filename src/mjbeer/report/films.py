@@ -22,7 +22,7 @@ FILMS: dict[str, Race | MotionFilm | Carry] = {
         speed=0.25,
         told=races.told_of_beer,
         still=1.4,
-        after=0.2,
+        duration=2.3,
     ),
     "liquids": Race(
         "Water, oil, honey or ice: which can wins, and which is last?",
@@ -31,10 +31,8 @@ FILMS: dict[str, Race | MotionFilm | Carry] = {
         speed=1 / 3,
         told=races.told_of_liquids,
         still=2.2,
-        after=0.4,
-        missing=1,
-        facts="all cans ¾ full, let go with a level surface",
-        caveat="Each liquid is one lump here. Real water and oil are soon too fast to stay at the bottom.",
+        duration=2.72,
+        facts="all cans ¾ full; here each liquid is one lump, and stays at the bottom",
     ),
     "sliding": MotionFilm(
         partial(simulate, sliding(can=races.METAL), 1.2, math.radians(60), tolerance=1e-9),

@@ -184,7 +184,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        return load_drawing[0]().plot(self, *names, theory=theory)
+        return load_drawing[0]("plot").plot(self, *names, theory=theory)
 
     def video(
         self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
@@ -193,7 +193,7 @@ class Trajectory(Coordinates):
 
         `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        load_drawing[0]().video(self, path, width, height, **others)
+        load_drawing[0]("video").render(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units."""
@@ -222,7 +222,7 @@ class Trajectory(Coordinates):
 
     def _repr_html_(self) -> str:
         """Return key figures for a notebook."""
-        return load_drawing[0]().trajectory_html(self)
+        return load_drawing[0]("words").trajectory_html(self)
 
 
 def csv(motion: Trajectory) -> str:

@@ -95,7 +95,6 @@ def test_a_notebook_shows_whether_a_run_is_trusted() -> None:
     assert "<th>trusted</th><td>yes</td>" in good._repr_html_()
     assert "no: from t = 0.83" in bad._repr_html_()
     assert "N &lt; 0" in bad._repr_html_()
-    assert "<th>incline</th><td>10 degrees</td>" in good.scene._repr_html_()
 
 
 def test_a_damped_run_is_drawn_with_the_speed_of_damped_theory() -> None:
