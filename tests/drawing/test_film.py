@@ -10,7 +10,7 @@ import pytest
 from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
 from mjbeer.drawing.camera import View, follow, on_incline, scale
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.overlay import Look, header_height
+from mjbeer.drawing.overlay import HEADER, Look
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS
@@ -27,9 +27,9 @@ def motion(incline: float = 0.2) -> Trajectory:
 
 
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
-    """Return the view of the film of a motion without charts and marks, below its title: 1.35 radii around its can."""
+    """Return the view of the film of a motion without charts and marks, below its title: 1.9 radii around its can."""
     plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels, 1.35, 1.75)[0](0.0)
+    return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels)[0](0.0)
 
 
 def picture(run: Trajectory, time: float, width: int, height: int) -> np.ndarray:
@@ -70,7 +70,7 @@ def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Se
         lift=rest,
         lift_dot=rest,
     )
-    top = header_height(FIXED, Sheet(*SIZE).unit)
+    top = round(HEADER * Sheet(*SIZE).unit)
     view = still_view(still, (SIZE[0], SIZE[1] - top))
     axes = on_incline(scene, u * scale(scene), RADIUS)
     drawn = MotionFilm(lambda: still, 1.0, FIXED).plan().draw(times, *SIZE)

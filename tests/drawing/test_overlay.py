@@ -139,7 +139,7 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
 def guided(scene: Scene, times: np.ndarray, camera: Camera) -> tuple[Recorder, Board, View]:
     motion, display = exact(scene, times, 1.0), Display.of([scene])
     board = Board(display)
-    view = follow(scene, camera, times, motion.u, motion.lift, display.front(), PIXELS)[0](0.0)
+    view = follow(scene, camera, times, motion.u, motion.lift, display.ends()[0], PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
     board.draw(sheet, view)
     return sheet, board, view
@@ -184,7 +184,7 @@ def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -
 def test_distances_begin_where_the_can_is_let_go() -> None:
     """Frozen beer on top begins at u = pi a; the axis has the number 0 below it there."""
     motion, display = exact(frozen(), FEW, math.pi), Display.of([frozen()])
-    view = follow(motion.scene, "fixed", FEW, motion.u, motion.lift, display.front(), PIXELS)[0](0.0)
+    view = follow(motion.scene, "fixed", FEW, motion.u, motion.lift, display.ends()[0], PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
     Board(display, motion.u[0]).draw(sheet, view)
     numbers = [words for words in sheet.words if words.endswith(" m")]

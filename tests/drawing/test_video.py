@@ -16,7 +16,7 @@ from rich.console import Console
 from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.jobs import FilmJob, produce
+from mjbeer.drawing.video import FilmJob, produce
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from tests.support.processes import run
 
@@ -160,7 +160,7 @@ def test_films_are_made_in_other_processes_or_one_error_is_told(
 
 
 def test_opengl_that_does_not_start_says_what_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(opengl, "_THREAD", type("Fresh", (), {})())
+    monkeypatch.setattr(opengl, "context", opengl.context.__wrapped__)
     monkeypatch.setattr(opengl.importlib, "import_module", lambda name: exec(f"raise ImportError('no {name}')"))
     monkeypatch.setenv("MUJOCO_GL", "osmesa")
     assert str(opengl.problem()).startswith("no off-screen OpenGL (osmesa): no mujoco.osmesa")

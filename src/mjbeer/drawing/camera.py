@@ -17,7 +17,7 @@ acceleration that fits the motion best. auto: fixed, or pan where the can would 
 CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan")
 _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
-_AROUND = 1.75
+AROUND = 1.9
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
 _SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
 _FAR = 4.0  # distance of the eye, in diagonals of the picture: the longer, the less of the can's inside is seen
@@ -128,21 +128,20 @@ def follow(
     lift: np.ndarray,
     plane: float,
     pixels: tuple[int, int],
-    around: float = _AROUND,
-    below: float = _AROUND,
+    below: float = AROUND,
 ) -> tuple[Callable[[float], View], bool]:
     """Return the view at a time [s] that a camera has of a can, and whether it stands still.
 
     It shows a can that is at `u` and `lift` [m] at some times [s], its near end in the `plane` y [m], with at least so
-    many radii `around` its axis, and `below` it.
+    many radii `below` its axis.
     """
     along, height, shape = u * scale(scene), lift * scale(scene), np.array(pixels) / pixels[1]
 
     def shown(way: Polynomial) -> tuple[np.ndarray, np.ndarray]:
         """Return the middle of what is seen, from the point at the way's distance, and its width and height [m]."""
         places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([around, below])
-        high = places.max(axis=0) + RADIUS * around
+        low = places.min(axis=0) - RADIUS * np.array([AROUND, below])
+        high = places.max(axis=0) + RADIUS * AROUND
         return (low + high) / 2, ((high - low) / shape).max() * shape
 
     way = Polynomial([(along.min() + along.max()) / 2])  # distance of the camera down the incline, as drawn [m]

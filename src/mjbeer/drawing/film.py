@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.camera import follow
-from mjbeer.drawing.overlay import NOTE, STRIP, Board, Look, Marks, header, header_height, note, spans
+from mjbeer.drawing.camera import AROUND, follow
+from mjbeer.drawing.overlay import HEADER, NOTE, STRIP, Board, Look, Marks, header, note, spans
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.drawing.strip import Strip, charts
@@ -20,8 +20,7 @@ from mjbeer.theory.trajectory import Trajectory
 _MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
 _NARROW = 24  # width up to which a picture has no charts below, in units
 _FINE = 2000  # points of a path
-_AROUND, _BOARD, _BELOW = (1.35, 1.95), 1.75, 3.0
-"""What is seen around the can's axis without and with its angle; below it at least, and with forces; in radii."""
+_BELOW = 3.0  # what is seen below the can's axis, in radii, where the arrows of forces are
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,17 +50,17 @@ class RenderPlan:
 
 
 class Film(Protocol):
-    """A film, which can be pickled so that another process can draw it. `plan` computes its motion."""
+    """A film. It can be pickled, so that another process can draw it.
+
+    Its caption says what is seen. Its still picture shows a time [s]; 0 is a third of the way through. `plan` computes
+    the motion, and returns what is needed to draw it.
+    """
 
     @property
-    def caption(self) -> str:
-        """Return what is seen, in whole sentences."""
-        ...
+    def caption(self) -> str: ...
 
     @property
-    def still(self) -> float:
-        """Return the time [s] of the motion that the film's still picture shows; 0 is a third of the way through."""
-        ...
+    def still(self) -> float: ...
 
     def plan(self) -> RenderPlan: ...
 
@@ -97,13 +96,13 @@ def _pictures(
     sheet, display = Sheet(width, height), Display.of([trajectory.scene])
     has_room = len(trajectory.time) > 1 and width > _NARROW * sheet.unit
     below = round(STRIP * sheet.unit) if has_room and look.strips else 0
-    top, spare = header_height(look, sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
+    top, spare = round(HEADER * sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
     seen = height - top - below  # of the scene, where notes are above what the camera shows
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
-    positions, plane, around = coordinates(trajectory, fine), display.front(), _AROUND["phi" in look.marks]
-    under = _BELOW if "normal" in look.marks else max(around, _BOARD)
+    positions, plane = coordinates(trajectory, fine), display.ends()[0]
     motion = fine, positions[:, 0], positions[:, 3]
-    camera, still = follow(trajectory.scene, look.camera, *motion, plane, (width, seen - spare), around, under)
+    under = _BELOW if "normal" in look.marks else AROUND
+    camera, still = follow(trajectory.scene, look.camera, *motion, plane, (width, seen - spare), under)
     marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())

@@ -3,8 +3,7 @@
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from matplotlib.ticker import MaxNLocator
@@ -21,15 +20,15 @@ from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
-"""ghost: a can that accelerates evenly. paths: of a point on the rim and of the load's centre of mass. normal and
-friction: forces. phi: the angle of the load. measured: where a film has had the axis so far."""
-_TITLES = {
-    "sliding": "Beer that slides in its can without friction",
-    "frozen": "Beer frozen to its can",
-    "pendulum": "A pendulum in a rolling wheel",
-    "hoop": "A weight on the rim of a hoop",
+"""ghost: a can that accelerates evenly. paths: of a point on the rim and of the load's centre of mass. normal: N.
+friction: F, beside N. phi: the angle of the load. measured: where a film has had the axis so far."""
+_KINDS = {
+    "sliding": ("Beer that slides in its can without friction", "can", "beer"),
+    "frozen": ("Beer frozen to its can", "can", "beer"),
+    "pendulum": ("A pendulum in a rolling wheel", "wheel", "bob"),
+    "hoop": ("A weight on the rim of a hoop", "hoop", "bar"),
 }
-_DAMPED = "A can that its load or the air brakes"
+"""The title of a film of which nothing else is known, what rolls, and what is in it, by the names of looks."""
 
 
 @dataclass(frozen=True)
@@ -46,26 +45,23 @@ class Look:
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
         """Return the look of a motion of which nothing else is known."""
-        title = _DAMPED if trajectory.scene.dissipates else _TITLES[looks.name(trajectory.scene)]
+        damped, title = trajectory.scene.dissipates, _KINDS[looks.name(trajectory.scene)][0]
+        title = "A can that its load or the air brakes" if damped else title
         if trajectory.rolling == "contact":
-            return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "normal", "friction"), camera=camera)
-        if trajectory.scene.dissipates:
-            return cls(title, strips=("phi", "u_dot"), camera=camera)
-        if trajectory.scene.attachment == "sliding":
-            return cls(title, strips=("phi", "ahead"), marks=("phi", "ghost"), camera=camera)
-        return cls(title, camera=camera)
+            return cls(title, ("phi", "normal"), ("phi", "paths", "normal", "friction"), camera)
+        if trajectory.scene.attachment == "sliding" and not damped:
+            return cls(title, ("phi", "ahead"), ("phi", "ghost"), camera)
+        return cls(title, ("phi", "u_dot" if damped else "u"), camera=camera)
 
 
 # The lines above a picture: what is seen, when, how fast, and what the marks mean. Sizes are in units of the sheet.
 
 HEIGHT = 4.1  # height of the first two lines
+HEADER = 5.6  # and with the third, which tells what the marks mean
 STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
-_LEGEND = 1.5  # height of the third line, which tells what the marks mean, if they need it
 _FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
 _GREY, _PLATE = "#52606d", (1.0, 0.95, 0.72)
-_PARTS = {"sliding": ("can", "beer"), "frozen": ("can", "beer"), "pendulum": ("wheel", "bob"), "hoop": ("hoop", "bar")}
-"""What rolls and what is in it, by the names of looks."""
 _RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
@@ -80,18 +76,13 @@ _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
 """What the marks are, in the order in which they are drawn: a sign, its colour, and its meaning."""
 
 
-def header_height(look: Look, unit: float) -> int:
-    """Return the height of the lines above a picture [pixels], for a unit of its sheet [pixels]."""
-    return round((HEIGHT + (_LEGEND if any(_LEGENDS[mark] for mark in look.marks) else 0)) * unit)
-
-
 def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed: float) -> None:
     """Draw the lines above a picture as they are at a `time` [s]."""
     duration = float(trajectory.time[-1] - trajectory.time[0])
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
-    sheet.blank(0, header_height(look, sheet.unit))
+    sheet.blank(0, round(HEADER * sheet.unit))
     head(sheet, look.title, in_words(trajectory.scene), time, speed, digits)
-    unit, (body, _), column = sheet.unit, _PARTS[looks.name(trajectory.scene)], 1.2 * sheet.unit
+    unit, (_, body, _), column = sheet.unit, _KINDS[looks.name(trajectory.scene)], 1.2 * sheet.unit
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
         *_, column, _ = sheet.text((column, _THIRD * unit), sign, 1.1 * unit, colour, bold=True)
         *_, column, _ = sheet.text((column + 0.5 * unit, _THIRD * unit), meaning.format(body), 1.0 * unit)
@@ -145,7 +136,7 @@ _BRIEF = 50  # a pause shorter than the motion over this does not interrupt a no
 def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[float, float]]]:
     """Return from when to when [s] notes hold, by their words."""
     time, noted = np.append(motion.time, motion.time[-1]), dict[str, list[tuple[float, float]]]()
-    body, load = _PARTS[looks.name(motion.scene)]
+    _, body, load = _KINDS[looks.name(motion.scene)]
     for words, holds in (NOTES[name] for name in names):
         edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion.scene, motion), [False]])))
         found = noted.setdefault(words.format(body=body, load=load, lift=1e3 * motion.lift.max()), [])
@@ -172,122 +163,107 @@ _LETTER, _LETTERS = 1.35, 2.0  # least and largest height of a letter, in units 
 _FAINT = 0.05  # least length of an arrow that is drawn
 
 
-@dataclass(frozen=True, eq=False)
 class Marks:
     """The marks of a trajectory, to be drawn over the pictures at some times."""
 
-    trajectory: Trajectory
-    look: Look
-    plane: float  # coordinate y of the can's near end [m]
-    fine: np.ndarray  # times [s] at which the paths are drawn
-    positions: np.ndarray  # u, phi, roll and lift at these times, shape (times, 4)
+    def __init__(
+        self, trajectory: Trajectory, look: Look, plane: float, fine: np.ndarray, positions: np.ndarray
+    ) -> None:
+        """Prepare to draw on the `plane` y of the can's near end [m].
+
+        `positions` are u, phi, roll and lift at the times `fine` [s] at which paths are drawn, shape (times, 4).
+        """
+        self._motion, self._look, self._plane, self._fine, self._positions = trajectory, look, plane, fine, positions
+        self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
+        if "normal" in look.marks:
+            forces = strip.forces(trajectory.scene, trajectory) / strip.weight(trajectory.scene)
+            largest = max(np.percentile(np.hypot(*forces), _RARE), _FAINT)
+            self._forces = min(1.0, LONGEST / largest) * forces  # lengths of their arrows
 
     def draw(self, sheet: Sheet, view: View, time: float, now: np.ndarray) -> None:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`."""
-        pen = _Pen(sheet, view, self.trajectory.scene, self.plane)
-        for mark in (each for each in _LEGENDS if each in self.look.marks):
-            getattr(self, f"_{mark}")(pen, time, now)
+        self._sheet, self._view, self._time, self._now = sheet, view, time, now
+        self._axis = np.array([now[0], self._radius + now[3]]) / self._radius
+        for mark in (each for each in _LEGENDS if each in self._look.marks):
+            getattr(self, f"_{mark}")()
 
-    def _ghost(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        motion = self.trajectory
-        roll = float(strip.even(motion.scene, motion, np.array(time))) / motion.scene.can.radius
+    def _ghost(self) -> None:
+        roll = float(strip.even(self._motion.scene, self._motion, np.array(self._time))) / self._radius
         centre, turned = np.array([roll, 1.0]), np.array([math.sin(roll), math.cos(roll)])
-        pen.line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
-        pen.line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
+        self._line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
+        self._line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
 
-    def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        until = np.searchsorted(self.fine, time, side="right")
-        u, phi, roll, lift = np.vstack([self.positions[:until], now]).T
-        radius, offset = self.trajectory.scene.can.radius, self.trajectory.scene.load.offset
-        axis = np.stack([u / radius, 1 + lift / radius], axis=1)
-        centre = axis - min(offset / radius, 1.0) * np.stack([np.sin(phi), np.cos(phi)], axis=1)
-        pen.line(axis + np.stack([np.sin(roll), np.cos(roll)], axis=1), 0.03, _RIM, alpha=0.8)
-        pen.line(centre, 0.035, _CENTRE, alpha=0.9)
-        pen.disc(centre[-1], 0.07, _CENTRE)
+    def _paths(self) -> None:
+        until = np.searchsorted(self._fine, self._time, side="right")
+        u, phi, roll, lift = np.vstack([self._positions[:until], self._now]).T
+        axis = np.stack([u, self._radius + lift], axis=1) / self._radius
+        centre = axis - min(self._offset / self._radius, 1.0) * np.stack([np.sin(phi), np.cos(phi)], axis=1)
+        self._line(axis + np.stack([np.sin(roll), np.cos(roll)], axis=1), 0.03, _RIM, alpha=0.8)
+        self._line(centre, 0.035, _CENTRE, alpha=0.9)
+        self._disc(centre[-1], 0.07, _CENTRE)
 
-    def _normal(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        foot, normal, way, _ = self._forces(time, now)
+    def _normal(self) -> None:
+        foot, normal, way, _ = self._contact()
         if normal > _FAINT:
             length = min(normal, LONGEST)
-            pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
-            pen.text(foot - np.array([0.36 * way, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
+            self._arrow(foot - np.array([0, length]), foot, _NORMAL)
+            self._text(foot - np.array([0.36 * way, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
 
-    def _friction(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        foot, _, way, friction = self._forces(time, now)
+    def _friction(self) -> None:
+        foot, _, way, friction = self._contact()
         if friction > _FAINT:
             length, start = min(friction, LONGEST), foot - np.array([0, 0.12])
-            pen.arrow(start, start + np.array([way * length, 0]), _FRICTION)
-            pen.text(foot + np.array([way * max(length, _CLEAR), -0.54]), "F", _FRICTION)
+            self._arrow(start, start + np.array([way * length, 0]), _FRICTION)
+            self._text(foot + np.array([way * max(length, _CLEAR), -0.54]), "F", _FRICTION)
 
-    def _forces(self, time: float, now: np.ndarray) -> tuple[np.ndarray, float, float, float]:
+    def _contact(self) -> tuple[np.ndarray, float, float, float]:
         """Return the can's foot, the length of N, and the direction of F down the incline, 1 or -1, with its length."""
-        normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
-        foot = np.array([now[0] / self.trajectory.scene.can.radius, -WALL])
-        return foot, normal, -1.0 if friction > 0 else 1.0, abs(friction)
+        normal, friction = (float(np.interp(self._time, self._motion.time, force)) for force in self._forces)
+        return np.array([self._axis[0], -WALL]), normal, -1.0 if friction > 0 else 1.0, abs(friction)
 
-    @cached_property
-    def _lengths(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the lengths of the arrows of N and F, positive away from the incline and up it."""
-        normal, friction = strip.forces(self.trajectory.scene, self.trajectory)
-        weight = strip.weight(self.trajectory.scene)
-        largest = np.percentile(np.hypot(normal, friction), _RARE) / weight
-        length = min(1.0, LONGEST / max(largest, _FAINT)) / weight
-        return length * normal, length * friction
-
-    def _phi(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+    def _phi(self) -> None:
         """Draw phi outside the rim: from the incline to the beer's surface, or from under the axle to over a bob."""
-        u, phi, _, lift = now
-        radius, filled = self.trajectory.scene.can.radius, self.trajectory.scene.load.fill is not None
-        angle, centre = math.radians(float(strip.wrapped(phi))), np.array([u / radius, 1 + lift / radius])
+        angle, filled = math.radians(float(strip.wrapped(self._now[1]))), self._motion.scene.load.fill is not None
         start = (math.pi if angle >= 0 else 0.0) if filled else -math.pi / 2
         for direction in (start, start - angle):
-            pen.line(centre + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
-        pen.line(centre + 1.26 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
-        pen.text(centre + 1.62 * _towards(start - angle / 2), "φ", INK)
+            self._line(self._axis + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
+        self._line(self._axis + 1.26 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
+        self._text(self._axis + 1.62 * _towards(start - angle / 2), "φ", INK)
 
-    def _measured(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        measured, radius = self.look.measured, self.trajectory.scene.can.radius
-        assert measured is not None
-        seen = measured[measured[:, 0] <= time]
-        for _, u in [*seen[:: max(1, len(measured) // 60)], *seen[-1:]]:
-            pen.disc(np.array([u / radius, 1.0]), 0.08, _FILMED)
+    def _measured(self) -> None:
+        assert self._look.measured is not None
+        seen = self._look.measured[self._look.measured[:, 0] <= self._time]
+        for _, u in [*seen[:: max(1, len(self._look.measured) // 60)], *seen[-1:]]:
+            self._disc(np.array([u / self._radius, 1.0]), 0.08, _FILMED)
+
+    # How they are drawn: at places along and over the incline, in radii.
+
+    def _pixel(self, points: np.ndarray) -> np.ndarray:
+        along, height = RADIUS * points[..., 0], RADIUS * points[..., 1]
+        return self._view.pixel(in_space(self._motion.scene, along, height, self._plane))
+
+    @property
+    def _size(self) -> float:
+        """Return the can's radius in the picture [pixels]."""
+        return RADIUS * self._view.scale(np.array([0.0, self._plane, 0.0]))
+
+    def _line(self, points: np.ndarray, width: float, colour: Colour, **style: Any) -> None:
+        self._sheet.line(self._pixel(points), max(1.0, width * self._size), colour, **style)
+
+    def _arrow(self, tail: np.ndarray, tip: np.ndarray, colour: Colour) -> None:
+        self._sheet.arrow(self._pixel(tail), self._pixel(tip), max(2.0, 0.11 * self._size), colour)
+
+    def _disc(self, point: np.ndarray, radius: float, colour: Colour) -> None:
+        self._sheet.disc(self._pixel(point), max(2.0, radius * self._size), colour)
+
+    def _text(self, point: np.ndarray, words: str, colour: Colour) -> None:
+        size = min(max(_LETTER, 0.4 * self._size / self._sheet.unit), _LETTERS) * self._sheet.unit
+        self._sheet.text(self._pixel(point), words, size, colour, (0.5, 0.5), halo=True)
 
 
 def _towards(angle: float | np.ndarray) -> np.ndarray:
     """Return unit vectors at angles [rad] from the first axis to the second, shape (..., 2)."""
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-
-
-@dataclass(frozen=True, eq=False)
-class _Pen:
-    """Draws at places along and over the incline, in radii, on the plane of the can's near end."""
-
-    sheet: Sheet
-    view: View
-    scene: Scene
-    plane: float
-
-    @cached_property
-    def radius(self) -> float:
-        """Return the can's radius in the picture [pixels]."""
-        return RADIUS * self.view.scale(np.array([0.0, self.plane, 0.0]))
-
-    def places(self, points: np.ndarray) -> np.ndarray:
-        """Return column and row on the sheet."""
-        return self.view.pixel(in_space(self.scene, RADIUS * points[..., 0], RADIUS * points[..., 1], self.plane))
-
-    def line(self, points: np.ndarray, width: float, colour: Colour, **style) -> None:
-        self.sheet.line(self.places(points), max(1.0, width * self.radius), colour, **style)
-
-    def arrow(self, tail: np.ndarray, tip: np.ndarray, colour: Colour) -> None:
-        self.sheet.arrow(self.places(tail), self.places(tip), max(2.0, 0.11 * self.radius), colour)
-
-    def disc(self, point: np.ndarray, radius: float, colour: Colour) -> None:
-        self.sheet.disc(self.places(point), max(2.0, radius * self.radius), colour)
-
-    def text(self, point: np.ndarray, words: str, colour: Colour) -> None:
-        size = min(max(_LETTER, 0.4 * self.radius / self.sheet.unit), _LETTERS) * self.sheet.unit
-        self.sheet.text(self.places(point), words, size, colour, (0.5, 0.5), halo=True)
 
 
 # What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.

@@ -1,7 +1,7 @@
 """A plot of a trajectory: its quantities over time, over exact theory."""
 
 import math
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
@@ -9,10 +9,6 @@ from mjbeer import require
 from mjbeer.drawing.words import in_words
 from mjbeer.theory.exact import exact_motion
 from mjbeer.theory.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 _SMOOTH = 2000  # number of samples of the line of exact theory in a plot
 _LABELS = {
@@ -29,7 +25,7 @@ _LABELS = {
 """Labels of the quantities that a plot can show, by their names in a trajectory."""
 
 
-def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> "tuple[Axes, ...]":
+def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Any, ...]:
     """Return the axes of a new figure that shows quantities over time [s], one below the other: phi and u by default.
 
     With `theory`, the exact motion from the same start is drawn beneath as a wide grey line. A motion that rolls on

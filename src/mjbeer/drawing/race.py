@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.drawing.camera import View, in_space, scale
 from mjbeer.drawing.film import RenderPlan
@@ -40,12 +40,9 @@ class Runner:
 
     def finish(self, length: float) -> float:
         """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if it ends before."""
-        end = self.trajectory.time[-1]
-
-        def ahead(time: float) -> float:
-            return self.positions(np.array([time]))[0, 0] - length
-
-        return float(brentq(ahead, 1e-3, end, xtol=1e-12)) if ahead(end) >= 0 else math.inf
+        motion, way = self.trajectory, self.trajectory.u - self.trajectory.u[0] - length
+        passed = CubicHermiteSpline(motion.time, way, motion.u_dot).roots(extrapolate=False)
+        return float(passed[0]) if len(passed) else math.inf
 
     def positions(self, times: np.ndarray) -> np.ndarray:
         """Return u from the start [m], phi, roll [rad] and lift [m] at some times [s], shape (times, 4).
@@ -95,19 +92,17 @@ class Race:
         top, size, facts = round(HEIGHT * sheet.unit), scale(scenes[0]), [f"incline {in_degrees(scenes[0].incline)}"]
         display = Display.of(scenes, _APART)
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
-        ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_BEFORE * self.length, self.length)]
-        outlines = [display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
-        points = np.concatenate(outlines)
-        view = View.towards(
-            points.mean(axis=0) + _FAR * self.length * _EYE, points, (width, height - top), top, _MARGIN
-        )
+        ends = np.outer([-_BEFORE * self.length, self.length], [1, 0, 0, 0])
+        points = np.reshape([display.outline(lane, end) for lane in range(len(scenes)) for end in ends], (-1, 3))
+        eye = points.mean(axis=0) + _FAR * self.length * _EYE
+        view = View.towards(eye, points, (width, height - top), top, _MARGIN)
         positions = np.stack([runner.positions(times) for runner in runners], axis=1)
-        lines, results = [0.0], [(math.inf, "")] * len(runners)
         if self.centres:  # they begin at one line, and in a race the axes do
             positions[..., 0] += [runner.trajectory.u[0] for runner in runners]
+            lines, results = [0.0], [(math.inf, "")] * len(runners)
         else:
             lines, results, facts = [0.0, self.length], self.results(runners), [f"{self.length:g} m", *facts]
-        words = ", ".join([*facts, *filter(None, [self.facts])])
+        words = ", ".join([*facts, self.facts]).removesuffix(", ")
         with closing(Painter(display, view.pixels, lines=lines)) as painter:
             for time, now in zip(times, positions, strict=True):
                 painter.paint(sheet, view, now)
@@ -116,7 +111,7 @@ class Race:
                     said = result if time >= finish else runner.note
                     # It travels with the can, and stays at the finish.
                     place = view.pixel(in_space(scenes[0], min(u * size, self.length) - 1.5 * RADIUS, 0.0, lane))
-                    sheet.plate(place, [runner.name, *filter(None, [said])], runner.colour, (1, 0.5))
+                    sheet.plate(place, [runner.name, *[said] * bool(said)], runner.colour, (1, 0.5))
                 if self.centres:
                     _join(sheet, view, display, now)
                 yield sheet.picture()
@@ -127,8 +122,8 @@ def _join(sheet: Sheet, view: View, display: Display, positions: np.ndarray) -> 
     places = []
     for lane, (scene, (u, phi, _, lift)) in enumerate(zip(display.scenes, positions, strict=True)):
         along, height = u - scene.load.offset * math.sin(phi), lift - scene.load.offset * math.cos(phi)
-        size = scale(scene)
-        places.append(view.pixel(in_space(scene, along * size, RADIUS + height * size, display.front(lane))))
+        size, (near, _) = scale(scene), display.ends(lane)
+        places.append(view.pixel(in_space(scene, along * size, RADIUS + height * size, near)))
     sheet.line(np.array(places), 0.2 * sheet.unit, INK, dashes=(3, 3))
     for place in places:
         sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))

@@ -114,19 +114,16 @@ class Display:
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
-    def front(self, number: int = 0) -> float:
-        """Return the coordinate y of a can's near end [m]."""
-        return self.lanes[number] - self._length(number) / 2
-
-    def _length(self, number: int) -> float:
-        return self.scenes[number].can.length * scale(self.scenes[number])
+    def ends(self, number: int = 0) -> tuple[float, float]:
+        """Return the coordinates y of a can's near and far end [m]."""
+        half = self.scenes[number].can.length * scale(self.scenes[number]) / 2
+        return self.lanes[number] - half, self.lanes[number] + half
 
     def outline(self, number: int, position: np.ndarray) -> np.ndarray:
         """Return points around both ends of a can [m], shape (2, points, 3), for its u, phi, roll and lift."""
-        scene, near = self.scenes[number], self.front(number)
-        centre = on_incline(scene, position[0] * scale(scene), RADIUS + position[3] * scale(scene))
-        ring = centre + circle(_RIM * RADIUS)
-        return np.stack([np.insert(ring, 1, y, axis=1) for y in (near, near + self._length(number))])
+        u, lift = position[[0, 3]] * scale(self.scenes[number])
+        ring = on_incline(self.scenes[number], u, RADIUS + lift) + circle(_RIM * RADIUS)
+        return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
 
 def _prefix(number: int) -> str:
@@ -144,10 +141,7 @@ def _resize(scene: Scene) -> Scene:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Scenery:
-    """The wall and the board of a display, in its colours and light.
-
-    They are flat: a sheet draws them in a tenth of the time that OpenGL takes.
-    """
+    """The wall and the board of a display, in its light: flat, as a sheet draws them ten times as fast as OpenGL."""
 
     display: Display
     lines: Sequence[float] = ()
@@ -176,17 +170,14 @@ class Scenery:
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
         dark = stripes[np.round(stripes / _STRIPE) % 2 == 1]
         up = in_space(scene, 0.0, 1.0, 0.0)
-        faces = ((up, (front, over), (back, over)), (-up, (front, under), (back, under)))
-        for normal, one, other in (*faces, (_NEAR, (front, under), (front, over))):
+        for normal, edge in ((up, (back, over)), (_NEAR, (front, under))):  # every eye is over the board
 
-            def bands(begin: np.ndarray, length: float, edges=(one, one, other, other)) -> np.ndarray:
+            def bands(begin: np.ndarray, length: float, edges=((front, over),) * 2 + (edge,) * 2) -> np.ndarray:
                 """Return the places of the parts of this face that begin somewhere down the incline."""
                 ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
                 points = [in_space(scene, along, z, y) for along, (y, z) in ends]
                 return _separated(view.pixel(np.stack(points, axis=1)))
 
-            if (view.eye - in_space(scene, 0.0, one[1], one[0])) @ normal <= 0:
-                continue
             sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self.lit(_PALE, normal, view))
             sheet.area(bands(dark, _STRIPE), self.lit(_DARK, normal, view))
             if len(self.lines) and normal is up:

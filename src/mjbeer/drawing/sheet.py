@@ -15,6 +15,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 Colour = str | tuple[float, float, float]
 """A colour as matplotlib takes it."""
+Pair = np.ndarray | tuple[float, float]
+"""A column and a row [pixels], or shares of a width and a height."""
 Box = tuple[float, float, float, float]
 """Left, top, right and bottom [pixels]."""
 
@@ -86,9 +88,8 @@ class Sheet:
     def disc(self, place: np.ndarray, radius: float, colour: Colour) -> None:
         """Draw a disc with a white rim."""
         pen = self._pen(radius / 3, "white", 1.0)
-        self._renderer.draw_path(
-            pen, Path.unit_circle(), Affine2D().scale(radius).translate(*place) + self._flip, colour
-        )
+        shape = Affine2D().scale(radius).translate(*place) + self._flip
+        self._renderer.draw_path(pen, Path.unit_circle(), shape, to_rgba(colour))
 
     def arrow(self, tail: np.ndarray, head: np.ndarray, width: float, colour: Colour) -> None:
         """Draw an arrow; one shorter than its head is drawn as a smaller arrow."""
@@ -106,11 +107,11 @@ class Sheet:
 
     def text(
         self,
-        place: np.ndarray | tuple[float, float],
+        place: Pair,
         words: str,
         size: float,
         colour: Colour = INK,
-        anchor: tuple[float, float] = (0.0, 0.5),
+        anchor: Pair = (0.0, 0.5),
         bold: bool = False,
         halo: bool = False,
     ) -> Box:
@@ -125,26 +126,14 @@ class Sheet:
         self.boxes.append(box)
         return box
 
-    def box(
-        self,
-        place: np.ndarray | tuple[float, float],
-        words: str,
-        size: float,
-        anchor: tuple[float, float] = (0.0, 0.5),
-        bold: bool = False,
-    ) -> tuple[int, int, int, int]:
+    def box(self, place: Pair, words: str, size: float, anchor: Pair = (0.0, 0.5), bold: bool = False) -> Box:
         """Return the box that a text would have."""
         width, height = _size(words, size, bold)
         left, top = round(float(place[0]) - anchor[0] * width), round(float(place[1]) - anchor[1] * height)
         return left, top, left + width, top + height
 
     def plate(
-        self,
-        place: np.ndarray,
-        lines: Sequence[str],
-        colour: Colour,
-        anchor: tuple[float, float],
-        ground: Colour = "white",
+        self, place: np.ndarray, lines: Sequence[str], colour: Colour, anchor: Pair, ground: Colour = "white"
     ) -> None:
         """Draw a plate with lines, the first of them bold and in a colour; `anchor` is as for texts."""
         unit, sizes = self.unit, [(1.05 if number else 1.2) * self.unit for number in range(len(lines))]

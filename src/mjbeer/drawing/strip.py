@@ -75,8 +75,6 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
             title = f"N [weights], mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
         if (peak := lines[0].values.max()) > limits.get("high", math.inf):
             title += f", up to {peak:.0f}"
-        if not trajectory.scene.incline:
-            title = title.replace("down the incline", "along the ground")
         drawn.append(Chart(title, lines, **limits))
     return drawn
 
@@ -104,12 +102,12 @@ def even(scene: Scene, motion: Trajectory, time: np.ndarray) -> np.ndarray:
     return u + u_dot * since + scene.acceleration() * since**2 / 2
 
 
-def forces(scene: Scene, motion: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+def forces(scene: Scene, motion: Trajectory) -> np.ndarray:
     """Return the normal and the friction force [N] that act in a motion, also while the can slips or is in the air.
 
     They follow from the change of the momentum of can and load. Each is the mean force over a fiftieth of the motion: a
     can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre, and each
-    landing is a blow. The friction is positive up the incline.
+    landing is a blow. The friction is positive up the incline. The shape is (2, samples).
     """
     load, heavy = scene.load.moment, scene.mass * scene.gravity
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
@@ -123,7 +121,7 @@ def forces(scene: Scene, motion: Trajectory) -> tuple[np.ndarray, np.ndarray]:
         return values / (last - first)
 
     normal = heavy * math.cos(scene.incline) + change(across)
-    return normal, heavy * math.sin(scene.incline) - change(along)
+    return np.array([normal, heavy * math.sin(scene.incline) - change(along)])
 
 
 def weight(scene: Scene) -> float:
@@ -133,8 +131,8 @@ def weight(scene: Scene) -> float:
 
 QUANTITIES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray], dict[str, float]]] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("distance down the incline [m]", lambda _, motion: motion.u - motion.u[0], {}),
-    "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
+    "u": ("distance [m]", lambda _, motion: motion.u - motion.u[0], {}),
+    "u_dot": ("speed [m/s]", lambda _, motion: motion.u_dot, {}),
     "ahead": (
         "ahead of even acceleration [mm]",
         lambda scene, motion: 1e3 * (motion.u - even(scene, motion, motion.time)),

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from rich.console import Console
 
-from mjbeer.drawing import jobs, opengl
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Film, MotionFilm
-from mjbeer.drawing.jobs import FilmJob, PlotJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.video import FilmJob, PlotJob
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
 from mjbeer.output.plots import chart
@@ -200,7 +200,7 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     with files.atomic_write(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
         files.write(folder / "letters.svg", letters())
-        jobs.produce(
+        video.produce(
             [*([] if missing else orders), *(PlotJob(story.plot, folder / story.name) for story in STORIES)], console
         )
         lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]

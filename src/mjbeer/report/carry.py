@@ -19,8 +19,8 @@ from mjbeer.model.looks import WALL
 from mjbeer.theory.scenes import sliding
 from mjbeer.theory.standing import QUANTITATIVE, Standing, standing
 
-_FORCE_X = 3
-"""Place of the level force in MuJoCo's force of a body on its parent: the moment comes first."""
+_FORCE_X = 3  # place of the level force in MuJoCo's force of a body on its parent: the moment comes first
+_TIMESTEP = 5e-4  # [s]
 _DISTANCE, _LONGEST = 0.4, 2.4  # way of the grippers [m], and how long the film watches them [s]
 _APART, _HIGH = 0.34, 0.015  # distance of the grippers, and height at which they hold their cans [m]
 _LEFT, _EYE = -0.26, np.array([0.1, -2.2, 1.5])  # where the picture begins, and where the eye is [m]
@@ -38,19 +38,17 @@ class Carried(NamedTuple):
     rise: np.ndarray  # how high the surface rises at the wall ahead, by all modes that move, over the radius
 
 
-def carry(
-    can: Standing, distance: float = _DISTANCE, duration: float = 1.0, after: float = 1.0, timestep: float = 5e-4
-) -> Carried:
+def carry(can: Standing, distance: float = _DISTANCE, duration: float = 1.0, after: float = 1.0) -> Carried:
     """Return the motion of a can that is moved by a `distance` [m] in a `duration` [s], and then held for `after` [s].
 
     The move has the least jerk that starts and ends at rest. In the frame of the gripper the can stands still and
     gravity is tilted by the acceleration, so that the gripper is as rigid as can be.
     """
-    model = build(can, free=False, timestep=timestep)
+    model = build(can, free=False, timestep=_TIMESTEP)
     data, body = mujoco.MjData(model), model.body("can").id
-    time = timestep * np.arange(round((duration + after) / timestep) + 1)
+    time = _TIMESTEP * np.arange(round((duration + after) / _TIMESTEP) + 1)
     place, acceleration = minimum_jerk(time, distance, duration)
-    _, pushed = minimum_jerk(time + timestep / 2, distance, duration)  # a step has the gravity of its middle
+    _, pushed = minimum_jerk(time + _TIMESTEP / 2, distance, duration)  # a step has the gravity of its middle
     force, rise = np.empty_like(time), np.zeros_like(time)
     for step, now in enumerate(acceleration):
         model.opt.gravity[0] = -now
@@ -91,79 +89,79 @@ class Carry:
 
     def plan(self) -> RenderPlan:
         """Compute both motions, and return what is needed to draw them."""
-        runs = [carry(standing(), duration=duration, after=_LONGEST - duration) for duration in MOVES]
+        runs = {duration: carry(standing(), duration=duration, after=_LONGEST - duration) for duration in MOVES}
         return RenderPlan(0.0, _LONGEST, self.speed, partial(self._draw, runs))
 
-    def _draw(self, runs: list[Carried], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
+    def _draw(self, runs: dict[float, Carried], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         sheet, can = Sheet(width, height), standing()
         top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit)
         scenery = Scenery(Display.of([sliding(0.0)] * len(runs), _APART), (0.0, _DISTANCE))
-        corners = [_outline(can, np.array([x, y, _HIGH])) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
+        corners = [_outline(np.array([x, y, _HIGH])) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
         view = View.towards(_EYE, np.reshape(corners, (-1, 3)), (width, height - top - below), top, 0.02)
-        moves = [
-            (f"in {duration:g} s", colour, run) for (duration, colour), run in zip(MOVES.items(), runs, strict=True)
-        ]
-        lines = [Line(f"moved {name}", run.time, run.force, colour) for name, colour, run in moves]
-        lines += [Line("solid beer", run.time, (can.mass + can.can.mass) * run.acceleration) for run in runs]
+        lines = [Line(f"moved in {each:g} s", run.time, run.force, MOVES[each]) for each, run in runs.items()]
+        solid = can.mass + can.can.mass
+        lines += [Line("solid beer", run.time, solid * run.acceleration) for run in runs.values()]
         strip = Strip([Chart("force [N]", lines)], width, below)
         scenery.draw(sheet, view)
         empty = sheet.part(top, height - below)
         for time in times:
             sheet.put(empty, top)
-            for lane, (name, colour, run) in reversed(list(enumerate(moves))):
+            for lane, (duration, run) in reversed(list(enumerate(runs.items()))):
                 place = np.array([np.interp(time, run.time, run.place), lane * _APART, _HIGH])
-                scenery.shade(sheet, view, _outline(can, place))
-                _draw_gripper(sheet, view, scenery, can, place, float(np.interp(time, run.time, run.rise)), colour)
+                scenery.shade(sheet, view, _outline(place))
+                rise = float(np.interp(time, run.time, run.rise))
+                _draw_gripper(sheet, view, scenery, can, place, rise, np.array(MOVES[duration]))
                 highest = np.abs(run.rise[run.time <= time]).max()
                 trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
                 side = view.pixel(place + np.array([-0.065, 0, can.height]))
-                sheet.plate(side, [name, f"rises by {highest:.2f} R: {trust}"], colour, (1, 0.5))
+                said = f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"
+                sheet.plate(side, said, MOVES[duration], (1, 0.5))
             head(sheet, self.title, "half a 12-oz can of beer, carried 0.4 m", time, self.speed)
             strip.draw(sheet, time, height - below)
             yield sheet.picture()
 
 
-def _outline(can: Standing, place: np.ndarray) -> np.ndarray:
+def _outline(place: np.ndarray) -> np.ndarray:
     """Return the corners of the near and the far side of what is around a gripper [m], shape (2, 4, 3)."""
-    radius, corners = can.can.radius, np.array([[-1, 0], [1, 0], [1, 1], [-1, 1]])
-    sides = [np.insert(corners * [radius + 0.026, can.can.length + 0.07], 1, y, axis=1) for y in (-radius, radius)]
-    return np.stack(sides) + place
+    corners = (-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19)
+    return place + np.array([[(x, y, z) for x, z in corners] for y in (-0.034, 0.034)])
 
 
 def _draw_gripper(
-    sheet: Sheet, view: View, scenery: Scenery, can: Standing, place: np.ndarray, rise: float, colour: tuple
+    sheet: Sheet, view: View, scenery: Scenery, can: Standing, place: np.ndarray, rise: float, colour: np.ndarray
 ) -> None:
     """Draw a gripper with pads of a colour, and its can, cut open in front.
 
     The bottom of the can is at a `place` [m], and its liquid is higher by `rise` radii at the wall ahead.
     """
-    radius, length, wall = can.can.radius, can.can.length, (1 + WALL) * can.can.radius
-    assert abs(rise) * radius < min(can.height, length - can.height), "the surface reaches the lid or the bottom"
+    length, wall = can.can.length, (1 + WALL) * can.can.radius
+    assert abs(rise) * wall < min(can.height, length - can.height), "the surface reaches the lid or the bottom"
     metal, beer = (scenery.display.model.mat(name).rgba[:3] for name in ("metal", "beer"))
 
     def face(corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
         sheet.area(view.pixel(place + corners), scenery.lit(colour, normal, view))
 
     around = np.insert(circle(1.0, 2 * _PLATES), 2, 0.0, axis=1)  # directions: first behind the axis, then before it
-    surface = radius * around + np.outer(can.height + rise * radius * around[:, 0], [0, 0, 1])
-    for first in range(2 * _PLATES):
-        two = slice(first, first + 3, 2)  # each plate overlaps with the next one, so that no gap is seen
-        if first < _PLATES:
-            low, high, look = wall * around[two], wall * around[two] + [0, 0, length], (metal, -around[first])
-        else:
-            low, high, look = radius * around[two], surface[two], (beer, around[first])
-        face(np.concatenate([low, high[::-1]]), *look)
+    surface = wall * around + np.outer(can.height + rise * wall * around[:, 0], [0, 0, 1])
+    for first in range(2 * _PLATES):  # the wall behind, from inside, and the liquid before it
+        behind, two = first < _PLATES, slice(first, first + 3, 2)  # each overlaps with the next, so that no gap is seen
+        high = wall * around[two] + [0, 0, length] if behind else surface[two]
+        side = (metal, -around[first]) if behind else (beer, around[first])
+        face(np.concatenate([wall * around[two], high[::-1]]), *side)
     face(surface, beer, np.array([-rise, 0, 1]))
     for limit in (-QUANTITATIVE, QUANTITATIVE):
-        line = wall * around[_PLATES:] + [0, 0, can.height + limit * radius]
+        line = wall * around[_PLATES:] + [0, 0, can.height + limit * can.can.radius]
         sheet.line(view.pixel(place + line), 0.12 * sheet.unit, INK)
-    pads = [(side * (wall + 0.005), length / 2, [0.004, 0.012, 0.03], np.array(colour)) for side in (-1, 1)]
-    fingers = [(side * (wall + 0.014), length / 2 + 0.03, [0.005, 0.01, length / 2], _STEEL) for side in (-1, 1)]
-    hand = [(0.0, length + 0.03, [wall + 0.024, 0.014, 0.008], _STEEL)]
-    for x, z, half, paint in (*pads, *fingers, *hand, (0.0, length + 0.054, [0.014, 0.012, 0.016], _STEEL)):
+    boxes = [(side * (wall + 0.005), length / 2, [0.004, 0.012, 0.03], colour) for side in (-1, 1)]
+    boxes += [(side * (wall + 0.014), length / 2 + 0.03, [0.005, 0.01, length / 2], _STEEL) for side in (-1, 1)]
+    boxes += [(0.0, length + 0.03, [wall + 0.024, 0.014, 0.008], _STEEL)]
+    for x, z, half, paint in (*boxes, (0.0, length + 0.054, [0.014, 0.012, 0.016], _STEEL)):
         centre = np.array([x, 0.0, z])
         for axis in (0, 2, 1):  # of each two sides the one that is turned to the eye, and the front at last
             normal = np.sign(view.eye - place - centre)[axis] * np.eye(3)[axis]
             one, other = np.delete(np.eye(3), axis, axis=0)
-            corners = [normal + a * one + b * other for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
-            face(centre + half * np.array(corners), paint, normal)
+            face(
+                centre + half * (normal + np.array([-one - other, one - other, one + other, other - one])),
+                paint,
+                normal,
+            )

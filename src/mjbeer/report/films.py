@@ -5,9 +5,9 @@ import pathlib
 from functools import partial
 
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.jobs import FilmJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race
+from mjbeer.drawing.video import FilmJob
 from mjbeer.paper import stories
 from mjbeer.report import races
 from mjbeer.report.carry import Carry

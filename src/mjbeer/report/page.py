@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 from mjbeer import paper
 from mjbeer.checks import Result
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.jobs import PlotJob
+from mjbeer.drawing.video import PlotJob
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
 from mjbeer.paper.claim import Claim

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from rich.console import Console
 
-from mjbeer.drawing import jobs, opengl
+from mjbeer.drawing import opengl, video
 from mjbeer.output import files
 from mjbeer.report import films, page
 from mjbeer.studies.validation.validate import Validation, validate
@@ -35,7 +35,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         # The checks take longest, and compile what the films run; plots are quick.
         checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
         drawn = [checks, *filmed, *page.plot_jobs(folder)]
-        validation, *made = jobs.produce(drawn, console)
+        validation, *made = video.produce(drawn, console)
         stills, plots = made[: len(filmed)], made[len(filmed) :]
         shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
         pictures = {plot.name: plot for plot in plots if plot}
