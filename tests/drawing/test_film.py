@@ -1,7 +1,7 @@
 """The pictures show what theory says: where beer, can and mark are, at any size and before every camera."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import closing
 
 import numpy as np
@@ -32,11 +32,6 @@ def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
     return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels)[0](0.0)
 
 
-def picture(run: Trajectory, time: float, width: int, height: int) -> np.ndarray:
-    (drawn,) = MotionFilm(lambda: run, 1.0).plan().draw(np.array([time]), width, height)
-    return drawn
-
-
 class Seen:
     """A picture of a scene at rest somewhere, and where things are in it."""
 
@@ -52,24 +47,12 @@ class Seen:
         return self.pixels[int(row) + self.top, int(column)]
 
 
-def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Seen]:
+def look(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Seen]:
     """Pictures of a scene with the load at some angles phi and the can at some angles of roll [rad]."""
-    times, rest = np.arange(len(phis), dtype=float), np.zeros(len(phis))
-    u = scene.can.radius * np.array(rolls)
-    still = Trajectory(
-        scene=scene,
-        phi0=phis[0],
-        phi_dot0=0.0,
-        time=times,
-        u=u,
-        phi=np.array(phis),
-        u_dot=rest,
-        phi_dot=rest,
-        roll=np.array(rolls),
-        roll_dot=rest,
-        lift=rest,
-        lift_dot=rest,
-    )
+    times, rest, u = np.arange(len(phis), dtype=float), np.zeros(len(phis)), scene.can.radius * rolls
+    places = {"u": u, "phi": phis, "roll": rolls, "lift": rest}
+    rates = dict.fromkeys(("u_dot", "phi_dot", "roll_dot", "lift_dot"), rest)
+    still = Trajectory(scene=scene, phi0=phis[0], phi_dot0=0.0, time=times, **places, **rates)
     top = round(HEADER * Sheet(*SIZE).unit)
     view = still_view(still, (SIZE[0], SIZE[1] - top))
     axes = on_incline(scene, u * scale(scene), RADIUS)
@@ -166,21 +149,18 @@ def test_motion_between_samples_is_of_fourth_order() -> None:
 
 
 @pytest.mark.draws
-def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytest.MonkeyPatch) -> None:
-    closed = []
-    real = Painter.close
+@pytest.mark.parametrize("size", [(2, 2), (400, 40), (60, 400)])
+def test_a_picture_of_any_shape_can_be_drawn_and_graphics_memory_is_freed(
+    size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also if drawing stops early."""
+    closed, real = [], Painter.close
     monkeypatch.setattr(Painter, "close", lambda painter: (closed.append(painter), real(painter)))
-    drawing = MotionFilm(motion, 1.0, FIXED).plan().draw(np.linspace(0, 0.4, 5), 64, 36)
-    next(drawing)
+    drawing = MotionFilm(motion, 1.0).plan().draw(np.linspace(0, 0.4, 5), *size)
+    assert next(drawing).shape == (size[1], size[0], 3)
     assert closed == []
     drawing.close()
     assert len(closed) == 1
-
-
-@pytest.mark.draws
-@pytest.mark.parametrize("size", [(2, 2), (16, 16), (400, 40), (60, 400)])
-def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
-    assert picture(motion(), 0.2, *size).shape == (size[1], size[0], 3)
 
 
 @pytest.mark.draws
@@ -197,5 +177,6 @@ def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
     ids=["weightless", "fast", "short", "long", "late", "one sample"],
 )
 def test_a_motion_of_any_kind_can_be_drawn(moved: Trajectory) -> None:
-    middle = float(moved.time[len(moved.time) // 2])
-    assert np.ptp(picture(moved, middle, 320, 180)) > 200
+    middle = moved.time[[len(moved.time) // 2]]
+    (drawn,) = MotionFilm(lambda: moved, 1.0).plan().draw(middle, 320, 180)
+    assert np.ptp(drawn) > 200

@@ -34,11 +34,7 @@ class RenderPlan:
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height, width, 3), uint8."""
 
     def times(self, fps: float) -> np.ndarray:
-        """Return the times [s] of the pictures at `fps` frames per second of the video.
-
-        Raises:
-          ParameterError: if `fps` or `speed` is not greater than 0, or the video would have too many frames.
-        """
+        """Return the times [s] of the pictures at `fps` frames per second of the video."""
         fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", self.speed)
         count = (self.end - self.start) / speed * fps
         if count > _MOST_FRAMES:
@@ -76,11 +72,7 @@ class MotionFilm:
     caption: str = ""
 
     def plan(self) -> RenderPlan:
-        """Compute the motion, and return what is needed to draw it.
-
-        Raises:
-          ParameterError: if its times do not increase.
-        """
+        """Compute the motion, and return what is needed to draw it."""
         motion = self.trajectory()
         if (np.diff(motion.time) <= 0).any():
             raise ParameterError(

@@ -61,7 +61,6 @@ HEADER = 5.6  # and with the third, which tells what the marks mean
 STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
 _FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
-_GREY, _PLATE = "#52606d", (1.0, 0.95, 0.72)
 _RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
@@ -96,7 +95,7 @@ def head(sheet: Sheet, title: str, words: str, time: float, speed: float, digits
     right, pace = sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
     for row, size, colour, said, aside in (
         (_FIRST, 1.45, INK, title, f"t = {time:.{digits}f} s"),
-        (_SECOND, 1.1, _GREY, words, pace),
+        (_SECOND, 1.1, "#52606d", words, pace),
     ):
         bold = row == _FIRST
         room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5), speed > 1 and not bold)
@@ -116,21 +115,14 @@ NOTES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray]]] = {
             (motion.u_dot - scene.can.radius * motion.roll_dot) ** 2 > 8e-4 * scene.gravity * scene.can.radius
         ),
     ),
-    "heavy": (
-        "the {load} below presses the {body} down",
-        lambda scene, motion: strip.forces(scene, motion)[0] > 1.8 * strip.weight(scene),
-    ),
-    "light": (
-        "the {load} pulls up: the {body} hardly presses",
-        lambda scene, motion: strip.forces(scene, motion)[0] < 0.4 * strip.weight(scene),
-    ),
+    "heavy": ("the {load} below presses the {body} down", lambda *of: strip.QUANTITIES["normal"][1](*of) > 1.8),
+    "light": ("the {load} pulls up: the {body} hardly presses", lambda *of: strip.QUANTITIES["normal"][1](*of) < 0.4),
     "hesitates": (
         "the {load} is uphill: the {body} hesitates",
         lambda scene, motion: np.gradient(motion.u_dot, motion.time) < scene.acceleration() / 2,
     ),
 }
 """What a note says while a motion does something, and when it does, by name; the first that holds is shown."""
-_BRIEF = 50  # a pause shorter than the motion over this does not interrupt a note
 
 
 def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[float, float]]]:
@@ -140,8 +132,8 @@ def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[floa
     for words, holds in (NOTES[name] for name in names):
         edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion.scene, motion), [False]])))
         found = noted.setdefault(words.format(body=body, load=load, lift=1e3 * motion.lift.max()), [])
-        for first, last in time[edges].reshape(-1, 2).tolist():
-            begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / _BRIEF else first
+        for first, last in time[edges].reshape(-1, 2).tolist():  # a brief pause does not interrupt a note
+            begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / 50 else first
             found.append((begins, last))
     return noted
 
@@ -150,7 +142,7 @@ def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time:
     """Write the first of some notes that holds at a `time` [s] into the scene, whose upper edge is at a row `top`."""
     for words in [words for words, of in notes.items() if any(first <= time <= last for first, last in of)][:1]:
         place = np.array([1.2 * sheet.unit, top + NOTE / 2 * sheet.unit])
-        sheet.plate(place, [words], INK, (0, 0.5), _PLATE)
+        sheet.plate(place, [words], INK, (0, 0.5), ground=(1.0, 0.95, 0.72))
 
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
@@ -158,8 +150,6 @@ def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time:
 LONGEST = 1.6
 """Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
 _CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
-_RARE = 90.0  # percentage of times at which no force is larger than the longest arrow shows
-_LETTER, _LETTERS = 1.35, 2.0  # least and largest height of a letter, in units of the sheet
 _FAINT = 0.05  # least length of an arrow that is drawn
 
 
@@ -177,7 +167,7 @@ class Marks:
         self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
         if "normal" in look.marks:
             forces = strip.forces(trajectory.scene, trajectory) / strip.weight(trajectory.scene)
-            largest = max(np.percentile(np.hypot(*forces), _RARE), _FAINT)
+            largest = max(np.percentile(np.hypot(*forces), 90), _FAINT)  # a larger one is rare
             self._forces = min(1.0, LONGEST / largest) * forces  # lengths of their arrows
 
     def draw(self, sheet: Sheet, view: View, time: float, now: np.ndarray) -> None:
@@ -257,7 +247,7 @@ class Marks:
         self._sheet.disc(self._pixel(point), max(2.0, radius * self._size), colour)
 
     def _text(self, point: np.ndarray, words: str, colour: Colour) -> None:
-        size = min(max(_LETTER, 0.4 * self._size / self._sheet.unit), _LETTERS) * self._sheet.unit
+        size = float(np.clip(0.4 * self._size, 1.35 * self._sheet.unit, 2 * self._sheet.unit))
         self._sheet.text(self._pixel(point), words, size, colour, (0.5, 0.5), halo=True)
 
 
@@ -267,9 +257,6 @@ def _towards(angle: float | np.ndarray) -> np.ndarray:
 
 
 # What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
-
-_DARK = (0.12, 0.16, 0.2)  # colour of gravity's arrow
-_SPACING = 6.0  # least distance of two numbers on the board, in units of the sheet
 
 
 class Board:
@@ -293,7 +280,7 @@ class Board:
         """Draw gravity's arrow, the incline's angle and distances."""
         unit = sheet.unit
         tail = np.array([3 * unit if self.scene.incline < 0 else sheet.width - 1.6 * unit, view.top + 1.0 * unit])
-        sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
+        sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, INK)
         sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
         if self.scene.incline:
             self._draw_angle(sheet, view)
@@ -317,7 +304,7 @@ class Board:
         """Write distances down the incline below the board [m], with a tick at each, where there is room."""
         unit, size, lowest = sheet.unit, scale(self.scene), view.top + view.pixels[1]
         ends = [self.along(view, column) / size - self._start for column in (0, sheet.width)]
-        most = max(1, int(sheet.width / (_SPACING * unit)))
+        most = max(1, int(sheet.width / (6 * unit)))  # two of them are six units apart at least
         numbers = np.round(MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(*ends), 12)
         down = np.array([-math.sin(self.scene.incline), math.cos(self.scene.incline)])
         for number, place in zip(numbers, self.pixel(view, (numbers + self._start) * size), strict=True):

@@ -20,10 +20,8 @@ from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
 _BEFORE = 0.4  # room for the names on the board before the start, in lengths of the race
-_MARGIN = 0.01  # margin around what must be seen, in sizes of the picture
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_FAR = 6.0  # distance of the eye, in lengths of the race
 _AFTER = 0.4  # how long before its end a race says what time the cans will need that have not finished [s]
 
 
@@ -94,8 +92,8 @@ class Race:
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         ends = np.outer([-_BEFORE * self.length, self.length], [1, 0, 0, 0])
         points = np.reshape([display.outline(lane, end) for lane in range(len(scenes)) for end in ends], (-1, 3))
-        eye = points.mean(axis=0) + _FAR * self.length * _EYE
-        view = View.towards(eye, points, (width, height - top), top, _MARGIN)
+        eye = points.mean(axis=0) + 6 * self.length * _EYE
+        view = View.towards(eye, points, (width, height - top), top, margin=0.01)
         positions = np.stack([runner.positions(times) for runner in runners], axis=1)
         if self.centres:  # they begin at one line, and in a race the axes do
             positions[..., 0] += [runner.trajectory.u[0] for runner in runners]

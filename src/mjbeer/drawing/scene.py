@@ -25,12 +25,8 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_PALER = 0.35  # how much nearer to white the surface of a painted load is
-_EDGES = 64  # edges around a load: a circle, to the eye. A finer one takes longer to draw
 _VISUAL, _UNSEEN = 2, 5
 """MuJoCo's groups of geoms: of what templates show, and of what OpenGL does not draw; each can is in one of its own."""
-_RIM = 1.12  # radius of what is drawn of a can, in radii, with room for what sticks out of it
-_NEAR_PLANE, _FAR_PLANE = 0.2, 20.0  # nearest and farthest that is drawn, in distances of what is looked at
 _STRIPE = math.pi / 2 * RADIUS
 """Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
 _SQUARE, _LINE = 0.1, 0.1 / 64
@@ -66,17 +62,12 @@ class Display:
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
-        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first.
-
-        Raises:
-          TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
-          UnsupportedError: if MuJoCo cannot compile the geoms of a template.
-        """
+        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first."""
         lanes = [lane * apart for lane in range(len(scenes))]
         specs = [rolling_spec(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
         for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):
             if scene.load.fill is not None:
-                looks.shape_beer(spec, _resize(scene), _EDGES)
+                looks.shape_beer(spec, _resize(scene), edges=64)  # a circle, to the eye
             for pair in spec.pairs:
                 spec.delete(pair)
             for geom in spec.geoms:
@@ -98,7 +89,7 @@ class Display:
         """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
         for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
             self.model.mat(_prefix(number) + "label").rgba[:3] = label
-            for name, share in (("load", 0.0), ("foam", _PALER)):
+            for name, share in (("load", 0.0), ("foam", 0.35)):
                 geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, _prefix(number) + name)
                 if load is not None and geom >= 0:
                     self.model.mat_rgba[self.model.geom_matid[geom], :3] = np.array(load) * (1 - share) + share
@@ -122,7 +113,9 @@ class Display:
     def outline(self, number: int, position: np.ndarray) -> np.ndarray:
         """Return points around both ends of a can [m], shape (2, points, 3), for its u, phi, roll and lift."""
         u, lift = position[[0, 3]] * scale(self.scenes[number])
-        ring = on_incline(self.scenes[number], u, RADIUS + lift) + circle(_RIM * RADIUS)
+        ring = on_incline(self.scenes[number], u, RADIUS + lift) + circle(
+            1.12 * RADIUS
+        )  # with room for what sticks out
         return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
 
@@ -220,9 +213,6 @@ class Painter:
         """Prepare to draw pictures of up to so many `pixels`, with `lines` across the board as in `Scenery`.
 
         `still` says that all views are the same.
-
-        Raises:
-          RenderingError: if OpenGL cannot draw without a window; the message names what to install.
         """
         self._display, self._scenery, self._still, model = display, Scenery(display, lines), still, display.model
         self._empty: np.ndarray | None = None
@@ -264,10 +254,10 @@ class Painter:
         scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
         model, data = self._display.model, self._display.data
         mujoco.mjv_updateScene(model, data, self._option, None, self._anywhere, everything, scene)
-        near = _NEAR_PLANE * view.distance
+        near, far = 0.2 * view.distance, 20 * view.distance  # nothing is drawn before and behind
         for eye in scene.camera:  # two of them, for stereo; MuJoCo draws their mean
             eye.pos, eye.up, eye.forward = view.eye, view.axes[1], -view.axes[2]
-            eye.frustum_near, eye.frustum_far = near, _FAR_PLANE * view.distance
+            eye.frustum_near, eye.frustum_far = near, far
             eye.frustum_center = near * (view.low[0] + view.high[0]) / 2
             eye.frustum_width = near * (view.high[0] - view.low[0]) / 2
             eye.frustum_bottom, eye.frustum_top = near * view.low[1], near * view.high[1]

@@ -28,8 +28,7 @@ from mjbeer.output.plots import Picture
 from mjbeer.theory.trajectory import Trajectory
 
 _LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
-_RATE = 21  # the rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default
-_SMALL_RATE = 24  # that of a film that a page holds: letters are as sharp, and it takes three quarters of the room
+_RATE = 23  # the rate factor of a file, ffmpeg's default: at 18 no loss is visible, and at 24 letters are still sharp
 _ENCODED = (
     # HD colours (BT.709), which players expect; the default are those of SD television.
     *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
@@ -87,7 +86,6 @@ def write(
     height: int,
     fps: float,
     seen: Callable[[np.ndarray], None] = lambda _: None,
-    rate: int = _RATE,
 ) -> None:
     """Write a film as a video, as `render` does, and call `seen` with each picture."""
     with files.atomic_write(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
@@ -97,18 +95,13 @@ def write(
                 seen(picture)
                 yield picture
 
-        encode(watched(), temporary, int(width), int(height), fps, rate)
+        encode(watched(), temporary, int(width), int(height), fps)
 
 
-def encode(pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float, rate: int) -> None:
-    """Write pictures of shape (height, width, 3), uint8, one at a time, so that memory holds only one.
-
-    Raises:
-      RenderingError: if ffmpeg fails; the message has the last line that ffmpeg wrote.
-      OSError: if the disk is full or broken.
-    """
+def encode(pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
+    """Write pictures of shape (height, width, 3), uint8, one at a time, so that memory holds only one."""
     with _mediapy() as mediapy:
-        writer = mediapy.VideoWriter(path, (height, width), fps=fps, crf=rate, ffmpeg_args=_ENCODED)
+        writer = mediapy.VideoWriter(path, (height, width), fps=fps, crf=_RATE, ffmpeg_args=_ENCODED)
         try:
             with writer:
                 for picture in pictures:
@@ -173,7 +166,7 @@ class FilmJob:
             if next(number) == nearest:
                 Image.fromarray(picture).save(file, "WEBP", quality=70)
 
-        write(plan, self.path, self.width, self.height, self.fps, keep, _SMALL_RATE)
+        write(plan, self.path, self.width, self.height, self.fps, keep)
         return file.getvalue()
 
 

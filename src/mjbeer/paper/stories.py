@@ -154,7 +154,7 @@ STORIES = (
             look=Look(
                 "With μ = 1, frozen beer slips before it hops",
                 ("lift", "slip"),
-                ("normal", "friction"),
+                ("paths",),
                 "pan",
                 ("flies", "slips"),
             ),
