@@ -73,7 +73,7 @@ _LAZY = {
     "tracks.fit": ("Fit", "fit"),
     "tracks.track": ("Track", "read_track"),
 }
-load_drawing[:] = [lambda: import_module("mjbeer.drawing.notebook")]
+load_drawing[:] = [lambda name: import_module(f"mjbeer.drawing.{name}")]
 
 
 def __getattr__(name: str) -> object:

@@ -55,7 +55,7 @@ def test_a_report_ends_with_its_processes(
     handler: signal.Handlers, numbers: list[int], status: int, tmp_path: pathlib.Path
 ) -> None:
     code = (
-        "import sys; from mjbeer.cli.app import main; from mjbeer.drawing.jobs import PlotJob; "
+        "import sys; from mjbeer.cli.app import main; from mjbeer.drawing.video import PlotJob; "
         "from mjbeer.report import page; from tests.support.processes import draw_and_sleep; "
         "page.plot_jobs = lambda folder: [PlotJob(draw_and_sleep, folder / 'plot')]; sys.exit(main())"
     )

@@ -1,16 +1,16 @@
 """The pictures show what theory says: where beer, can and mark are, at any size and before every camera."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import closing
 
 import numpy as np
 import pytest
 
 from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
-from mjbeer.drawing.camera import CameraPath, View, on_incline, scale
+from mjbeer.drawing.camera import View, follow, on_incline, scale
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.overlay import Look, header_height
+from mjbeer.drawing.overlay import HEADER, Look
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS
@@ -27,14 +27,9 @@ def motion(incline: float = 0.2) -> Trajectory:
 
 
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
-    """Return the view of the film of a motion without charts and marks, below its title: 1.35 radii around its can."""
+    """Return the view of the film of a motion without charts and marks, below its title: 1.9 radii around its can."""
     plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return CameraPath.fit(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels, 1.35, 1.75).view(0.0)
-
-
-def picture(run: Trajectory, time: float, width: int, height: int) -> np.ndarray:
-    (drawn,) = MotionFilm(lambda: run, 1.0).plan().draw(np.array([time]), width, height)
-    return drawn
+    return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels)[0](0.0)
 
 
 class Seen:
@@ -52,25 +47,13 @@ class Seen:
         return self.pixels[int(row) + self.top, int(column)]
 
 
-def look(scene: Scene, phis: Sequence[float], rolls: Sequence[float]) -> list[Seen]:
+def look(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Seen]:
     """Pictures of a scene with the load at some angles phi and the can at some angles of roll [rad]."""
-    times, rest = np.arange(len(phis), dtype=float), np.zeros(len(phis))
-    u = scene.can.radius * np.array(rolls)
-    still = Trajectory(
-        scene=scene,
-        phi0=phis[0],
-        phi_dot0=0.0,
-        time=times,
-        u=u,
-        phi=np.array(phis),
-        u_dot=rest,
-        phi_dot=rest,
-        roll=np.array(rolls),
-        roll_dot=rest,
-        lift=rest,
-        lift_dot=rest,
-    )
-    top = header_height(FIXED, Sheet(*SIZE).unit)
+    times, rest, u = np.arange(len(phis), dtype=float), np.zeros(len(phis)), scene.can.radius * rolls
+    places = {"u": u, "phi": phis, "roll": rolls, "lift": rest}
+    rates = dict.fromkeys(("u_dot", "phi_dot", "roll_dot", "lift_dot"), rest)
+    still = Trajectory(scene=scene, phi0=phis[0], phi_dot0=0.0, time=times, **places, **rates)
+    top = round(HEADER * Sheet(*SIZE).unit)
     view = still_view(still, (SIZE[0], SIZE[1] - top))
     axes = on_incline(scene, u * scale(scene), RADIUS)
     drawn = MotionFilm(lambda: still, 1.0, FIXED).plan().draw(times, *SIZE)
@@ -119,12 +102,12 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
 def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
     moved = motion()
     display, view = Display.of([moved.scene]), still_view(moved, SIZE)
-    scenery, pictures = Scenery(moved.scene, display.model), []
+    pictures = []
     for still in (False, True):
         sheet = Sheet(*SIZE)
-        with closing(Painter(display, scenery, *SIZE, still)) as painter:
+        with closing(Painter(display, SIZE, still)) as painter:
             for u in (0.0, 0.01):
-                painter.paint(sheet, view, np.array([[u, 0.5, 0.5, 0.002]]), 0)
+                painter.paint(sheet, view, np.array([[u, 0.5, 0.5, 0.002]]))
         pictures.append(sheet.picture())
     assert np.array_equal(*pictures)
     assert np.ptp(pictures[0]) > 200
@@ -142,12 +125,11 @@ def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
     model.geom_group[:] = 5
     model.geom_group[flat] = 0
     points = np.concatenate([display.outline(0, np.array([u, 0.0, 0.0, 0.0])).reshape(-1, 3) for u in (-0.2, 0.4)])
-    above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0.01)
-    scenery = Scenery(scene, model)
+    above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0, 0.01)
     for view in (still_view(motion(scene.incline), (400, 200)), above):
         sheet = Sheet(*view.pixels)
-        scenery.draw(sheet, view, 0)
-        with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
+        Scenery(display).draw(sheet, view)
+        with closing(Painter(display, view.pixels)) as painter:
             drawn = painter._draw(view, 0)
         assert (drawn[..., 3] == 255).all()
         difference = np.abs(sheet.picture().astype(int) - drawn[..., :3]).max(axis=2)
@@ -167,21 +149,18 @@ def test_motion_between_samples_is_of_fourth_order() -> None:
 
 
 @pytest.mark.draws
-def test_graphics_memory_is_freed_even_if_drawing_stops_early(monkeypatch: pytest.MonkeyPatch) -> None:
-    closed = []
-    real = Painter.close
+@pytest.mark.parametrize("size", [(2, 2), (400, 40), (60, 400)])
+def test_a_picture_of_any_shape_can_be_drawn_and_graphics_memory_is_freed(
+    size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also if drawing stops early."""
+    closed, real = [], Painter.close
     monkeypatch.setattr(Painter, "close", lambda painter: (closed.append(painter), real(painter)))
-    drawing = MotionFilm(motion, 1.0, FIXED).plan().draw(np.linspace(0, 0.4, 5), 64, 36)
-    next(drawing)
+    drawing = MotionFilm(motion, 1.0).plan().draw(np.linspace(0, 0.4, 5), *size)
+    assert next(drawing).shape == (size[1], size[0], 3)
     assert closed == []
     drawing.close()
     assert len(closed) == 1
-
-
-@pytest.mark.draws
-@pytest.mark.parametrize("size", [(2, 2), (16, 16), (400, 40), (60, 400)])
-def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
-    assert picture(motion(), 0.2, *size).shape == (size[1], size[0], 3)
 
 
 @pytest.mark.draws
@@ -198,5 +177,6 @@ def test_a_picture_of_any_shape_can_be_drawn(size: tuple[int, int]) -> None:
     ids=["weightless", "fast", "short", "long", "late", "one sample"],
 )
 def test_a_motion_of_any_kind_can_be_drawn(moved: Trajectory) -> None:
-    middle = float(moved.time[len(moved.time) // 2])
-    assert np.ptp(picture(moved, middle, 320, 180)) > 200
+    middle = moved.time[[len(moved.time) // 2]]
+    (drawn,) = MotionFilm(lambda: moved, 1.0).plan().draw(middle, 320, 180)
+    assert np.ptp(drawn) > 200

@@ -1,15 +1,14 @@
 """What is drawn at the can is what it says: the angle, the paths, the forces, and even acceleration."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, sliding
-from mjbeer.drawing.camera import Camera, CameraPath, View, on_incline, scale
-from mjbeer.drawing.overlay import LONGEST, Board, Mark, Marks, guides, head
+from mjbeer import Can, Trajectory, exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer.drawing.camera import Camera, View, follow, on_incline, scale
+from mjbeer.drawing.overlay import LONGEST, Board, Look, Mark, Marks, head, spans
 from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.drawing.sheet import Box, Sheet, overlap
 from mjbeer.model.looks import WALL
@@ -28,26 +27,20 @@ ROUNDING = 1e-6
 
 
 class Recorder(Sheet):
-    """A sheet that keeps the places of lines and arrows, and the texts."""
+    """A sheet that keeps what is drawn: the places of lines, arrows and discs, and the texts."""
 
     def __init__(self, width: int, height: int) -> None:
         super().__init__(width, height)
-        self.lines: list[np.ndarray] = []
-        self.arrows: list[tuple[np.ndarray, np.ndarray]] = []
-        self.discs: list[np.ndarray] = []
-        self.words: list[str] = []
+        self.lines, self.arrows, self.discs, self.words = [], [], [], []
 
     def line(self, places: np.ndarray, *arguments: Any, **more: Any) -> None:
         self.lines.append(places)
-        super().line(places, *arguments, **more)
 
     def arrow(self, tail: np.ndarray, head: np.ndarray, *arguments: Any, **more: Any) -> None:
         self.arrows.append((np.asarray(tail), np.asarray(head)))
-        super().arrow(tail, head, *arguments, **more)
 
     def disc(self, place: np.ndarray, *arguments: Any, **more: Any) -> None:
         self.discs.append(place)
-        super().disc(place, *arguments, **more)
 
     def text(self, place: Any, words: str, *arguments: Any, **more: Any) -> Box:
         self.words.append(words)
@@ -57,10 +50,10 @@ class Recorder(Sheet):
 def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
     """Draw marks, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
-    view = CameraPath.fit(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS).view(time)
+    view = follow(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS)[0](time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
-    Marks(motion, kinds, PLANE, TIMES, positions).draw(sheet, view, 0, time, now)
+    Marks(motion, Look("", marks=kinds), PLANE, TIMES, positions).draw(sheet, view, time, now)
     return sheet, view, now
 
 
@@ -90,9 +83,8 @@ def test_the_angle_is_phi_from_the_incline_to_the_surface(make: Any, phi: float)
     along = -motion.scene.incline + (math.pi / 2 if motion.scene.load.fill is None else 0.0)
     assert min(differ(direction(first), along), differ(direction(first), along + math.pi)) < ROUNDING
     assert differ(direction(second), direction(first) - phi) < ROUNDING
-    centre = np.array([arc[0], arc[-1]]) - [first[0], second[0]]
-    assert differ(direction(np.array([np.zeros(2), centre[0]])), direction(first)) < ROUNDING
-    assert differ(direction(np.array([np.zeros(2), centre[1]])), direction(second)) < ROUNDING
+    for end, line in ((arc[0], first), (arc[-1], second)):
+        assert differ(direction(np.array([line[0], end])), direction(line)) < ROUNDING
     assert sheet.words == ["φ"]
 
 
@@ -137,12 +129,12 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
     assert u - even == pytest.approx(motion.scene.load.offset * math.sin(phi))
 
 
-def guided(scene: Scene, times: np.ndarray, camera: Camera) -> tuple[Recorder, Board, View]:
+def guided(scene: Scene, times: np.ndarray, camera: Camera, start: float = 0.0) -> tuple[Recorder, Board, View]:
     motion, display = exact(scene, times, 1.0), Display.of([scene])
-    board = Board.of(scene, display.model)
-    view = CameraPath.fit(scene, camera, times, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
+    board = Board(display, start)
+    view = follow(scene, camera, times, motion.u, motion.lift, display.ends()[0], PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
-    guides(sheet, board, view, 0)
+    board.draw(sheet, view)
     return sheet, board, view
 
 
@@ -171,43 +163,53 @@ def test_gravity_is_plumb_and_the_angle_of_the_incline_is_drawn_and_written(incl
 @pytest.mark.parametrize("incline", [-10, 0, 10, 30])
 @pytest.mark.parametrize("radius", [1e-4, 0.033, 25.0])
 def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -> None:
-    """Each tick is where a point of the board at that distance is seen, in a can of any size."""
-    scene = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius))
-    sheet, board, view = guided(scene, FEW * math.sqrt(radius / 0.033), "fixed")
+    """Each tick is where a point of the board at that distance from the start is seen, in a can of any size."""
+    scene, start = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius)), radius / 3
+    sheet, board, view = guided(scene, FEW * math.sqrt(radius / 0.033), "fixed", start)
     numbers = [float(words[:-2].replace("\N{MINUS SIGN}", "-")) for words in sheet.words if words.endswith(" m")]
     ticks = [line[0] for line in sheet.lines[2 if incline else 0 :]]
     assert len(numbers) == len(ticks) >= 2
     for number, tick in zip(numbers, ticks, strict=True):
-        x, z = on_incline(scene, number / radius * RADIUS, board.under)
+        x, z = on_incline(scene, (number + start) / radius * RADIUS, board.under)
         assert tick == pytest.approx(view.pixel(np.array([x, board.front, z])), abs=PIXEL)
 
 
-def test_distances_begin_where_the_can_is_let_go() -> None:
-    """Frozen beer on top begins at u = pi a; the axis has the number 0 below it there."""
-    motion, display = exact(frozen(), FEW, math.pi), Display.of([frozen()])
-    view = CameraPath.fit(motion.scene, "fixed", FEW, motion.u, motion.lift, display.front(), PIXELS).view(0.0)
-    sheet = Recorder(*PIXELS)
-    guides(sheet, Board.of(motion.scene, display.model, motion.u[0]), view, 0)
-    numbers = [words for words in sheet.words if words.endswith(" m")]
-    tick = sheet.lines[2:][numbers.index("0 m")][0]
-    x, z = on_incline(motion.scene, math.pi * RADIUS, Board.of(motion.scene, display.model).under)
-    assert tick == pytest.approx(view.pixel(np.array([x, display.model.geom("board").pos[1] - 0.075, z])), abs=PIXEL)
+def noted(run: Trajectory, name: str) -> list[tuple[float, float]]:
+    """From when to when a note holds."""
+    (found,) = spans(run, [name]).values()
+    return found
 
 
-def test_the_gap_is_as_high_as_the_can_flies() -> None:
-    motion = replace(exact(frozen(), TIMES, 2.0), lift=np.full_like(TIMES, 0.007))
-    sheet, view, _ = drawn(motion, 0.3, "gap")
-    assert sheet.words == ["7 mm"]
-    ((tail, head),) = sheet.arrows
-    radius = RADIUS * view.scale(np.array([0.0, PLANE, 0.0]))
-    assert np.hypot(*(head - tail)) == pytest.approx(0.007 / 0.033 * radius, rel=1e-3)  # perspective
-    assert not drawn(exact(frozen(), TIMES, 2.0), 0.3, "gap")[0].words
+def test_notes_are_there_while_it_happens() -> None:
+    """Frozen beer let go on top with mu = 1: it slips, flies from 0.83 s on by some mm, and lands."""
+    run = simulate(frozen(), 1.0, math.pi, rolling="contact", timestep=2e-4, friction=1.0)
+    ((first, last),) = noted(run, "flies")
+    high = run.lift > 1e-3
+    assert run.time[high].min() > first > 0.83
+    assert run.time[high].max() < last < 0.97
+    slips = noted(run, "slips")
+    assert len(slips) == 3  # short rests do not interrupt them
+    assert slips[0][0] == pytest.approx(0.73, abs=0.01)
+    below = noted(run, "heavy")
+    assert all(np.cos(np.interp((first + last) / 2, run.time, run.phi)) > 0.7 for first, last in below[:3])
+    assert all(np.cos(np.interp((first + last) / 2, run.time, run.phi)) < 0 for first, last in noted(run, "light")[:1])
+
+
+@pytest.mark.parametrize("make", [sliding, pendulum])
+def test_a_can_hesitates_while_its_load_is_uphill(make) -> None:
+    """Once a swing; a pause of a few samples does not interrupt the note."""
+    run = simulate(make(), 1.2, 1.0, tolerance=1e-9)
+    swings = 1.2 / make().period(1.0)
+    found = noted(run, "hesitates")
+    assert len(found) == math.ceil(swings)
+    for first, last in found[1:-1]:
+        assert np.interp((first + last) / 2, run.time, run.phi) > 0.8
 
 
 @pytest.mark.parametrize("width", [640, 1280])
 def test_no_title_runs_into_the_time(width: int) -> None:
     sheet = Recorder(width, 360)
-    head(sheet, ("a long title " * 5, "many words " * 8), 0.0, 0.25)
+    head(sheet, "a long title " * 5, "many words " * 8, 0.0, 0.25)
     title, other = (box for box in sheet.boxes if box[0] < width / 4)
     for box in sheet.boxes:
         assert not overlap(box, title) or box == title

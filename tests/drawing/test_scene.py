@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, frozen, hoop, sliding
+from mjbeer import Can, Scene, frozen, sliding
 from mjbeer.drawing.camera import scale
 from mjbeer.drawing.scene import Display
 from mjbeer.theory.can import RADIUS
@@ -55,34 +55,26 @@ def test_any_scene_anywhere(scene: Scene, turns: float, phi: float, roll: float,
     check(display, 0, turns * a, phi, roll, height * a)
 
 
-def test_cans_side_by_side_are_posed_by_themselves() -> None:
-    """Of another kind each, on one board that is as wide as all lanes."""
-    scenes = [sliding(0.1, can=METAL), frozen(0.1, can=METAL, fill=0.9), frozen(0.1, can=METAL)]
-    display = Display.of(scenes, apart=0.2)
+def test_cans_side_by_side_are_posed_and_painted_by_themselves() -> None:
+    """Of another kind each, on one board that is as wide as all lanes; a load without a colour keeps its own."""
+    display = Display.of(
+        [sliding(0.1, can=METAL), frozen(0.1, can=METAL, fill=0.9), sliding(0.1, can=METAL)], apart=0.2
+    )
     positions = np.array([[0.1, 0.5, 3.0, 0.0], [0.2, 1.0, 1.0, 0.01], [0.3, 7.0, 7.0, 0.0]])
     display.pose(positions)
     for number, position in enumerate(positions):
         check(display, number, *position)
     assert display.lanes == [0.0, 0.2, 0.4]
-    board = display.model.geom("board")
+    board, beer = display.model.geom("board"), display.model.mat("2-beer").rgba.tolist()
     assert (board.pos[1] - board.size[1], board.pos[1] + board.size[1]) == pytest.approx((-0.075, 0.475))
-
-
-def test_each_can_has_a_label_and_a_load_of_its_colours() -> None:
-    """Two with one template do not share them, and a load without a colour keeps its own."""
-    scenes = [sliding(can=METAL), frozen(can=METAL), sliding(can=METAL), hoop()]
-    display = Display.of(scenes, apart=0.2)
-    beer = display.model.mat("2-beer").rgba.tolist()
     green = (0.0, 1.0, 0.0)
-    display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0), green, green], [green, green, None, None])
-    assert display.model.mat("label").rgba.tolist() == [1, 0, 0, 1]
-    assert display.model.mat("1-label").rgba.tolist() == [0, 0, 1, 1]
-    for load in ("beer", "1-ice"):
-        assert display.model.mat(load).rgba.tolist() == [0, 1, 0, 1]
+    display.paint([(1.0, 0.0, 0.0), (0.0, 0.0, 1.0), green], [green, green, None])
+    painted = {"label": [1, 0, 0, 1], "1-label": [0, 0, 1, 1], "beer": [0, 1, 0, 1], "1-ice": [0, 1, 0, 1]}
+    for material, colour in painted.items():
+        assert display.model.mat(material).rgba.tolist() == colour
     assert display.model.mat("2-beer").rgba.tolist() == beer != [0, 1, 0, 1]
     foam = display.model.mat("foam").rgba
-    assert foam[1] == 1
-    assert 0 < foam[0] == foam[2] < 1
+    assert 0 < foam[0] == foam[2] < foam[1] == 1
 
 
 @pytest.mark.parametrize("radius", [1e-3, 1.0])

@@ -16,7 +16,7 @@ from rich.console import Console
 from mjbeer import exact, frozen
 from mjbeer.drawing import film, opengl, video
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.jobs import FilmJob, produce
+from mjbeer.drawing.video import FilmJob, produce
 from mjbeer.exceptions import OutputError, ParameterError, RenderingError
 from tests.support.processes import run
 
@@ -84,11 +84,11 @@ def test_speed_stretches_time(
     ("arguments", "message"),
     [
         ({"path": "can.avi"}, "must end in .mp4, got 'can.avi'"),
-        ({"width": 321}, "width must be even, as H.264 wants it, got 321"),
-        ({"height": 99.5}, r"height must be a whole number of pixels up to 4096, got 99\.5"),
+        ({"width": 321}, "width must be an even number of pixels up to 4096, as H.264 wants it, got 321"),
+        ({"height": 4098}, "height must be an even number of pixels up to 4096"),
         ({"fps": 0}, r"fps must be greater than 0 \[1/s\], got 0"),
         ({"speed": 0}, "speed must be greater than 0, got 0"),
-        ({"camera": "top"}, "camera must be one of 'auto', 'fixed', 'pan', 'close'; got 'top'"),
+        ({"camera": "top"}, "camera must be one of 'auto', 'fixed', 'pan'; got 'top'"),
     ],
 )
 def test_bad_input_says_what_is_allowed(
@@ -105,7 +105,6 @@ def test_bad_input_says_what_is_allowed(
     [
         ("echo out of tune >&2\nexit 3\n", RenderingError, "out of tune\nReinstall it"),
         ("cat > /dev/null\n", RenderingError, "it ended before the video did\nReinstall it"),
-        ("head -c 500000 > /dev/null\nkill -SEGV $$\n", RenderingError, "it ended before the video did"),
         ("cat > /dev/null\necho 'Error: No space left on device' >&2\nexit 1\n", OutputError, "can.mp4: No space left"),
     ],
 )
@@ -160,7 +159,7 @@ def test_films_are_made_in_other_processes_or_one_error_is_told(
 
 
 def test_opengl_that_does_not_start_says_what_installs_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(opengl, "_THREAD", type("Fresh", (), {})())
+    monkeypatch.setattr(opengl, "context", opengl.context.__wrapped__)
     monkeypatch.setattr(opengl.importlib, "import_module", lambda name: exec(f"raise ImportError('no {name}')"))
     monkeypatch.setenv("MUJOCO_GL", "osmesa")
     assert str(opengl.problem()).startswith("no off-screen OpenGL (osmesa): no mujoco.osmesa")

@@ -10,7 +10,7 @@ import pytest
 
 from mjbeer import exact, paper, sliding
 from mjbeer.checks import Check
-from mjbeer.drawing import jobs, opengl, video
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.exceptions import RenderingError
 from mjbeer.output import files, plots
@@ -75,14 +75,14 @@ def audited(monkeypatch: pytest.MonkeyPatch, **errors: float) -> None:
     monkeypatch.setattr(paper, "claims", lambda: rows)
 
 
-def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[jobs.FilmJob]:
+def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[video.FilmJob]:
     """Make videos text files, and the one of a name fail; the films that were ordered so far.
 
     There is OpenGL then, or so it seems, and the paper has a single story. Nothing is done in other processes.
     """
-    calls: list[jobs.FilmJob] = []
+    calls: list[video.FilmJob] = []
 
-    def filmed(order: jobs.FilmJob) -> bytes:
+    def filmed(order: video.FilmJob) -> bytes:
         if order.path.name == fail_at:
             raise RenderingError(f"cannot draw {fail_at}")
         files.write(order.path, f"film {order.path.stem}")
@@ -93,14 +93,14 @@ def draw(monkeypatch: pytest.MonkeyPatch, fail_at: str = "") -> list[jobs.FilmJo
         with plots.chart(path, title="A plot & a title", subtitle="of a stub"):
             pass
 
-    def few(folder: pathlib.Path) -> list[jobs.PlotJob]:
+    def few(folder: pathlib.Path) -> list[video.PlotJob]:
         names = [f"error-{case}" for case in Benchmark.load(SHIPPED).cases]
-        beside, names = jobs.PlotJob(plot, folder / "stability-more"), [*names, "stability-solref", "told"]
-        return [*(jobs.PlotJob(plot, folder / name, in_memory=True) for name in names), beside]
+        beside, names = video.PlotJob(plot, folder / "stability-more"), [*names, "stability-solref", "told"]
+        return [*(video.PlotJob(plot, folder / name, in_memory=True) for name in names), beside]
 
     film = MotionFilm(partial(exact, sliding(), [0.0, 0.1], 0.1), speed=0.5)
-    monkeypatch.setattr(jobs.FilmJob, "write", filmed)
-    monkeypatch.setattr(jobs, "produce", lambda orders, _: [order.write() for order in orders])
+    monkeypatch.setattr(video.FilmJob, "write", filmed)
+    monkeypatch.setattr(video, "produce", lambda orders, _: [order.write() for order in orders])
     monkeypatch.setattr(opengl, "problem", lambda: None)
     story = Story("told", "A story & a title", "", "A stub's story.", (1, 1, 4, 3), lambda panels: None, film)
     monkeypatch.setattr(stories, "STORIES", (story,))

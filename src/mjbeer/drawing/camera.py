@@ -3,7 +3,6 @@
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Literal, Self
 
 import numpy as np
@@ -12,17 +11,16 @@ from numpy.polynomial import Polynomial
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 
-Camera = Literal["auto", "fixed", "pan", "close"]
+Camera = Literal["auto", "fixed", "pan"]
 """fixed: still, and so far away that all of the motion is seen. pan: moves along the incline with the constant
-acceleration that fits the motion best. close: goes along with the can. auto: fixed, or pan where the can would be
-small."""
-CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan", "close")
+acceleration that fits the motion best. auto: fixed, or pan where the can would be small."""
+CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan")
 _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 """Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
-_AROUND = 1.75
+AROUND = 1.9
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
 _SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
-_FAR = 8.0  # distance of the eye, in half diagonals of the picture: the longer, the less of the can's inside is seen
+_FAR = 4.0  # distance of the eye, in diagonals of the picture: the longer, the less of the can's inside is seen
 _ABOVE = 0.18  # how far the eye is above the middle of the picture, in heights: it sees the board's upper side
 
 
@@ -59,42 +57,41 @@ class View:
     high: np.ndarray  # the upper right corner, likewise
     distance: float  # distance of what is looked at from the eye [m]
     pixels: tuple[int, int]  # width and height of the picture [pixels]
+    top: int = 0  # row of the sheet at which the picture begins
 
     @classmethod
-    def facing(
-        cls, centre: np.ndarray, metres: np.ndarray, distance: float, above: float, pixels: tuple[int, int]
-    ) -> Self:
+    def facing(cls, centre: np.ndarray, metres: np.ndarray, pixels: tuple[int, int]) -> Self:
         """Return the view along the can's axis of a rectangle in a plane across it.
 
-        `centre` is the rectangle's centre and `metres` its width and height [m]. The eye is `distance` [m] in front of
-        that plane, and `above` [m] over the centre, so that it sees a little of the board's upper side.
+        `centre` is the rectangle's centre and `metres` its width and height [m].
         """
-        eye, foot = centre + np.array([0.0, -distance, above]), np.array([0.0, -above])
-        return cls(eye, _LEVEL, (foot - metres / 2) / distance, (foot + metres / 2) / distance, distance, pixels)
+        distance, above = _FAR * float(np.hypot(*metres)), _ABOVE * float(metres[1])
+        foot = np.array([0.0, -above])
+        low, high = (foot - metres / 2) / distance, (foot + metres / 2) / distance
+        return cls(centre + np.array([0.0, -distance, above]), _LEVEL, low, high, distance, pixels)
 
     @classmethod
-    def towards(cls, eye: np.ndarray, points: np.ndarray, pixels: tuple[int, int], margin: float) -> Self:
+    def towards(cls, eye: np.ndarray, points: np.ndarray, pixels: tuple[int, int], top: int, margin: float) -> Self:
         """Return the upright view from an `eye` [m] that just shows some points [m], shape (n, 3).
 
-        Around them there is a `margin`, in widths of the picture.
+        Around them there is a `margin`, in sizes of the picture.
         """
         away = eye - points.mean(axis=0)
         distance = float(np.linalg.norm(away))
         right = np.array([-away[1], away[0], 0.0]) / np.hypot(away[0], away[1])
         axes = np.array([right, np.cross(away, right) / distance, away / distance])
-        whole = cls(eye, axes, low=np.zeros(2), high=np.ones(2), distance=distance, pixels=(1, 1))
-        places = whole.pixel(points) * [1, -1] + [0, 1]
-        low, high = places.min(axis=0), places.max(axis=0)
-        shape = np.array(pixels) / pixels[0]
-        half = (((high - low) / shape).max() / 2 + margin * float(high[0] - low[0])) * shape
+        seen = (points - eye) @ axes.T
+        across = seen[:, :2] / -seen[:, 2:]
+        low, high = across.min(axis=0), across.max(axis=0)
+        half = (0.5 + margin) * ((high - low) / pixels).max() * np.array(pixels)
         middle = (low + high) / 2
-        return replace(whole, low=middle - half, high=middle + half, pixels=pixels)
+        return cls(eye, axes, middle - half, middle + half, distance, pixels, top)
 
-    def pixel(self, points: np.ndarray, top: int = 0) -> np.ndarray:
-        """Return column and row of points [m] of shape (..., 3), on a sheet where the picture begins at row `top`."""
+    def pixel(self, points: np.ndarray) -> np.ndarray:
+        """Return column and row on the sheet of points [m] of shape (..., 3)."""
         seen = (np.asarray(points) - self.eye) @ self.axes.T
         across = (seen[..., :2] / -seen[..., 2:] - self.low) / (self.high - self.low)
-        return (across * [1, -1] + [0, 1]) * self.pixels + np.array([0, top])
+        return (across * [1, -1] + [0, 1]) * self.pixels + np.array([0, self.top])
 
     def corners(self, y: float) -> np.ndarray:
         """Return x and z [m] of the picture's corners, in turn, in a plane across the can's axis, shape (4, 2)."""
@@ -108,70 +105,54 @@ class View:
         distance = float((self.eye - point) @ self.axes[2])
         return self.pixels[0] / (float(self.high[0] - self.low[0]) * distance)
 
-    def crop(self, left: int, top: int, right: int, bottom: int) -> Self:
-        """Return the view of a part of the picture, given by its edges [pixels]."""
+    def crop(self, left: int, upper: int, right: int, lower: int) -> Self:
+        """Return the view of a part of the picture, given by its edges in it [pixels], at the top of a sheet."""
         size = (self.high - self.low) / self.pixels
-        low = self.low + size * [left, self.pixels[1] - bottom]
-        high = self.low + size * [right, self.pixels[1] - top]
-        return replace(self, low=low, high=high, pixels=(right - left, bottom - top))
+        low = self.low + size * [left, self.pixels[1] - lower]
+        high = self.low + size * [right, self.pixels[1] - upper]
+        return replace(self, low=low, high=high, pixels=(right - left, lower - upper), top=0)
 
-    def box(self, points: np.ndarray, margin: float = 0) -> tuple[int, int, int, int]:
-        """Return left, top, right and bottom [pixels] of what points [m] span, with a margin [pixels]."""
-        places = self.pixel(points).reshape(-1, 2)
+    def box(self, points: np.ndarray, margin: float) -> tuple[int, int, int, int]:
+        """Return the edges in the picture [pixels] of what points [m] span, with a margin [pixels]."""
+        places = self.pixel(points).reshape(-1, 2) - [0, self.top]
         low = np.clip(np.floor(places.min(axis=0) - margin), 0, self.pixels)
         high = np.clip(np.ceil(places.max(axis=0) + margin), 0, self.pixels)
         return int(low[0]), int(low[1]), int(high[0]), int(high[1])
 
 
-@dataclass(frozen=True, eq=False)
-class CameraPath:
-    """A camera's way along the drawn world, and what it shows of it."""
+def follow(
+    scene: Scene,
+    camera: Camera,
+    time: np.ndarray,
+    u: np.ndarray,
+    lift: np.ndarray,
+    plane: float,
+    pixels: tuple[int, int],
+    below: float = AROUND,
+) -> tuple[Callable[[float], View], bool]:
+    """Return the view at a time [s] that a camera has of a can, and whether it stands still.
 
-    scene: Scene
-    way: Callable[[np.ndarray | float], np.ndarray | float]
-    """Distance of the picture's middle down the incline over time [s], as drawn [m]."""
-    middle: np.ndarray  # from the incline at that distance to the middle of the picture, to the right and up [m]
-    metres: np.ndarray  # width and height of what is seen at the can's near end [m]
-    plane: float  # coordinate y of the can's near end [m]
-    pixels: tuple[int, int]
-    still: bool  # whether the camera stands still
+    It shows a can that is at `u` and `lift` [m] at some times [s], its near end in the `plane` y [m], with at least so
+    many radii `below` its axis.
+    """
+    along, height, shape = u * scale(scene), lift * scale(scene), np.array(pixels) / pixels[1]
 
-    def view(self, time: float) -> View:
-        """Return what is seen at a `time` [s]."""
-        x, z = on_incline(self.scene, self.way(time), 0.0) + self.middle
-        above, distance = _ABOVE * float(self.metres[1]), _FAR * float(np.hypot(*self.metres)) / 2
-        return View.facing(np.array([x, self.plane, z]), self.metres, distance, above, self.pixels)
-
-    @classmethod
-    def fit(
-        cls,
-        scene: Scene,
-        camera: Camera,
-        time: np.ndarray,
-        u: np.ndarray,
-        lift: np.ndarray,
-        plane: float,
-        pixels: tuple[int, int],
-        around: float = _AROUND,
-        below: float = _AROUND,
-    ) -> "CameraPath":
-        """Return the path that shows a can that is at `u` and `lift` [m] at some times [s].
-
-        At least so many radii are seen `around` the can's axis, and `below` it.
-        """
-        along, height = u * scale(scene), lift * scale(scene)
-        if camera == "auto":
-            fixed = cls.fit(scene, "fixed", time, u, lift, plane, pixels, around, below)
-            camera = "fixed" if RADIUS / fixed.metres[1] >= _SMALLEST else "pan"
-        if camera == "fixed" or len(time) < 3 or np.ptp(time) == 0:
-            way = Polynomial([(along.min() + along.max()) / 2])
-        elif camera == "pan":
-            way = Polynomial.fit(time, along, 2).convert()
-        else:
-            way = partial(np.interp, xp=time, fp=along)
+    def shown(way: Polynomial) -> tuple[np.ndarray, np.ndarray]:
+        """Return the middle of what is seen, from the point at the way's distance, and its width and height [m]."""
         places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([around, below])
-        high = places.max(axis=0) + RADIUS * around
-        shape = np.array(pixels) / pixels[1]
-        tall = float(((high - low) / shape).max())
-        return cls(scene, way, (low + high) / 2, tall * shape, plane, pixels, still=camera == "fixed")
+        low = places.min(axis=0) - RADIUS * np.array([AROUND, below])
+        high = places.max(axis=0) + RADIUS * AROUND
+        return (low + high) / 2, ((high - low) / shape).max() * shape
+
+    way = Polynomial([(along.min() + along.max()) / 2])  # distance of the camera down the incline, as drawn [m]
+    middle, metres = shown(way)
+    still = camera == "fixed" or bool(time[0] == time[-1] or (camera == "auto" and RADIUS / metres[1] >= _SMALLEST))
+    if not still:
+        way = Polynomial.fit(time, along, 2).convert()
+        middle, metres = shown(way)
+
+    def view(time: float) -> View:
+        x, z = on_incline(scene, way(time), 0.0) + middle
+        return View.facing(np.array([x, plane, z]), metres, pixels)
+
+    return view, still

@@ -2,26 +2,25 @@
 
 from collections.abc import Callable, Generator
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from mjbeer import require
-from mjbeer.drawing.camera import CameraPath
-from mjbeer.drawing.overlay import NOTE, STRIP, Board, Look, Marks, guides, header, header_height, note
-from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
+from mjbeer.drawing.camera import AROUND, follow
+from mjbeer.drawing.overlay import HEADER, NOTE, STRIP, Board, Look, Marks, header, note, spans
+from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.drawing.strip import Strip, charts, spans
+from mjbeer.drawing.strip import Strip, charts
 from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
 
 _MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
 _NARROW = 24  # width up to which a picture has no charts below, in units
 _FINE = 2000  # points of a path
-_AROUND, _BOARD, _BELOW = (1.35, 1.95), 1.75, 3.0
-"""What is seen around the can's axis without and with its angle; below it at least, and with forces; in radii."""
+_BELOW = 3.0  # what is seen below the can's axis, in radii, where the arrows of forces are
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,20 +34,13 @@ class RenderPlan:
     """Draws the pictures at some times [s], of a width and a height [pixels]: arrays (height, width, 3), uint8."""
 
     def times(self, fps: float) -> np.ndarray:
-        """Return the times [s] of the pictures at `fps` frames per second of the video.
-
-        The video lasts as long as the motion, divided by the playback speed.
-
-        Raises:
-          ParameterError: if `fps` or `speed` is not greater than 0, or the video would have too many frames.
-        """
+        """Return the times [s] of the pictures at `fps` frames per second of the video."""
         fps, speed = require.positive("fps", fps, "1/s"), require.positive("speed", self.speed)
-        duration = self.end - self.start
-        count = duration / speed * fps
+        count = (self.end - self.start) / speed * fps
         if count > _MOST_FRAMES:
             raise ParameterError(
-                f"a video must have at most {_MOST_FRAMES:g} frames, got {duration:g} s at {fps:g} frames per second "
-                f"and a speed of {speed:g}, which are {count:.3g}"
+                f"a video must have at most {_MOST_FRAMES:g} frames, got {self.end - self.start:g} s at {fps:g} frames "
+                f"per second and a speed of {speed:g}, which are {count:.3g}"
             )
         return self.start + speed / fps * np.arange(max(1, round(count)))
 
@@ -56,8 +48,8 @@ class RenderPlan:
 class Film(Protocol):
     """A film. It can be pickled, so that another process can draw it.
 
-    Its caption says what is seen, in whole sentences, for the text beside the film. Its still picture shows a time [s].
-    `plan` computes the motion, and returns what is needed to draw it.
+    Its caption says what is seen. Its still picture shows a time [s]; 0 is a third of the way through. `plan` computes
+    the motion, and returns what is needed to draw it.
     """
 
     @property
@@ -77,15 +69,10 @@ class MotionFilm:
     speed: float
     look: Look | None = None  # what is drawn; None is the usual look of such a motion
     still: float = 0.0
-    """Time of the motion that the still picture of the film shows [s]; 0 is a third of the way through."""
     caption: str = ""
 
     def plan(self) -> RenderPlan:
-        """Compute the motion, and return what is needed to draw it.
-
-        Raises:
-          ParameterError: if its times do not increase.
-        """
+        """Compute the motion, and return what is needed to draw it."""
         motion = self.trajectory()
         if (np.diff(motion.time) <= 0).any():
             raise ParameterError(
@@ -98,32 +85,28 @@ class MotionFilm:
 def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
-    sheet, scene = Sheet(width, height), trajectory.scene
+    sheet, display = Sheet(width, height), Display.of([trajectory.scene])
     has_room = len(trajectory.time) > 1 and width > _NARROW * sheet.unit
     below = round(STRIP * sheet.unit) if has_room and look.strips else 0
-    top, spare = header_height(look, sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
+    top, spare = round(HEADER * sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
     seen = height - top - below  # of the scene, where notes are above what the camera shows
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
-    positions = coordinates(trajectory, fine)
-    display = Display.of([scene])
-    plane, around = display.front(), _AROUND["phi" in look.marks]
-    under = _BELOW if "normal" in look.marks else max(around, _BOARD)
+    positions, plane = coordinates(trajectory, fine), display.ends()[0]
     motion = fine, positions[:, 0], positions[:, 3]
-    path = CameraPath.fit(scene, look.camera, *motion, plane, (width, seen - spare), around, under)
-    marks = Marks(trajectory, look.marks, plane, fine, positions, look.measured)
-    board = Board.of(scene, display.model, float(trajectory.u[0]))
-    notes = {name: spans(trajectory, name) for name in look.notes}
-    shown, marked = charts(trajectory, look.strips[: 1 if sheet.small else None]), next(iter(notes.values()), ())
-    strip = Strip(shown, width, below, marked) if below else None
-    with closing(Painter(display, Scenery(scene, display.model), width, seen, path.still)) as painter:
+    under = _BELOW if "normal" in look.marks else AROUND
+    camera, still = follow(trajectory.scene, look.camera, *motion, plane, (width, seen - spare), under)
+    marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
+    notes = spans(trajectory, look.notes)
+    marked = next(iter(notes.values()), ())
+    strip = Strip(charts(trajectory, look.strips), width, below, marked) if below else None
+    with closing(Painter(display, (width, seen), still)) as painter:
         for time, now in zip(times, coordinates(trajectory, times), strict=True):
-            view = path.view(time).crop(0, -spare, width, seen - spare)
-            sheet.boxes.clear()
-            painter.paint(sheet, view, now[None], top)
-            marks.draw(sheet, view, top, time, now)
-            guides(sheet, board, view, top)
+            view = replace(camera(time).crop(0, -spare, width, seen - spare), top=top)
+            painter.paint(sheet, view, now[None])
+            marks.draw(sheet, view, time, now)
+            board.draw(sheet, view)
             header(sheet, look, trajectory, time, speed)
-            note(sheet, trajectory, notes, time, top)
+            note(sheet, notes, time, top)
             if strip is not None:
                 strip.draw(sheet, time, height - below)
             yield sheet.picture()

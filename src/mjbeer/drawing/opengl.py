@@ -1,58 +1,41 @@
 """Off-screen OpenGL: EGL, or what the environment variable MUJOCO_GL names."""
 
 import atexit
+import functools
 import importlib
 import os
 import sys
-import threading
 from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
 
 from mjbeer.exceptions import RenderingError
 
 INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"
 """The line that brings EGL to Debian and Ubuntu."""
-_THREAD = threading.local()
 
 
+@functools.cache
 def context() -> Any:
-    """The off-screen OpenGL context of this thread, not yet current: all that it draws shares its compiled shaders.
+    """The off-screen OpenGL context of this process, not yet current: all that it draws shares its compiled shaders.
 
     Raises:
       RenderingError: if OpenGL does not start; the message says why not and what to install.
     """
-    if not hasattr(_THREAD, "context"):
-        # Mesa's software rasterizer (llvmpipe, seen in 22.3) frees a fence while another of its threads still unlocks
-        # it, and now and then the process crashes. Without threads of its own it cannot.
-        os.environ.setdefault("LP_NUM_THREADS", "0")
-        asked = os.environ.get("MUJOCO_GL", "").strip().lower()
-        name = "osmesa" if asked == "osmesa" else "egl"
-        try:
-            # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window system's by default.
-            library = importlib.import_module(f"mujoco.{name}" if sys.platform == "linux" else "mujoco")
-            _THREAD.context = library.GLContext(16, 16)  # pictures are drawn into a buffer of MuJoCo's, of any size
-        except Exception as error:  # of what kind depends on what is missing
-            raise RenderingError(
-                f"no off-screen OpenGL ({name}): {error}\nEGL runs on a graphics card or without one. On Debian and "
-                f"Ubuntu this installs it:\n    {INSTALL}"
-            ) from error
-        atexit.register(_THREAD.context.free)  # later it could not be freed any more
-    return _THREAD.context
-
-
-def read(drawn: Any, width: int, height: int) -> np.ndarray:
-    """Return what a MuJoCo context has drawn, with a channel more than MuJoCo returns, shape (height, width, 4), uint8.
-
-    The first row is the lowest. The last channel is 255, and 0 where nothing is drawn. There must be no multisampling.
-    """
-    from OpenGL import GL
-
-    pixels = np.empty((height, width, 4), np.uint8)
-    GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, drawn.offFBO)
-    GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, pixels)
-    return pixels
+    # Mesa's software rasterizer (llvmpipe, seen in 22.3) frees a fence while another of its threads still unlocks it,
+    # and now and then the process crashes. Without threads of its own it cannot.
+    os.environ.setdefault("LP_NUM_THREADS", "0")
+    name = "osmesa" if os.environ.get("MUJOCO_GL", "").strip().lower() == "osmesa" else "egl"
+    try:
+        # Not mujoco.GLContext: that is what MUJOCO_GL said when MuJoCo was imported, a window system's by default.
+        library = importlib.import_module(f"mujoco.{name}" if sys.platform == "linux" else "mujoco")
+        made = library.GLContext(16, 16)  # pictures are drawn into a buffer of MuJoCo's, of any size
+    except Exception as error:  # of what kind depends on what is missing
+        raise RenderingError(
+            f"no off-screen OpenGL ({name}): {error}\nEGL runs on a graphics card or without one. On Debian and "
+            f"Ubuntu this installs it:\n    {INSTALL}"
+        ) from error
+    atexit.register(made.free)  # later it could not be freed any more
+    return made
 
 
 def problem() -> str | None:

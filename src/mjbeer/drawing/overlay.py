@@ -1,17 +1,17 @@
 """What is drawn over the pictures of a motion to explain it: words above, marks at the can, numbers on the board."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
-import mujoco
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from mjbeer.drawing import strip
 from mjbeer.drawing.camera import Camera, View, circle, in_space, scale
-from mjbeer.drawing.sheet import INK, Box, Colour, Sheet, overlap
+from mjbeer.drawing.scene import Display
+from mjbeer.drawing.sheet import INK, Colour, Sheet, overlap
 from mjbeer.drawing.words import in_words
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
@@ -19,17 +19,16 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-Mark = Literal["phi", "paths", "normal", "friction", "ghost", "skid", "gap", "measured"]
-"""phi: the angle of the load. paths: of a point on the rim and of the load's centre of mass. normal, friction: N and F.
-ghost: a can that accelerates evenly. skid: the track on the incline where the can slips. gap: how high it flies.
-measured: where a film has had the axis so far."""
-_TITLES = {
-    "sliding": "Beer that slides in its can without friction",
-    "frozen": "Beer frozen to its can",
-    "pendulum": "A pendulum in a rolling wheel",
-    "hoop": "A weight on the rim of a hoop",
+Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
+"""ghost: a can that accelerates evenly. paths: of a point on the rim and of the load's centre of mass. normal: N.
+friction: F, beside N. phi: the angle of the load. measured: where a film has had the axis so far."""
+_KINDS = {
+    "sliding": ("Beer that slides in its can without friction", "can", "beer"),
+    "frozen": ("Beer frozen to its can", "can", "beer"),
+    "pendulum": ("A pendulum in a rolling wheel", "wheel", "bob"),
+    "hoop": ("A weight on the rim of a hoop", "hoop", "bar"),
 }
-_DAMPED = "A can that its load or the air brakes"
+"""The title of a film of which nothing else is known, what rolls, and what is in it, by the names of looks."""
 
 
 @dataclass(frozen=True)
@@ -40,77 +39,63 @@ class Look:
     strips: tuple[str, ...] = ("phi", "u")  # names of the quantities in the charts below the picture
     marks: tuple[Mark, ...] = ("phi", "paths")  # what is drawn to explain the motion
     camera: Camera = "auto"  # how the camera moves
-    facts: str = ""  # what is to be known besides the scene, such as "μ = 0.35, tan α = 0.5"; it stands below the title
     notes: tuple[str, ...] = ()  # what is said while it happens; the charts mark when the first one is
     measured: np.ndarray | None = None  # times [s] and places u [m] of a filmed axis, shape (points, 2)
 
     @classmethod
     def usual(cls, trajectory: Trajectory, camera: Camera = "auto") -> Self:
         """Return the look of a motion of which nothing else is known."""
-        title = _DAMPED if trajectory.scene.dissipates else _TITLES[looks.name(trajectory.scene)]
+        damped, title = trajectory.scene.dissipates, _KINDS[looks.name(trajectory.scene)][0]
+        title = "A can that its load or the air brakes" if damped else title
         if trajectory.rolling == "contact":
-            return cls(title, strips=("phi", "normal"), marks=("phi", "paths", "normal", "friction"), camera=camera)
-        if trajectory.scene.dissipates:
-            return cls(title, strips=("phi", "u_dot"), camera=camera)
-        if trajectory.scene.attachment == "sliding":
-            return cls(title, strips=("phi", "ahead"), marks=("phi", "ghost"), camera=camera)
-        return cls(title, camera=camera)
+            return cls(title, ("phi", "normal"), ("phi", "paths", "normal", "friction"), camera)
+        if trajectory.scene.attachment == "sliding" and not damped:
+            return cls(title, ("phi", "ahead"), ("phi", "ghost"), camera)
+        return cls(title, ("phi", "u_dot" if damped else "u"), camera=camera)
 
 
 # The lines above a picture: what is seen, when, how fast, and what the marks mean. Sizes are in units of the sheet.
 
 HEIGHT = 4.1  # height of the first two lines
+HEADER = 5.6  # and with the third, which tells what the marks mean
 STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
-_LEGEND = 1.5  # height of the third line, which tells what the marks mean, if they need it
 _FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
-_GREY, _PLATE = "#52606d", (1.0, 0.95, 0.72)
-_PARTS = {"sliding": ("can", "beer"), "frozen": ("can", "beer"), "pendulum": ("wheel", "bob"), "hoop": ("hoop", "bar")}
-"""What rolls and what is in it, by the names of looks."""
-_RIM, _CENTRE, _GHOST, _SKID = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
-"""Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of the track."""
+_RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
+"""Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
 _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
-    "phi": (),
+    "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
     "paths": (("—", _RIM, "a point on the rim"), ("—", _CENTRE, "centre of mass")),
     "normal": (("→", _NORMAL, "normal force N"),),
     "friction": (("→", _FRICTION, "friction F"),),
-    "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
-    "skid": (("—", _SKID, "where the {} slips"),),
-    "gap": (),
-    "measured": (("•", _SKID, "where the filmed {} was"),),
+    "phi": (),
+    "measured": (("•", _FILMED, "where the filmed {} was"),),
 }
-"""What the marks are: a sign, its colour, and its meaning."""
-
-
-def header_height(look: Look, unit: float) -> int:
-    """Return the height of the lines above a picture [pixels], for a unit of its sheet [pixels]."""
-    return round((HEIGHT + (_LEGEND if any(_LEGENDS[mark] for mark in look.marks) else 0)) * unit)
+"""What the marks are, in the order in which they are drawn: a sign, its colour, and its meaning."""
 
 
 def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed: float) -> None:
     """Draw the lines above a picture as they are at a `time` [s]."""
     duration = float(trajectory.time[-1] - trajectory.time[0])
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
-    words = in_words(trajectory.scene) + (f"; {look.facts}" if look.facts else "")
-    head(sheet, (look.title, words), time, speed, digits)
-    unit = sheet.unit
-    sheet.blank(0, round(HEIGHT * unit), sheet.width, header_height(look, unit))
-    (body, _), column = _PARTS[looks.name(trajectory.scene)], 1.2 * unit
+    sheet.blank(0, round(HEADER * sheet.unit))
+    head(sheet, look.title, in_words(trajectory.scene), time, speed, digits)
+    unit, (_, body, _), column = sheet.unit, _KINDS[looks.name(trajectory.scene)], 1.2 * sheet.unit
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
         *_, column, _ = sheet.text((column, _THIRD * unit), sign, 1.1 * unit, colour, bold=True)
         *_, column, _ = sheet.text((column + 0.5 * unit, _THIRD * unit), meaning.format(body), 1.0 * unit)
         column += 1.8 * unit
 
 
-def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, digits: int = 2) -> None:
+def head(sheet: Sheet, title: str, words: str, time: float, speed: float, digits: int = 2) -> None:
     """Draw a title and a scene in words, the `time` [s] with some digits after the point, and the playback speed."""
     pace, unit = f"slowed down {1 / speed:.3g} times" if speed < 1 else f"sped up {speed:.3g} times", sheet.unit
-    sheet.blank(0, 0, sheet.width, round(HEIGHT * unit))
+    sheet.blank(0, round(HEIGHT * unit))
     right, pace = sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
     for row, size, colour, said, aside in (
-        (_FIRST, 1.45, INK, words[0], f"t = {time:.{digits}f} s"),
-        (_SECOND, 1.1, _GREY, words[1], pace),
+        (_FIRST, 1.45, INK, title, f"t = {time:.{digits}f} s"),
+        (_SECOND, 1.1, "#52606d", words, pace),
     ):
         bold = row == _FIRST
         room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5), speed > 1 and not bold)
@@ -119,16 +104,45 @@ def head(sheet: Sheet, words: tuple[str, str], time: float, speed: float, digits
         sheet.text((1.2 * unit, row * unit), said, max(fits, 0.5) * size * unit, colour, bold=bold)
 
 
-def note(
-    sheet: Sheet, motion: Trajectory, notes: Mapping[str, Sequence[tuple[float, float]]], time: float, top: int
-) -> None:
+NOTES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray]]] = {
+    "flies": (
+        "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
+        lambda scene, motion: motion.lift > 0.02 * scene.can.radius,
+    ),
+    "slips": (  # what a contact that rolls creeps is no slip
+        "it slips: rolling needs more friction than μN",
+        lambda scene, motion: (
+            (motion.u_dot - scene.can.radius * motion.roll_dot) ** 2 > 8e-4 * scene.gravity * scene.can.radius
+        ),
+    ),
+    "heavy": ("the {load} below presses the {body} down", lambda *of: strip.QUANTITIES["normal"][1](*of) > 1.8),
+    "light": ("the {load} pulls up: the {body} hardly presses", lambda *of: strip.QUANTITIES["normal"][1](*of) < 0.4),
+    "hesitates": (
+        "the {load} is uphill: the {body} hesitates",
+        lambda scene, motion: np.gradient(motion.u_dot, motion.time) < scene.acceleration() / 2,
+    ),
+}
+"""What a note says while a motion does something, and when it does, by name; the first that holds is shown."""
+
+
+def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[float, float]]]:
+    """Return from when to when [s] notes hold, by their words."""
+    time, noted = np.append(motion.time, motion.time[-1]), dict[str, list[tuple[float, float]]]()
+    _, body, load = _KINDS[looks.name(motion.scene)]
+    for words, holds in (NOTES[name] for name in names):
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion.scene, motion), [False]])))
+        found = noted.setdefault(words.format(body=body, load=load, lift=1e3 * motion.lift.max()), [])
+        for first, last in time[edges].reshape(-1, 2).tolist():  # a brief pause does not interrupt a note
+            begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / 50 else first
+            found.append((begins, last))
+    return noted
+
+
+def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time: float, top: int) -> None:
     """Write the first of some notes that holds at a `time` [s] into the scene, whose upper edge is at a row `top`."""
-    body, load = _PARTS[looks.name(motion.scene)]
-    said = next((name for name, of in notes.items() if any(first <= time <= last for first, last in of)), None)
-    if said:
-        words = strip.NOTES[said][0].format(body=body, load=load, lift=1e3 * motion.lift.max())
-        place = 1.2 * sheet.unit, top + NOTE / 2 * sheet.unit
-        sheet.plate(place, [(words, True, INK)], (0, 0.5), _PLATE)
+    for words in [words for words, of in notes.items() if any(first <= time <= last for first, last in of)][:1]:
+        place = np.array([1.2 * sheet.unit, top + NOTE / 2 * sheet.unit])
+        sheet.plate(place, [words], INK, (0, 0.5), ground=(1.0, 0.95, 0.72))
 
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
@@ -136,115 +150,105 @@ def note(
 LONGEST = 1.6
 """Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
 _CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
-_RARE = 90.0  # percentage of times at which no force is larger than the longest arrow shows
-_LETTER, _LETTERS = 1.35, 2.0  # least and largest height of a letter, in units of the sheet
 _FAINT = 0.05  # least length of an arrow that is drawn
 
 
-@dataclass(frozen=True, eq=False)
 class Marks:
     """The marks of a trajectory, to be drawn over the pictures at some times."""
 
-    trajectory: Trajectory
-    kinds: Sequence[Mark]
-    plane: float  # coordinate y of the can's near end [m]
-    fine: np.ndarray  # times [s] at which the paths are drawn
-    positions: np.ndarray  # u, phi, roll and lift at these times, shape (times, 4)
-    measured: np.ndarray | None = None  # as a look has them
+    def __init__(
+        self, trajectory: Trajectory, look: Look, plane: float, fine: np.ndarray, positions: np.ndarray
+    ) -> None:
+        """Prepare to draw on the `plane` y of the can's near end [m].
 
-    def draw(self, sheet: Sheet, view: View, top: int, time: float, now: np.ndarray) -> None:
-        """Draw the marks at a `time` [s] with u, phi, roll and lift `now`; `top` is the row of the view's top."""
-        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
-        pen = _Pen(sheet, view, self.trajectory.scene, self.plane, top)
-        marks = (
-            self._skid,
-            self._gap,
-            self._ghost,
-            self._paths,
-            self._normal,
-            self._friction,
-            self._phi,
-            self._measured,
-        )
-        for draw in (each for each in marks if each.__name__[1:] in self.kinds):
-            draw(pen, time, now)
-        sheet.clip(None)
+        `positions` are u, phi, roll and lift at the times `fine` [s] at which paths are drawn, shape (times, 4).
+        """
+        self._motion, self._look, self._plane, self._fine, self._positions = trajectory, look, plane, fine, positions
+        self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
+        if "normal" in look.marks:
+            forces = strip.forces(trajectory.scene, trajectory) / strip.weight(trajectory.scene)
+            largest = max(np.percentile(np.hypot(*forces), 90), _FAINT)  # a larger one is rare
+            self._forces = min(1.0, LONGEST / largest) * forces  # lengths of their arrows
 
-    def _ghost(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        motion = self.trajectory
-        roll = float(strip.even(motion.scene, motion, np.array(time))) / motion.scene.can.radius
+    def draw(self, sheet: Sheet, view: View, time: float, now: np.ndarray) -> None:
+        """Draw the marks at a `time` [s] with u, phi, roll and lift `now`."""
+        self._sheet, self._view, self._time, self._now = sheet, view, time, now
+        self._axis = np.array([now[0], self._radius + now[3]]) / self._radius
+        for mark in (each for each in _LEGENDS if each in self._look.marks):
+            getattr(self, f"_{mark}")()
+
+    def _ghost(self) -> None:
+        roll = float(strip.even(self._motion.scene, self._motion, np.array(self._time))) / self._radius
         centre, turned = np.array([roll, 1.0]), np.array([math.sin(roll), math.cos(roll)])
-        pen.line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
-        pen.line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
+        self._line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
+        self._line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
 
-    def _skid(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        until = np.searchsorted(self.fine, time, side="right")
-        (u, _, roll, lift), radius = self.positions.T, self.trajectory.scene.can.radius
-        slip = np.gradient(u - radius * roll, self.fine)
-        slips = (np.abs(slip) > strip.slow(self.trajectory.scene)) & (lift < 0.02 * radius)
-        foot = np.stack([np.where(slips, u / radius, np.nan), np.full(len(u), -WALL)], axis=1)[:until]
-        pen.line(foot, 0.2, _SKID)
+    def _paths(self) -> None:
+        until = np.searchsorted(self._fine, self._time, side="right")
+        u, phi, roll, lift = np.vstack([self._positions[:until], self._now]).T
+        axis = np.stack([u, self._radius + lift], axis=1) / self._radius
+        centre = axis - min(self._offset / self._radius, 1.0) * np.stack([np.sin(phi), np.cos(phi)], axis=1)
+        self._line(axis + np.stack([np.sin(roll), np.cos(roll)], axis=1), 0.03, _RIM, alpha=0.8)
+        self._line(centre, 0.035, _CENTRE, alpha=0.9)
+        self._disc(centre[-1], 0.07, _CENTRE)
 
-    def _gap(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        place, height = now[0] / self.trajectory.scene.can.radius, now[3] / self.trajectory.scene.can.radius - WALL
-        if height > 0:
-            for level in (-WALL, height):
-                pen.line(np.array([[place, level], [place + 1.1, level]]), 0.02, INK)
-            pen.arrow(np.array([place + 0.9, -WALL]), np.array([place + 0.9, height]), _SKID)
-            pen.text(np.array([place + 1.8, height / 2]), f"{1e3 * now[3]:.0f} mm", INK)
-
-    def _paths(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        until = np.searchsorted(self.fine, time, side="right")
-        u, phi, roll, lift = np.vstack([self.positions[:until], now]).T
-        radius, offset = self.trajectory.scene.can.radius, self.trajectory.scene.load.offset
-        axis = np.stack([u / radius, 1 + lift / radius], axis=1)
-        centre = axis - min(offset / radius, 1.0) * np.stack([np.sin(phi), np.cos(phi)], axis=1)
-        pen.line(axis + np.stack([np.sin(roll), np.cos(roll)], axis=1), 0.03, _RIM, alpha=0.8)
-        pen.line(centre, 0.035, _CENTRE, alpha=0.9)
-        pen.disc(centre[-1], 0.07, _CENTRE)
-
-    def _normal(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        normal, friction = (float(np.interp(time, self.trajectory.time, force)) for force in self._lengths)
-        foot = np.array([now[0] / self.trajectory.scene.can.radius, -WALL])
+    def _normal(self) -> None:
+        foot, normal, way, _ = self._contact()
         if normal > _FAINT:
-            length, way = min(normal, LONGEST), -1.0 if friction > 0 else 1.0
-            pen.arrow(foot - np.array([0, length]), foot, _NORMAL)
-            pen.text(foot - np.array([0.36 * way, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
+            length = min(normal, LONGEST)
+            self._arrow(foot - np.array([0, length]), foot, _NORMAL)
+            self._text(foot - np.array([0.36 * way, max(length, _CLEAR) + 0.1]), "N", _NORMAL)
 
-    def _friction(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        friction = float(np.interp(time, self.trajectory.time, self._lengths[1]))
-        foot = np.array([now[0] / self.trajectory.scene.can.radius, -WALL])
-        if abs(friction) > _FAINT:
-            length, way = min(abs(friction), LONGEST), -1.0 if friction > 0 else 1.0
-            start = foot - np.array([0, 0.12])
-            pen.arrow(start, start + np.array([way * length, 0]), _FRICTION)
-            pen.text(foot + np.array([way * max(length, _CLEAR), -0.54]), "F", _FRICTION)
+    def _friction(self) -> None:
+        foot, _, way, friction = self._contact()
+        if friction > _FAINT:
+            length, start = min(friction, LONGEST), foot - np.array([0, 0.12])
+            self._arrow(start, start + np.array([way * length, 0]), _FRICTION)
+            self._text(foot + np.array([way * max(length, _CLEAR), -0.54]), "F", _FRICTION)
 
-    @cached_property
-    def _lengths(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the lengths of the arrows of N and F, positive away from the incline and up it."""
-        normal, friction = strip.forces(self.trajectory.scene, self.trajectory)
-        weight = strip.weight(self.trajectory.scene)
-        largest = np.percentile(np.hypot(normal, friction), _RARE) / weight
-        length = min(1.0, LONGEST / max(largest, _FAINT)) / weight
-        return length * normal, length * friction
+    def _contact(self) -> tuple[np.ndarray, float, float, float]:
+        """Return the can's foot, the length of N, and the direction of F down the incline, 1 or -1, with its length."""
+        normal, friction = (float(np.interp(self._time, self._motion.time, force)) for force in self._forces)
+        return np.array([self._axis[0], -WALL]), normal, -1.0 if friction > 0 else 1.0, abs(friction)
 
-    def _measured(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
-        assert self.measured is not None
-        seen, radius = self.measured[self.measured[:, 0] <= time], self.trajectory.scene.can.radius
-        for _, u in [*seen[:: max(1, len(self.measured) // 60)], *seen[-1:]]:
-            pen.disc(np.array([u / radius, 1.0]), 0.08, _SKID)
-
-    def _phi(self, pen: "_Pen", time: float, now: np.ndarray) -> None:
+    def _phi(self) -> None:
         """Draw phi outside the rim: from the incline to the beer's surface, or from under the axle to over a bob."""
-        u, phi, _, lift = now
-        radius, filled = self.trajectory.scene.can.radius, self.trajectory.scene.load.fill is not None
-        angle, centre = math.radians(float(strip.wrapped(phi))), np.array([u / radius, 1 + lift / radius])
+        angle, filled = math.radians(float(strip.wrapped(self._now[1]))), self._motion.scene.load.fill is not None
         start = (math.pi if angle >= 0 else 0.0) if filled else -math.pi / 2
         for direction in (start, start - angle):
-            pen.line(centre + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
-        pen.line(centre + 1.26 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
-        pen.text(centre + 1.62 * _towards(start - angle / 2), "φ", INK)
+            self._line(self._axis + np.array([[1.07], [1.42]]) * _towards(direction), 0.045, INK)
+        self._line(self._axis + 1.26 * _towards(start - np.linspace(0, angle, 32)), 0.045, INK)
+        self._text(self._axis + 1.62 * _towards(start - angle / 2), "φ", INK)
+
+    def _measured(self) -> None:
+        assert self._look.measured is not None
+        seen = self._look.measured[self._look.measured[:, 0] <= self._time]
+        for _, u in [*seen[:: max(1, len(self._look.measured) // 60)], *seen[-1:]]:
+            self._disc(np.array([u / self._radius, 1.0]), 0.08, _FILMED)
+
+    # How they are drawn: at places along and over the incline, in radii.
+
+    def _pixel(self, points: np.ndarray) -> np.ndarray:
+        along, height = RADIUS * points[..., 0], RADIUS * points[..., 1]
+        return self._view.pixel(in_space(self._motion.scene, along, height, self._plane))
+
+    @property
+    def _size(self) -> float:
+        """Return the can's radius in the picture [pixels]."""
+        return RADIUS * self._view.scale(np.array([0.0, self._plane, 0.0]))
+
+    def _line(self, points: np.ndarray, width: float, colour: Colour, **style: Any) -> None:
+        self._sheet.line(self._pixel(points), max(1.0, width * self._size), colour, **style)
+
+    def _arrow(self, tail: np.ndarray, tip: np.ndarray, colour: Colour) -> None:
+        self._sheet.arrow(self._pixel(tail), self._pixel(tip), max(2.0, 0.11 * self._size), colour)
+
+    def _disc(self, point: np.ndarray, radius: float, colour: Colour) -> None:
+        self._sheet.disc(self._pixel(point), max(2.0, radius * self._size), colour)
+
+    def _text(self, point: np.ndarray, words: str, colour: Colour) -> None:
+        size = float(np.clip(0.4 * self._size, 1.35 * self._sheet.unit, 2 * self._sheet.unit))
+        self._sheet.text(self._pixel(point), words, size, colour, (0.5, 0.5), halo=True)
 
 
 def _towards(angle: float | np.ndarray) -> np.ndarray:
@@ -252,60 +256,16 @@ def _towards(angle: float | np.ndarray) -> np.ndarray:
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
-@dataclass(frozen=True, eq=False)
-class _Pen:
-    """Draws at places along and over the incline, in radii, on the plane of the can's near end."""
-
-    sheet: Sheet
-    view: View
-    scene: Scene
-    plane: float
-    top: int
-
-    @cached_property
-    def radius(self) -> float:
-        """Return the can's radius in the picture [pixels]."""
-        return RADIUS * self.view.scale(np.array([0.0, self.plane, 0.0]))
-
-    def places(self, points: np.ndarray) -> np.ndarray:
-        """Return column and row on the sheet."""
-        points = in_space(self.scene, RADIUS * points[..., 0], RADIUS * points[..., 1], self.plane)
-        return self.view.pixel(points, self.top)
-
-    def line(self, points: np.ndarray, width: float, colour, alpha: float = 1.0, dashes: Sequence[float] = ()) -> None:
-        self.sheet.line(self.places(points), max(1.0, width * self.radius), colour, alpha=alpha, dashes=dashes)
-
-    def arrow(self, tail: np.ndarray, tip: np.ndarray, colour: tuple[float, float, float]) -> None:
-        self.sheet.arrow(self.places(tail), self.places(tip), max(2.0, 0.11 * self.radius), colour)
-
-    def disc(self, point: np.ndarray, radius: float, colour: tuple[float, float, float]) -> None:
-        self.sheet.disc(self.places(point), max(2.0, radius * self.radius), colour)
-
-    def text(self, point: np.ndarray, words: str, colour: Colour) -> None:
-        size = min(max(_LETTER, 0.4 * self.radius / self.sheet.unit), _LETTERS) * self.sheet.unit
-        self.sheet.text(self.places(point), words, size, colour, (0.5, 0.5), halo=True)
-
-
 # What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
 
-_DARK = (0.12, 0.16, 0.2)  # colour of gravity's arrow
-_SPACING = 7.0  # least distance of two numbers on the board, in units of the sheet
 
-
-@dataclass(frozen=True, eq=False)
 class Board:
     """The near edge of the board's underside, where its numbers and the angle of the incline are."""
 
-    scene: Scene
-    front: float  # its coordinate y [m]
-    under: float  # its height over the surface on which the can rolls, negative [m]
-    start: float = 0.0  # where the distances begin [m]
-
-    @classmethod
-    def of(cls, scene: Scene, model: mujoco.MjModel, start: float = 0.0) -> "Board":
-        """Return the edge of the board of a display model."""
-        board = model.geom("board")
-        return cls(scene, float(board.pos[1] - board.size[1]), float(board.pos[2] - board.size[2]), start)
+    def __init__(self, display: Display, start: float = 0.0) -> None:
+        """Take the board of a display; `start` is where the distances begin [m]."""
+        board, self.scene, self._start = display.model.geom("board"), display.scenes[0], start
+        self.front, self.under = float(board.pos[1] - board.size[1]), float(board.pos[2] - board.size[2])
 
     def pixel(self, view: View, along: np.ndarray | float) -> np.ndarray:
         """Return column and row of points of the edge, `along` the incline as drawn [m], shape (..., 2)."""
@@ -316,52 +276,42 @@ class Board:
         first, second = self.pixel(view, np.array([0.0, 1.0]))[:, 0]
         return float((column - first) / (second - first))
 
+    def draw(self, sheet: Sheet, view: View) -> None:
+        """Draw gravity's arrow, the incline's angle and distances."""
+        unit = sheet.unit
+        tail = np.array([3 * unit if self.scene.incline < 0 else sheet.width - 1.6 * unit, view.top + 1.0 * unit])
+        sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, INK)
+        sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
+        if self.scene.incline:
+            self._draw_angle(sheet, view)
+        self._draw_distances(sheet, view)
 
-def guides(sheet: Sheet, board: Board, view: View, top: int) -> None:
-    """Draw gravity's arrow, the incline's angle and distances into a view whose upper edge is at a row of the sheet."""
-    (width, height), unit = view.pixels, sheet.unit
-    sheet.clip((0, top, width, top + height))
-    tail = np.array([3 * unit if board.scene.incline < 0 else width - 1.6 * unit, top + 1.0 * unit])
-    sheet.arrow(tail, tail + np.array([0, 4.2 * unit]), 0.32 * unit, _DARK)
-    sheet.text(tail + np.array([-0.6, 2]) * unit, "g", 1.5 * unit, anchor=(1, 0.5))
-    taken = [_draw_angle(sheet, board, view, top)] if board.scene.incline else []
-    _draw_distances(sheet, board, view, top, taken)
-    sheet.clip(None)
+    def _draw_angle(self, sheet: Sheet, view: View) -> None:
+        """Draw the angle of the incline under the board, and keep other texts from its lines."""
+        unit, uphill, tilt = sheet.unit, -math.copysign(1.0, self.scene.incline), abs(self.scene.incline)
+        reach, lowest = 9 * unit, view.top + view.pixels[1] - 2.6 * unit
+        corner = self.pixel(view, self.along(view, sheet.width * (0.5 - 0.1 * uphill)))
+        if corner[1] > lowest:  # the board leaves the picture through its lower edge
+            corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
+        sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
+        sheet.line(corner + 0.8 * reach * np.array([uphill, -1]) * _towards(np.linspace(0, tilt, 24)), 0.12 * unit)
+        place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
+        sheet.text(place, f"α = {math.degrees(tilt):.3g}°", 1.4 * unit, anchor=(0.5, 0))
+        left, right = sorted((float(corner[0]), float(corner[0] + uphill * reach)))
+        sheet.boxes.append((left, float(corner[1] - reach * math.sin(tilt)), right, float(corner[1])))
 
-
-def _draw_angle(sheet: Sheet, board: Board, view: View, top: int) -> Box:
-    """Draw the angle of the incline under the board, and return the box of its lines."""
-    (width, height), unit = view.pixels, sheet.unit
-    uphill = -math.copysign(1.0, board.scene.incline)
-    tilt, reach = abs(board.scene.incline), 9 * unit
-    lowest = height - 2.6 * unit
-    corner = board.pixel(view, board.along(view, width * (0.5 - 0.1 * uphill)))
-    if corner[1] > lowest:  # the board leaves the picture through its lower edge
-        corner = corner + (corner[1] - lowest) * np.array([uphill / math.tan(tilt), -1])
-    corner = corner + np.array([0, top])
-    sheet.line(corner + np.array([[0, 0], [uphill * reach, 0]]), 0.12 * unit)
-    sheet.line(corner + 0.8 * reach * np.array([uphill, -1]) * _towards(np.linspace(0, tilt, 24)), 0.12 * unit)
-    place = corner + np.array([uphill * 0.5 * reach, 0.3 * unit])
-    sheet.text(place, f"α = {math.degrees(tilt):.3g}°", 1.4 * unit, anchor=(0.5, 0))
-    left, right = sorted((float(corner[0]), float(corner[0] + uphill * reach)))
-    return left, float(corner[1] - reach * math.sin(tilt)), right, float(corner[1])
-
-
-def _draw_distances(sheet: Sheet, board: Board, view: View, top: int, taken: list[Box]) -> None:
-    """Write distances down the incline below the board [m], with a tick at each, where there is room."""
-    (width, height), unit = view.pixels, sheet.unit
-    ends = [board.along(view, column) / scale(board.scene) - board.start for column in (0, width)]
-    least = (ends[1] - ends[0]) * _SPACING * unit / width
-    power = 10.0 ** math.floor(math.log10(least))
-    step = next(power * factor for factor in (1, 2, 5, 10) if power * factor >= least * (1 - 1e-9))
-    numbers = step * np.arange(math.ceil(min(ends) / step), math.floor(max(ends) / step) + 1)
-    down = np.array([-math.sin(board.scene.incline), math.cos(board.scene.incline)])
-    places = board.pixel(view, (numbers + board.start) * scale(board.scene)) + np.array([0, top])
-    for number, place in zip(numbers, places, strict=True):
-        words = f"{round(float(number) / step) * step:.6g} m".replace("-", "\N{MINUS SIGN}")
-        below = place + np.array([0, 0.8 * unit])
-        box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
-        inside = box[0] > 0 and box[1] > top and box[2] < width and box[3] < top + height
-        if inside and not any(overlap(box, other) for other in sheet.boxes + taken):
-            sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
-            sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))
+    def _draw_distances(self, sheet: Sheet, view: View) -> None:
+        """Write distances down the incline below the board [m], with a tick at each, where there is room."""
+        unit, size, lowest = sheet.unit, scale(self.scene), view.top + view.pixels[1]
+        ends = [self.along(view, column) / size - self._start for column in (0, sheet.width)]
+        most = max(1, int(sheet.width / (6 * unit)))  # two of them are six units apart at least
+        numbers = np.round(MaxNLocator(most, steps=[1, 2, 5, 10]).tick_values(*ends), 12)
+        down = np.array([-math.sin(self.scene.incline), math.cos(self.scene.incline)])
+        for number, place in zip(numbers, self.pixel(view, (numbers + self._start) * size), strict=True):
+            words = f"{number:.6g} m".replace("-", "\N{MINUS SIGN}")
+            below = place + np.array([0, 0.8 * unit])
+            box = sheet.box(below, words, 1.15 * unit, anchor=(0.5, 0))
+            inside = box[0] > 0 and box[1] > view.top and box[2] < sheet.width and box[3] < lowest
+            if inside and not any(overlap(box, other) for other in sheet.boxes):
+                sheet.line(np.array([place, place + 0.5 * unit * down]), 0.12 * unit)
+                sheet.text(below, words, 1.15 * unit, anchor=(0.5, 0))

@@ -1,4 +1,4 @@
-"""The film of several cans let go together on one incline: a race, or two motions to be compared with charts."""
+"""The film of several cans let go together on one incline: a race, or two motions to be compared."""
 
 import math
 from collections.abc import Callable, Generator, Sequence
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.drawing.camera import View, in_space, scale
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, head
-from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
+from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.words import in_degrees
 from mjbeer.theory.can import RADIUS
@@ -20,10 +20,9 @@ from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
 _BEFORE = 0.4  # room for the names on the board before the start, in lengths of the race
-_MARGIN = 0.01  # margin around what must be seen, in widths of the picture
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_FAR = 6.0  # distance of the eye, in lengths of the race
+_AFTER = 0.4  # how long before its end a race says what time the cans will need that have not finished [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +38,9 @@ class Runner:
 
     def finish(self, length: float) -> float:
         """Return when the simulated can has rolled a `length` [m], as a time [s]; infinite if it ends before."""
-        end = self.trajectory.time[-1]
-
-        def ahead(time: float) -> float:
-            return self.positions(np.array([time]))[0, 0] - length
-
-        return float(brentq(ahead, 1e-3, end, xtol=1e-12)) if ahead(end) >= 0 else math.inf
+        motion, way = self.trajectory, self.trajectory.u - self.trajectory.u[0] - length
+        passed = CubicHermiteSpline(motion.time, way, motion.u_dot).roots(extrapolate=False)
+        return float(passed[0]) if len(passed) else math.inf
 
     def positions(self, times: np.ndarray) -> np.ndarray:
         """Return u from the start [m], phi, roll [rad] and lift [m] at some times [s], shape (times, 4).
@@ -59,20 +55,17 @@ class Runner:
 class Race:
     """A film of several cans of one size, let go together on one incline; each has its time by its name at the finish.
 
-    With `centres` it is no race: the cans' centres of mass are marked and joined, from one line on, for as long as all
-    motions last.
+    With `centres` it is no race: the cans' centres of mass are marked and joined, from one line on.
     """
 
     title: str
     runners: Callable[[], Sequence[Runner]]  # a function that computes the motions, and that can be pickled
     length: float  # distance from start to finish, or that is seen from the start on [m]
+    duration: float  # [s]
     speed: float
     told: Callable[[], str]  # a function that says what is seen, in whole sentences, for the text beside the film
     still: float
-    after: float = 0.0  # how long it goes on after the last can that it waits for has finished [s]
-    missing: int = 0  # how many cans it does not wait for; the film then ends with the times that they will need
-    facts: str = ""  # what holds for all cans besides the incline, such as "tan α = 0.5"; it stands below the title
-    caveat: str = ""  # what is not so in reality; it stands at the bottom of the scene
+    facts: str = ""  # what holds for all cans besides the incline, such as "all full"; it stands below the title
     centres: bool = False
 
     @property
@@ -82,64 +75,54 @@ class Race:
 
     def plan(self) -> RenderPlan:
         """Compute the motions, and return what is needed to draw them."""
-        runners = self.runners()
-        if self.centres:
-            end = min(float(runner.trajectory.time[-1]) for runner in runners)
-        else:
-            end = sorted(runner.finish(self.length) for runner in runners)[-1 - self.missing] + self.after
-        return RenderPlan(0.0, end, self.speed, partial(self._pictures, runners, end))
+        return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, self.runners()))
 
-    def _pictures(
-        self, runners: Sequence[Runner], end: float, times: np.ndarray, width: int, height: int
-    ) -> Generator[np.ndarray]:
-        sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
-        top, size = round(HEIGHT * sheet.unit), scale(scenes[0])
-        display = Display.of(scenes, _APART)
-        scenery = Scenery(scenes[0], display.model, (0.0,) if self.centres else (0.0, self.length))
-        display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
-        ends = [np.array([u, 0.0, 0.0, 0.0]) for u in (-_BEFORE * self.length, self.length)]
-        outlines = [display.outline(lane, end).reshape(-1, 3) for lane in range(len(scenes)) for end in ends]
-        points = np.concatenate(outlines)
-        eye = points.mean(axis=0) + _FAR * self.length * _EYE
-        view = View.towards(eye, points, (sheet.width, sheet.height - top), _MARGIN)
-        facts = [f"{self.length:g} m"] * (not self.centres) + [f"incline {in_degrees(scenes[0].incline)}"]
-        words = self.title, ", ".join(facts + [self.facts] * bool(self.facts))
-        results = [(math.inf, "")] * len(runners) if self.centres else self._results(runners)
-        starts = [runner.trajectory.u[0] * self.centres for runner in runners]  # in a race all start at one line
-        with closing(Painter(display, scenery, *view.pixels, still=True)) as painter:
-            for time in times:
-                sheet.boxes.clear()
-                now = np.concatenate([runner.positions(np.array([time])) for runner in runners])
-                now[:, 0] += starts
-                painter.paint(sheet, view, now, top)
-                head(sheet, words, time, self.speed)
-                shown = zip(runners, results, display.lanes, now[:, 0] * size, strict=True)
-                for runner, (finish, result), lane, u in shown:
-                    said = [(runner.note, False, INK)] * bool(runner.note)
-                    if time >= finish:
-                        said = [(result, True, INK)]
-                    elif end < finish < math.inf and time >= end - self.after:
-                        said = [(f"needs {finish:.2f} s", True, INK)]
-                    # It travels with the can, and stays at the finish.
-                    along = min(u, self.length) - 1.5 * RADIUS
-                    column, row = view.pixel(in_space(scenes[0], along, 0.0, lane), top)
-                    sheet.plate((column, row), [(runner.name, True, runner.colour), *said], (1, 0.5))
-                if self.centres:
-                    _join(sheet, view.pixel(np.array([display.centre(*of) for of in enumerate(now)]), top))
-                sheet.text((1.2 * sheet.unit, height - 1.5 * sheet.unit), self.caveat, 1.1 * sheet.unit, halo=True)
-                yield sheet.picture()
-
-    def _results(self, runners: Sequence[Runner]) -> list[tuple[float, str]]:
-        """Return when each can finishes [s], and what its plate then says."""
-        finishes = [runner.finish(self.length) for runner in runners]
+    def results(self, runners: Sequence[Runner]) -> list[tuple[float, str]]:
+        """Return from when on a can's plate has its time at the finish [s], and what it says."""
+        finishes, end = [runner.finish(self.length) for runner in runners], self.duration
         places = [sorted(finishes).index(finish) for finish in finishes]
         ordinals = "1st", "2nd", "3rd", *(f"{place + 1}th" for place in range(3, len(runners)))
-        return [(finish, f"{ordinals[at]}: {finish:.2f} s") for finish, at in zip(finishes, places, strict=True)]
+        results = [(finish, f"{ordinals[at]}: {finish:.2f} s") for finish, at in zip(finishes, places, strict=True)]
+        return [of if of[0] < end else (end - _AFTER, f"needs {of[0]:.2f} s") for of in results]
+
+    def _pictures(self, runners: Sequence[Runner], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
+        sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
+        top, size, facts = round(HEIGHT * sheet.unit), scale(scenes[0]), [f"incline {in_degrees(scenes[0].incline)}"]
+        display = Display.of(scenes, _APART)
+        display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
+        ends = np.outer([-_BEFORE * self.length, self.length], [1, 0, 0, 0])
+        points = np.reshape([display.outline(lane, end) for lane in range(len(scenes)) for end in ends], (-1, 3))
+        eye = points.mean(axis=0) + 6 * self.length * _EYE
+        view = View.towards(eye, points, (width, height - top), top, margin=0.01)
+        positions = np.stack([runner.positions(times) for runner in runners], axis=1)
+        if self.centres:  # they begin at one line, and in a race the axes do
+            positions[..., 0] += [runner.trajectory.u[0] for runner in runners]
+            lines, results = [0.0], [(math.inf, "")] * len(runners)
+        else:
+            lines, results, facts = [0.0, self.length], self.results(runners), [f"{self.length:g} m", *facts]
+        words = ", ".join([*facts, self.facts]).removesuffix(", ")
+        with closing(Painter(display, view.pixels, lines=lines)) as painter:
+            for time, now in zip(times, positions, strict=True):
+                painter.paint(sheet, view, now)
+                head(sheet, self.title, words, time, self.speed)
+                for runner, (finish, result), lane, (u, *_) in zip(runners, results, display.lanes, now, strict=True):
+                    said = result if time >= finish else runner.note
+                    # It travels with the can, and stays at the finish.
+                    place = view.pixel(in_space(scenes[0], min(u * size, self.length) - 1.5 * RADIUS, 0.0, lane))
+                    sheet.plate(place, [runner.name, *[said] * bool(said)], runner.colour, (1, 0.5))
+                if self.centres:
+                    _join(sheet, view, display, now)
+                yield sheet.picture()
 
 
-def _join(sheet: Sheet, places: np.ndarray) -> None:
-    """Mark centres of mass, of which the first is the nearest, and join them."""
-    sheet.line(places, 0.2 * sheet.unit, INK, dashes=(3, 3))
+def _join(sheet: Sheet, view: View, display: Display, positions: np.ndarray) -> None:
+    """Mark the cans' centres of mass at their near ends, of which the first is the nearest, and join them."""
+    places = []
+    for lane, (scene, (u, phi, _, lift)) in enumerate(zip(display.scenes, positions, strict=True)):
+        along, height = u - scene.load.offset * math.sin(phi), lift - scene.load.offset * math.cos(phi)
+        size, (near, _) = scale(scene), display.ends(lane)
+        places.append(view.pixel(in_space(scene, along * size, RADIUS + height * size, near)))
+    sheet.line(np.array(places), 0.2 * sheet.unit, INK, dashes=(3, 3))
     for place in places:
         sheet.disc(place, 0.5 * sheet.unit, (0.1, 0.1, 0.1))
     sheet.text(places[0] + sheet.unit * np.array([1.0, 1.2]), "centre of mass", 1.1 * sheet.unit, halo=True)

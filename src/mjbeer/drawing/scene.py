@@ -7,15 +7,15 @@ too small or too large for the graphics, which compute in single precision.
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import TypeAlias
 
 import mujoco
 import numpy as np
 from PIL import Image
+from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.drawing import opengl
 from mjbeer.drawing.camera import View, circle, in_space, on_incline, scale
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.sheet import Colour, Sheet
 from mjbeer.exceptions import RenderingError
 from mjbeer.model import looks
 from mjbeer.model.build import compile_spec, rolling_spec
@@ -25,13 +25,8 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-Colour: TypeAlias = tuple[float, float, float]
-_PALER = 0.35  # how much nearer to white the surface of a painted load is
-_EDGES = 64  # edges around a load: a circle, to the eye. A finer one takes longer to draw
 _VISUAL, _UNSEEN = 2, 5
 """MuJoCo's groups of geoms: of what templates show, and of what OpenGL does not draw; each can is in one of its own."""
-_RIM = 1.12  # radius of what is drawn of a can, in radii, with room for what sticks out of it
-_NEAR_PLANE, _FAR_PLANE = 0.2, 20.0  # nearest and farthest that is drawn, in distances of what is looked at
 _STRIPE = math.pi / 2 * RADIUS
 """Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
 _SQUARE, _LINE = 0.1, 0.1 / 64
@@ -53,14 +48,7 @@ def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     if len(samples) == 1:
         return np.repeat(samples, len(times), axis=0)
     rates = np.stack([trajectory.u_dot, trajectory.phi_dot, trajectory.roll_dot, trajectory.lift_dot], axis=1)
-    time, last = trajectory.time, len(samples) - 2
-    place = np.clip(np.searchsorted(time, times, "right") - 1, 0, last)  # by hand: scipy.interpolate is slow to import
-    step = np.diff(time)[place, np.newaxis]
-    after = (times - time[place])[:, np.newaxis] / step
-    before = 1 - after
-    begin = (1 + 2 * after) * samples[place] + after * step * rates[place]
-    end = (1 + 2 * before) * samples[place + 1] - before * step * rates[place + 1]
-    return before**2 * begin + after**2 * end
+    return CubicHermiteSpline(trajectory.time, samples, rates)(times)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -71,35 +59,38 @@ class Display:
     data: mujoco.MjData
     scenes: Sequence[Scene]
     lanes: Sequence[float]  # where each can is across the board [m], away from the reader
-    changing: Sequence[int] = ()  # meshes that are other ones after each pose
 
     @classmethod
     def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
-        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first.
-
-        Raises:
-          TemplateError: if a template is missing, lacks a part, or has a part that is not allowed.
-          UnsupportedError: if MuJoCo cannot compile the geoms of a template.
-        """
+        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first."""
         lanes = [lane * apart for lane in range(len(scenes))]
         specs = [rolling_spec(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
         for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):
             if scene.load.fill is not None:
-                looks.shape_beer(spec, _resize(scene), _EDGES)
+                looks.shape_beer(spec, _resize(scene), edges=64)  # a circle, to the eye
             for pair in spec.pairs:
                 spec.delete(pair)
             for geom in spec.geoms:
                 of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
                 geom.group = number % _UNSEEN if of_can else _UNSEEN
-        model = side_by_side(specs, lanes)
+        first, *others = specs
+        for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+            spec.option.tolerance = first.option.tolerance  # nothing is stepped here
+            parent = first.body("incline") or first.worldbody
+            parent.add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
+        board, wall = first.geom("board"), first.geom("wall")
+        board.pos += [0, lanes[-1] / 2, 0]
+        board.size += [0, lanes[-1] / 2, 0]
+        wall.pos += [0, lanes[-1], 0]
+        model = compile_spec(first)
         return cls(model, mujoco.MjData(model), scenes, lanes)
 
-    def paint(self, labels: Sequence[Colour], loads: Sequence[Colour | None]) -> None:
+    def paint(self, labels: Sequence[Sequence[float]], loads: Sequence[Sequence[float] | None]) -> None:
         """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
         for number, (label, load) in enumerate(zip(labels, loads, strict=True)):
-            self.model.mat(prefix(number) + "label").rgba[:3] = label
-            for name, share in (("load", 0.0), ("foam", _PALER)):
-                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, prefix(number) + name)
+            self.model.mat(_prefix(number) + "label").rgba[:3] = label
+            for name, share in (("load", 0.0), ("foam", 0.35)):
+                geom = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_GEOM, _prefix(number) + name)
                 if load is not None and geom >= 0:
                     self.model.mat_rgba[self.model.geom_matid[geom], :3] = np.array(load) * (1 - share) + share
 
@@ -109,50 +100,28 @@ class Display:
         for number, (scene, (u, phi, roll, lift)) in enumerate(zip(self.scenes, positions, strict=True)):
             values = {"slide": u * scale(scene), "lift": lift * scale(scene), "roll": roll, "swing": phi - roll}
             for name, value in values.items():
-                if (joint := prefix(number) + name) in joints:
+                if (joint := _prefix(number) + name) in joints:
                     self.data.joint(joint).qpos[:] = value
         mujoco.mj_kinematics(self.model, self.data)
         mujoco.mj_camlight(self.model, self.data)
 
-    def front(self, number: int = 0) -> float:
-        """Return the coordinate y of a can's near end [m]."""
-        return self.lanes[number] - self._length(number) / 2
-
-    def _length(self, number: int) -> float:
-        return self.scenes[number].can.length * scale(self.scenes[number])
+    def ends(self, number: int = 0) -> tuple[float, float]:
+        """Return the coordinates y of a can's near and far end [m]."""
+        half = self.scenes[number].can.length * scale(self.scenes[number]) / 2
+        return self.lanes[number] - half, self.lanes[number] + half
 
     def outline(self, number: int, position: np.ndarray) -> np.ndarray:
         """Return points around both ends of a can [m], shape (2, points, 3), for its u, phi, roll and lift."""
-        scene, near = self.scenes[number], self.front(number)
-        centre = on_incline(scene, position[0] * scale(scene), RADIUS + position[3] * scale(scene))
-        ring = centre + circle(_RIM * RADIUS)
-        return np.stack([np.insert(ring, 1, y, axis=1) for y in (near, near + self._length(number))])
-
-    def centre(self, number: int, position: np.ndarray) -> np.ndarray:
-        """Return where the near end of a can has the centre of mass of its load [m], for its u, phi, roll and lift."""
-        scene, (u, phi, _, lift) = self.scenes[number], position
-        along, height = u - scene.load.offset * math.sin(phi), lift - scene.load.offset * math.cos(phi)
-        size = scale(scene)
-        return in_space(scene, along * size, RADIUS + height * size, self.front(number))
+        u, lift = position[[0, 3]] * scale(self.scenes[number])
+        ring = on_incline(self.scenes[number], u, RADIUS + lift) + circle(
+            1.12 * RADIUS
+        )  # with room for what sticks out
+        return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
 
-def prefix(number: int) -> str:
+def _prefix(number: int) -> str:
     """Return with what the names begin that belong to a lane."""
     return f"{number}-" if number else ""
-
-
-def side_by_side(specs: Sequence[mujoco.MjSpec], lanes: Sequence[float]) -> mujoco.MjModel:
-    """Return a model with the board of the first of some specifications, and the cans of all of them in lanes."""
-    first, *others = specs
-    parent = first.body("incline") or first.worldbody
-    for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
-        spec.option.tolerance = first.option.tolerance  # nothing is stepped here
-        parent.add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), prefix(number), "")
-    board, wall = first.geom("board"), first.geom("wall")
-    board.pos += [0, lanes[-1] / 2, 0]
-    board.size += [0, lanes[-1] / 2, 0]
-    wall.pos += [0, lanes[-1], 0]
-    return compile_spec(first)
 
 
 def _resize(scene: Scene) -> Scene:
@@ -165,75 +134,63 @@ def _resize(scene: Scene) -> Scene:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Scenery:
-    """The wall and the board of a model, in its colours and light.
+    """The wall and the board of a display, in its light: flat, as a sheet draws them ten times as fast as OpenGL."""
 
-    They are flat: a sheet draws them in a tenth of the time that OpenGL takes.
-    """
-
-    scene: Scene
-    model: mujoco.MjModel
+    display: Display
     lines: Sequence[float] = ()
     """Distances down the incline at which a line crosses the board [m]. All lengths are as drawn."""
 
-    def draw(self, sheet: Sheet, view: View, top: int) -> None:
-        """Draw what a view shows onto a sheet, below a row of it."""
-        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
-        self._wall(sheet, view, top)
-        self._board(sheet, view, top)
-        sheet.clip(None)
+    def draw(self, sheet: Sheet, view: View) -> None:
+        """Draw what a view shows onto a sheet. The rows above and below it are not kept."""
+        self._wall(sheet, view)
+        self._board(sheet, view)
 
-    def _wall(self, sheet: Sheet, view: View, top: int) -> None:
-        y = float(self.model.geom("wall").pos[1])
+    def _wall(self, sheet: Sheet, view: View) -> None:
+        y = float(self.display.model.geom("wall").pos[1])
         corners = view.corners(y)
         low, high = corners.min(axis=0), corners.max(axis=0)
-        ranges = np.floor(np.stack([low, high], axis=1) / _SQUARE + 0.5)
-        x, z = (_SQUARE * (np.arange(*each) + 0.5) for each in ranges)
-        plumb = np.stack([np.stack([x, np.full_like(x, end)], axis=-1) for end in (low[1], high[1])], axis=1)
-        level = np.stack([np.stack([np.full_like(z, end), z], axis=-1) for end in (low[0], high[0])], axis=1)
-        lines = np.insert(np.concatenate([plumb, level]), 1, y, axis=-1)
-        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1), top), self._lit(_WALL, _NEAR, view))
+        x, z = (_SQUARE * (np.arange(*np.floor(ends / _SQUARE + 0.5)) + 0.5) for ends in np.transpose([low, high]))
+        lines = [[(at, low[1]), (at, high[1])] for at in x] + [[(low[0], at), (high[0], at)] for at in z]
+        places = view.pixel(np.insert(np.reshape(lines, (-1, 2, 2)), 1, y, axis=-1))
+        sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)), self.lit(_WALL, _NEAR, view))
         width = _LINE * view.scale(np.insert(low, 1, y))
-        sheet.line(_separated(view.pixel(lines, top)), width, self._lit(_GRID, _NEAR, view))
+        sheet.line(_separated(places), width, self.lit(_GRID, _NEAR, view))
 
-    def _board(self, sheet: Sheet, view: View, top: int) -> None:
-        board = self.model.geom("board")
+    def _board(self, sheet: Sheet, view: View) -> None:
+        board, scene = self.display.model.geom("board"), self.display.scenes[0]
         (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
-        seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(self.scene, 1.0, 0.0)
+        seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(scene, 1.0, 0.0)
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
         dark = stripes[np.round(stripes / _STRIPE) % 2 == 1]
-        up = in_space(self.scene, 0.0, 1.0, 0.0)
-        faces = ((up, (front, over), (back, over)), (-up, (front, under), (back, under)))
-        for normal, one, other in (*faces, (_NEAR, (front, under), (front, over))):
+        up = in_space(scene, 0.0, 1.0, 0.0)
+        for normal, edge in ((up, (back, over)), (_NEAR, (front, under))):  # every eye is over the board
 
-            def bands(begin: np.ndarray, length: float, edges=(one, one, other, other)) -> np.ndarray:
+            def bands(begin: np.ndarray, length: float, edges=((front, over),) * 2 + (edge,) * 2) -> np.ndarray:
                 """Return the places of the parts of this face that begin somewhere down the incline."""
                 ends = zip((begin, begin + length, begin + length, begin), edges, strict=True)
-                points = [in_space(self.scene, along, z, y) for along, (y, z) in ends]
-                return _separated(view.pixel(np.stack(points, axis=1), top))
+                points = [in_space(scene, along, z, y) for along, (y, z) in ends]
+                return _separated(view.pixel(np.stack(points, axis=1)))
 
-            if (view.eye - in_space(self.scene, 0.0, one[1], one[0])) @ normal <= 0:
-                continue
-            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self._lit(_PALE, normal, view))
-            sheet.area(bands(dark, _STRIPE), self._lit(_DARK, normal, view))
+            sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self.lit(_PALE, normal, view))
+            sheet.area(bands(dark, _STRIPE), self.lit(_DARK, normal, view))
             if len(self.lines) and normal is up:
-                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self._lit(_PAINT, normal, view))
+                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self.lit(_PAINT, normal, view))
 
-    def shade(self, sheet: Sheet, view: View, outline: np.ndarray, top: int) -> None:
+    def shade(self, sheet: Sheet, view: View, outline: np.ndarray) -> None:
         """Draw the shadow on the board of a can whose ends have an outline, as `Display.outline` gives it."""
-        along, up = in_space(self.scene, np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
-        light, board = self.model.light_dir[0], self.model.geom("board")
+        along, up = in_space(self.display.scenes[0], np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
+        light, board = self.display.model.light_dir[0], self.display.model.geom("board")
         fallen = outline - np.multiply.outer((outline @ up - board.pos[2] - board.size[2]) / (light @ up), light)
         near, far = ([ring[(ring @ along).argmin()], ring[(ring @ along).argmax()]] for ring in fallen)
         corners = np.array([*near, *far[::-1]])
         middle = corners.mean(axis=0)
-        sheet.clip((0, top, view.pixels[0], top + view.pixels[1]))
         for share in (0.8, 0.95):  # its edge is soft
-            sheet.area(view.pixel(middle + share * (corners - middle), top), (0.25, 0.15, 0.05), alpha=0.16)
-        sheet.clip(None)
+            sheet.area(view.pixel(middle + share * (corners - middle)), (0.25, 0.15, 0.05), alpha=0.16)
 
-    def _lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> tuple[float, float, float]:
+    def lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> Colour:
         """Return the colour of a face that is turned to a `normal`, lit by the sun and from the eye."""
-        head, sun = self.model.vis.headlight, self.model.light_diffuse[0] * max(0.0, -normal @ self.model.light_dir[0])
+        model = self.display.model
+        head, sun = model.vis.headlight, model.light_diffuse[0] * max(0.0, -normal @ model.light_dir[0])
         light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
         red, green, blue = np.minimum(colour * light, 1.0).tolist()
         return red, green, blue
@@ -250,18 +207,19 @@ class Painter:
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
-    def __init__(self, display: Display, scenery: Scenery, width: int, height: int, still: bool) -> None:
-        """Prepare to draw pictures of up to `width` by `height` pixels; `still` says that all views are the same.
+    def __init__(
+        self, display: Display, pixels: tuple[int, int], still: bool = True, lines: Sequence[float] = ()
+    ) -> None:
+        """Prepare to draw pictures of up to so many `pixels`, with `lines` across the board as in `Scenery`.
 
-        Raises:
-          RenderingError: if OpenGL cannot draw without a window; the message names what to install.
+        `still` says that all views are the same.
         """
-        self._display, self._scenery, self._still, model = display, scenery, still, display.model
+        self._display, self._scenery, self._still, model = display, Scenery(display, lines), still, display.model
         self._empty: np.ndarray | None = None
         self._scene = mujoco.MjvScene(model, model.ngeom)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
         self._option, self._anywhere = mujoco.MjvOption(), mujoco.MjvCamera()
-        model.vis.global_.offwidth, model.vis.global_.offheight = 2 * width, 2 * height
+        model.vis.global_.offwidth, model.vis.global_.offheight = 2 * pixels[0], 2 * pixels[1]
         model.vis.quality.offsamples = 0  # twice as many pixels, each way, take less time and show more
         model.vis.quality.shadowsize = 0  # no light casts one
         self._gl = opengl.context()
@@ -269,50 +227,53 @@ class Painter:
             self._gl.make_current()
             self._context = mujoco.MjrContext(model, mujoco.mjtFontScale.mjFONTSCALE_100.value)
         except (mujoco.FatalError, RuntimeError) as error:
-            raise RenderingError(f"no off-screen picture of {width} x {height} pixels: {error}") from error
+            raise RenderingError(f"no off-screen picture of {pixels[0]} x {pixels[1]} pixels: {error}") from error
 
-    def paint(self, sheet: Sheet, view: View, positions: np.ndarray, top: int) -> None:
-        """Draw a view onto a sheet, below a row of it, with u, phi, roll and lift of each can in the rows."""
+    def paint(self, sheet: Sheet, view: View, positions: np.ndarray) -> None:
+        """Draw a view onto a sheet, with u, phi, roll and lift of each can in the rows of `positions`."""
         if self._empty is None:
-            self._scenery.draw(sheet, view, top)
-            self._empty = sheet.part(top, top + view.pixels[1]) if self._still else None
+            self._scenery.draw(sheet, view)
+            self._empty = sheet.part(view.top, view.top + view.pixels[1]) if self._still else None
         else:
-            sheet.put(self._empty, 0, top)
+            sheet.put(self._empty, view.top)
         self._display.pose(positions)
-        self._gl.make_current()
-        for mesh in self._display.changing:
-            mujoco.mjr_uploadMesh(self._display.model, self._context, mesh)
-        for number, position in enumerate(positions):
-            self._scenery.shade(sheet, view, self._display.outline(number, position), top)
-        for number, position in reversed(list(enumerate(positions))):  # the nearest at last
-            left, upper, right, lower = view.box(self._display.outline(number, position), margin=3)
+        outlines = [self._display.outline(*of) for of in enumerate(positions)]
+        for outline in outlines:
+            self._scenery.shade(sheet, view, outline)
+        for number, outline in reversed(list(enumerate(outlines))):  # the nearest at last
+            left, upper, right, lower = view.box(outline, margin=3)
             if right > left and lower > upper:
-                sheet.composite(self._draw(view.crop(left, upper, right, lower), number), left, top + upper)
+                sheet.composite(self._draw(view.crop(left, upper, right, lower), number), left, view.top + upper)
 
     def _draw(self, view: View, number: int) -> np.ndarray:
         """Return a can in a view, shape (height, width, 4), uint8: its colour where it is, and how much it covers."""
+        from OpenGL import GL
+
         self._option.geomgroup[:] = 0
         self._option.geomgroup[number % _UNSEEN] = 1
         scene, everything = self._scene, mujoco.mjtCatBit.mjCAT_ALL.value
         model, data = self._display.model, self._display.data
         mujoco.mjv_updateScene(model, data, self._option, None, self._anywhere, everything, scene)
-        near = _NEAR_PLANE * view.distance
+        near, far = 0.2 * view.distance, 20 * view.distance  # nothing is drawn before and behind
         for eye in scene.camera:  # two of them, for stereo; MuJoCo draws their mean
             eye.pos, eye.up, eye.forward = view.eye, view.axes[1], -view.axes[2]
-            eye.frustum_near, eye.frustum_far = near, _FAR_PLANE * view.distance
+            eye.frustum_near, eye.frustum_far = near, far
             eye.frustum_center = near * (view.low[0] + view.high[0]) / 2
             eye.frustum_width = near * (view.high[0] - view.low[0]) / 2
             eye.frustum_bottom, eye.frustum_top = near * view.low[1], near * view.high[1]
         for light in scene.lights[: scene.nlight]:
             if light.headlight:
                 light.pos, light.dir = view.eye, -view.axes[2]
-        width, height = view.pixels
+        width, height = 2 * view.pixels[0], 2 * view.pixels[1]
         self._gl.make_current()
         mujoco.mjr_setBuffer(mujoco.mjtFramebuffer.mjFB_OFFSCREEN.value, self._context)
-        mujoco.mjr_render(mujoco.MjrRect(0, 0, 2 * width, 2 * height), scene, self._context)
-        fine = opengl.read(self._context, 2 * width, 2 * height)
+        mujoco.mjr_render(mujoco.MjrRect(0, 0, width, height), scene, self._context)
+        # Not mjr_readPixels: the fourth channel is 255, and 0 where nothing is drawn. The first row is the lowest.
+        fine = np.empty((height, width, 4), np.uint8)
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, self._context.offFBO)
+        GL.glReadPixels(0, 0, width, height, GL.GL_RGBA, GL.GL_UNSIGNED_BYTE, fine)
         # As red, green, blue and padding, for Pillow divides colours by what it takes for their opacity.
-        return np.asarray(Image.frombuffer("RGBX", fine.shape[1::-1], fine, "raw", "RGBX", 0, -1).reduce(2))
+        return np.asarray(Image.frombuffer("RGBX", (width, height), fine, "raw", "RGBX", 0, -1).reduce(2))
 
     def close(self) -> None:
         """Free the graphics memory."""

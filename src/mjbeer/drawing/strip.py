@@ -15,7 +15,6 @@ from matplotlib.figure import Figure
 
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import MjbeerError
-from mjbeer.theory.equations import Coordinates
 from mjbeer.theory.exact import exact_motion
 from mjbeer.theory.scene import GRAVITY, Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -31,6 +30,7 @@ _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
     "legend.frameon": False,
 }
+_LETTERS = 1.15  # height of letters, in units
 _INTERVALS = 50  # number of intervals of a motion over which forces are averaged
 _SMOOTH = 1500  # times at which theory's lines are computed
 
@@ -75,8 +75,6 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
             title = f"N [weights], mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
         if (peak := lines[0].values.max()) > limits.get("high", math.inf):
             title += f", up to {peak:.0f}"
-        if not trajectory.scene.incline:
-            title = title.replace("down the incline", "along the ground")
         drawn.append(Chart(title, lines, **limits))
     return drawn
 
@@ -86,7 +84,7 @@ def wrapped(angle: np.ndarray | float) -> np.ndarray:
     return (np.degrees(angle) + 180) % 360 - 180
 
 
-def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
+def even(scene: Scene, motion: Trajectory, time: np.ndarray) -> np.ndarray:
     """Return where a can would be at some times [s] that accelerates evenly [m].
 
     It starts with the same momentum as the can of the motion, and with its load at rest in it where that has an
@@ -104,12 +102,12 @@ def even(scene: Scene, motion: Coordinates, time: np.ndarray) -> np.ndarray:
     return u + u_dot * since + scene.acceleration() * since**2 / 2
 
 
-def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
+def forces(scene: Scene, motion: Trajectory) -> np.ndarray:
     """Return the normal and the friction force [N] that act in a motion, also while the can slips or is in the air.
 
     They follow from the change of the momentum of can and load. Each is the mean force over a fiftieth of the motion: a
     can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre, and each
-    landing is a blow. The friction is positive up the incline.
+    landing is a blow. The friction is positive up the incline. The shape is (2, samples).
     """
     load, heavy = scene.load.moment, scene.mass * scene.gravity
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
@@ -123,7 +121,7 @@ def forces(scene: Scene, motion: Coordinates) -> tuple[np.ndarray, np.ndarray]:
         return values / (last - first)
 
     normal = heavy * math.cos(scene.incline) + change(across)
-    return normal, heavy * math.sin(scene.incline) - change(along)
+    return np.array([normal, heavy * math.sin(scene.incline) - change(along)])
 
 
 def weight(scene: Scene) -> float:
@@ -131,15 +129,10 @@ def weight(scene: Scene) -> float:
     return scene.mass * (scene.gravity or GRAVITY)
 
 
-def _slip(scene: Scene, motion: Coordinates) -> np.ndarray:
-    return 1e3 * (motion.u - motion.u[0] - scene.can.radius * (motion.roll - motion.roll[0]))
-
-
-Quantity = tuple[str, Callable[[Scene, Coordinates], np.ndarray], dict[str, Any]]
-QUANTITIES: dict[str, Quantity] = {
+QUANTITIES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray], dict[str, float]]] = {
     "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("distance down the incline [m]", lambda _, motion: motion.u - motion.u[0], {}),
-    "u_dot": ("speed down the incline [m/s]", lambda _, motion: motion.u_dot, {}),
+    "u": ("distance [m]", lambda _, motion: motion.u - motion.u[0], {}),
+    "u_dot": ("speed [m/s]", lambda _, motion: motion.u_dot, {}),
     "ahead": (
         "ahead of even acceleration [mm]",
         lambda scene, motion: 1e3 * (motion.u - even(scene, motion, motion.time)),
@@ -147,49 +140,9 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "normal": ("normal force, N [weights]", lambda *of: forces(*of)[0] / weight(of[0]), {"low": -1.0, "high": 4.0}),
     "lift": ("height of flight [mm]", lambda _, motion: 1e3 * motion.lift, {}),
-    "slip": ("slid instead of rolled [mm]", _slip, {}),
+    "slip": ("slid instead of rolled [mm]", lambda _, motion: 1e3 * (motion.slip - motion.slip[0]), {}),
 }
 """What a chart can show, by name: its title, its values, shape (samples,), and the chart's limits."""
-
-NOTES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray]]] = {
-    "flies": (
-        "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
-        lambda scene, motion: motion.lift > 0.02 * scene.can.radius,
-    ),
-    "slips": (
-        "it slips: rolling needs more friction than μN",
-        lambda scene, motion: np.abs(motion.u_dot - scene.can.radius * motion.roll_dot) > slow(scene),
-    ),
-    "heavy": (
-        "the {load} below presses the {body} down",
-        lambda scene, motion: forces(scene, motion)[0] > 1.8 * weight(scene),
-    ),
-    "light": (
-        "the {load} pulls up: the {body} hardly presses",
-        lambda scene, motion: forces(scene, motion)[0] < 0.4 * weight(scene),
-    ),
-    "hesitates": (
-        "the {load} is uphill: the {body} hesitates",
-        lambda scene, motion: np.gradient(motion.u_dot, motion.time) < scene.acceleration() / 2,
-    ),
-}
-"""What a note says while a motion does something, and when it does, by name; the first that holds is shown."""
-_BRIEF = 50  # a pause shorter than the motion over this does not interrupt a note
-
-
-def slow(scene: Scene) -> float:
-    """Return the speed [m/s] up to which a foot does not slip: the contact of a can that rolls creeps."""
-    return 0.02 * math.sqrt(2 * (scene.gravity or GRAVITY) * scene.can.radius)
-
-
-def spans(motion: Trajectory, name: str) -> list[tuple[float, float]]:
-    """Return from when to when [s] a note holds."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], NOTES[name][1](motion.scene, motion), [False]])))
-    time, found = np.append(motion.time, motion.time[-1]), list[tuple[float, float]]()
-    for first, last in time[edges].reshape(-1, 2).tolist():
-        begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / _BRIEF else first
-        found.append((begins, last))
-    return found
 
 
 class Strip:
@@ -198,28 +151,22 @@ class Strip:
     def __init__(
         self, charts: Sequence[Chart], width: int, height: int, marked: Sequence[tuple[float, float]] = ()
     ) -> None:
-        """Prepare to draw charts, in which some spans of time are `marked`; a single chart has larger letters."""
+        """Prepare to draw charts, in which some spans of time are `marked`."""
         self._charts, self._height, self._unit, self._marked = charts, height, height / 10, marked
-        unit, single = self._unit, len(charts) == 1  # whose key is beside the title, and not below
-        self._letters = letters = (1.5 if single else 1.1) * unit
-        with rc_context(_STYLE | {"font.size": self._letters, "axes.linewidth": 0.06 * unit}):
+        letters = _LETTERS * self._unit
+        with rc_context(_STYLE | {"font.size": letters, "axes.linewidth": 0.06 * self._unit}):
             figure = Figure(figsize=(width / 72, height / 72), dpi=72)
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
             sides = {"left": 4.5 * letters / width, "right": 1 - 2 * letters / width}
             between = 6 * letters / (width / len(charts) - 6 * letters)
-            low = (0.6 * unit + (1.2 if single else 2.4) * letters) / height
-            figure.subplots_adjust(**sides, top=1 - 1.8 * letters / height, bottom=low, wspace=between)
+            figure.subplots_adjust(**sides, top=1 - 1.8 * letters / height, bottom=3 * letters / height, wspace=between)
             drawn = [line for pair in zip(panels, charts, strict=True) for line in self._draw(*pair)]
-            if len({line.name for line in charts[0].lines}) > 1:
-                handles, names = panels[0].get_legend_handles_labels()
-                named = dict(zip(names, handles, strict=True))
-                room: dict[str, Any] = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.2, "columnspacing": 1.0}
-                corner: Any = {"loc": "lower right", "bbox_to_anchor": (1 - unit / width, 0.0)}
-                if single:
-                    corner = {"loc": "upper right", "bbox_to_anchor": (1 - unit / width, 1 - 0.4 * letters / height)}
-                size: Any = {"fontsize": (0.75 if single else 0.9) * letters, "ncols": 4}
-                figure.legend(named.values(), named, **size, **(corner | room))
+            handles, names = panels[0].get_legend_handles_labels()
+            if len(named := dict(zip(names, handles, strict=True))) > 1:
+                room: Any = {"borderaxespad": 0.1, "borderpad": 0, "handlelength": 1.2, "columnspacing": 1.0}
+                room["bbox_to_anchor"] = (1 - self._unit / width, 0.0)
+                figure.legend(named.values(), named, loc="lower right", ncols=4, **room)
             canvas.draw()
             self._beginning = np.array(canvas.buffer_rgba())
             for line in drawn:
@@ -236,7 +183,7 @@ class Strip:
             panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
         for first, last in self._marked:
             panel.axvspan(first, last, color=_MARKED, linewidth=0)
-        panel.set_title(chart.title, fontsize=self._letters, loc="left", pad=0.45 * unit)
+        panel.set_title(chart.title, fontsize=_LETTERS * unit, loc="left", pad=0.45 * unit)
         panel.xaxis.set_major_formatter("{x:g} s")
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
         low, high = panel.get_ylim()
@@ -251,7 +198,7 @@ class Strip:
         for transform, extent in self._panels:
             left, now = int(extent.x0), int(transform.transform((time, 0))[0])
             shown[:, left:now] = self._complete[:, left:now]
-        sheet.put(shown, 0, top)
+        sheet.put(shown, top)
         for (transform, extent), chart in zip(self._panels, self._charts, strict=True):
             for line in chart.lines:
                 if line.colour is None:

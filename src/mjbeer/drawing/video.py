@@ -1,26 +1,34 @@
-"""Films as files: MP4 by mediapy, whole or not at all; and in a notebook."""
+"""Films as files: MP4 by mediapy, whole or not at all; in a notebook; and many at once, with plots."""
 
 import contextlib
 import errno
+import io
+import itertools
 import os
 import pathlib
 import re
-from collections.abc import Callable, Generator, Iterable, Iterator
+import warnings
+from collections.abc import Callable, Generator, Iterable, Sequence
+from concurrent.futures import as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import rich.console
+from PIL import Image
 
 from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS, Camera
-from mjbeer.drawing.film import MotionFilm, RenderPlan
+from mjbeer.drawing.film import Film, MotionFilm, RenderPlan
 from mjbeer.drawing.overlay import Look
-from mjbeer.drawing.sheet import require_pixels
-from mjbeer.exceptions import ParameterError, RenderingError
+from mjbeer.exceptions import AngleWarning, LiquidWarning, ParameterError, RenderingError, UntrustedWarning
 from mjbeer.output import files, terminal
+from mjbeer.output.plots import Picture
 from mjbeer.theory.trajectory import Trajectory
 
-_RATE = 21  # the rate factor of a file: at 18 no loss is visible, 23 is ffmpeg's default
-SMALL_RATE = 24  # that of a film that a page holds: letters are as sharp, and it takes three quarters of the room
+_LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
+_RATE = 23  # the rate factor of a file, ffmpeg's default: at 18 no loss is visible, and at 24 letters are still sharp
 _ENCODED = (
     # HD colours (BT.709), which players expect; the default are those of SD television.
     *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
@@ -35,7 +43,7 @@ _DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 def render(
     trajectory: Trajectory,
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None,
     width: int = 1280,
     height: int = 720,
     fps: float = 30,
@@ -45,31 +53,30 @@ def render(
 ) -> None:
     """Write a trajectory as a video, MP4 with H.264; if that fails, no file is left and an existing one is kept.
 
-    `width` and `height` are in pixels, `fps` in frames per second of the video; `speed` is 1 for real time, 0.25 for
-    four times slower. `camera` is "fixed" (it stands still and shows the whole motion), "pan" (it moves with a constant
-    acceleration), "close" (it goes along with the can), or "auto" (fixed, unless the can would be too small). If
-    `progress` is true and standard error is a terminal, it shows a progress bar.
+    Where `path` is None it is shown in a notebook. `width` and `height` are in pixels, `fps` in frames per second of
+    the video; `speed` is 1 for real time, 0.25 for four times slower. `camera` is "fixed" (it stands still and shows
+    the whole motion), "pan" (it moves with a constant acceleration), or "auto" (fixed, unless the can would be too
+    small). If `progress` is true and standard error is a terminal, it shows a progress bar.
 
     Raises:
       ParameterError: if a parameter is not allowed.
       RenderingError: if OpenGL or ffmpeg does not work; the message says what to do.
       OutputError: if the file cannot be written.
     """
-    if (target := require.path(path)).suffix.lower() != ".mp4":
+    target = None if path is None else require.path(path)
+    if target and target.suffix.lower() != ".mp4":
         raise ParameterError(f"the file's name must end in .mp4, got {require.format_value(str(path))}")
     console = terminal.STDERR if require.boolean("progress", progress) else None
-    film = _plan(trajectory, camera, require.positive("speed", speed))
+    require.instance("trajectory", trajectory, Trajectory)
+    require.choice("camera", camera, CAMERAS)
+    speed = require.positive("speed", speed)
+    film = MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
+    if target is None:
+        with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
+            mediapy.show_video(pictures, fps=fps, autoplay=False)
+        return
     with terminal.progress_bar(console, len(film.times(fps))) as begin:
         write(film, target, width, height, fps, lambda _: begin(f"drawing {target.name}"))
-
-
-def show(
-    trajectory: Trajectory, width: int, height: int, fps: float = 30, speed: float = 1.0, camera: Camera = "auto"
-) -> None:
-    """Show a trajectory as a video in a notebook. Arguments and errors are those of `render`."""
-    film = _plan(trajectory, camera, require.positive("speed", speed))
-    with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
-        mediapy.show_video(pictures, fps=fps, autoplay=False)
 
 
 def write(
@@ -78,31 +85,23 @@ def write(
     width: int,
     height: int,
     fps: float,
-    seen: Callable[[np.ndarray], None],
-    rate: int = _RATE,
+    seen: Callable[[np.ndarray], None] = lambda _: None,
 ) -> None:
     """Write a film as a video, as `render` does, and call `seen` with each picture."""
     with files.atomic_write(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
 
-        def watched() -> Iterator[np.ndarray]:
+        def watched() -> Generator[np.ndarray]:
             for picture in pictures:
                 seen(picture)
                 yield picture
 
-        encode(watched(), temporary, int(width), int(height), fps, rate)
+        encode(watched(), temporary, int(width), int(height), fps)
 
 
-def encode(
-    pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float, rate: int = _RATE
-) -> None:
-    """Write pictures of shape (height, width, 3), uint8, one at a time, so that memory holds only one.
-
-    Raises:
-      RenderingError: if ffmpeg fails; the message has the last line that ffmpeg wrote.
-      OSError: if the disk is full or broken.
-    """
+def encode(pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
+    """Write pictures of shape (height, width, 3), uint8, one at a time, so that memory holds only one."""
     with _mediapy() as mediapy:
-        writer = mediapy.VideoWriter(path, (height, width), fps=fps, crf=rate, ffmpeg_args=_ENCODED)
+        writer = mediapy.VideoWriter(path, (height, width), fps=fps, crf=_RATE, ffmpeg_args=_ENCODED)
         try:
             with writer:
                 for picture in pictures:
@@ -110,14 +109,17 @@ def encode(
         except BrokenPipeError:
             writer.close()  # which now raises what ffmpeg said
             raise
-    if path.stat().st_size == 0:
-        raise _failure("")
+        if path.stat().st_size == 0:
+            raise RuntimeError("it ended before the video did")
 
 
 def _pictures(plan: RenderPlan, width: int, height: int, fps: float) -> Generator[np.ndarray]:
     for name, pixels in (("width", width), ("height", height)):
-        if require_pixels(name, pixels) % 2 != 0:
-            raise ParameterError(f"{name} must be even, as H.264 wants it, got {pixels!r}")
+        if require.positive(name, pixels) % 2 or pixels > _LARGEST:
+            raise ParameterError(
+                f"{name} must be an even number of pixels up to {_LARGEST}, as H.264 wants it, "
+                f"got {require.format_value(pixels)}"
+            )
     return plan.draw(plan.times(fps), int(width), int(height))
 
 
@@ -131,26 +133,87 @@ def _mediapy() -> Generator[Any]:
         mediapy.set_ffmpeg(imageio_ffmpeg.get_ffmpeg_exe())
         yield mediapy
     except (OSError, RuntimeError) as error:
-        if not isinstance(
-            error.__context__, OSError | RuntimeError | None
-        ):  # what was drawn failed, or Ctrl-C ended both
+        if not isinstance(error.__context__, OSError | RuntimeError | None):  # drawing failed, or Ctrl-C ended both
             raise error.__context__ from None
         said = re.sub("^Error writing '.*?': ", "", str(error)).strip()  # mediapy's words, before those of ffmpeg
         for number in _DISK:
             if os.strerror(number) in said:
                 raise OSError(number, os.strerror(number)) from error
-        raise _failure(said) from error
+        reason = (said or "it ended before the video did").splitlines()[-1]
+        raise RenderingError(
+            f"ffmpeg did not write the video: {reason}\nReinstall it (`pip install --force-reinstall imageio-ffmpeg`), "
+            "or name another in IMAGEIO_FFMPEG_EXE"
+        ) from error
 
 
-def _failure(said: str) -> RenderingError:
-    reason = (said or "it ended before the video did").splitlines()[-1]
-    return RenderingError(
-        f"ffmpeg did not write the video: {reason}\nReinstall it (`pip install --force-reinstall imageio-ffmpeg`), or "
-        "name another in IMAGEIO_FFMPEG_EXE"
-    )
+@dataclass(frozen=True)
+class FilmJob:
+    """A film to be written."""
+
+    film: Film
+    path: pathlib.Path  # its file, whose name ends in .mp4
+    width: int
+    height: int
+    fps: float
+
+    def write(self) -> bytes:
+        """Write the film, and return its still picture as WebP."""
+        plan, file = self.film.plan(), io.BytesIO()
+        still = self.film.still or (2 * plan.start + plan.end) / 3  # at the start nothing has happened yet
+        nearest, number = np.argmin(np.abs(plan.times(self.fps) - still)), itertools.count()
+
+        def keep(picture: np.ndarray) -> None:
+            if next(number) == nearest:
+                Image.fromarray(picture).save(file, "WEBP", quality=70)
+
+        write(plan, self.path, self.width, self.height, self.fps, keep)
+        return file.getvalue()
 
 
-def _plan(trajectory: Trajectory, camera: Camera, speed: float) -> RenderPlan:
-    require.instance("trajectory", trajectory, Trajectory)
-    require.choice("camera", camera, CAMERAS)
-    return MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
+@dataclass(frozen=True)
+class PlotJob:
+    """A plot to be drawn."""
+
+    draw: Callable[[Any], None]  # writes the plot to a path, with .svg appended, or into a `Picture`
+    path: pathlib.Path
+    in_memory: bool = False
+
+    def write(self) -> Picture | None:
+        """Write the plot, or return it."""
+        picture = Picture(self.path.name) if self.in_memory else None
+        self.draw(picture or self.path)
+        return picture
+
+
+def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
+    """Write what is ordered, with a progress bar, and return what the orders' `write` returns; begin with the first.
+
+    An order can be pickled, and has a `path`: its file, which it writes whole or not at all, or one of its name.
+
+    Raises:
+      RenderingError: if ffmpeg or OpenGL does not work, or a process dies; the message says what to do.
+      OutputError: if a file cannot be written.
+    """
+    try:
+        with terminal.progress_bar(console, len(orders)) as begin, files.pool(len(orders)) as executor:
+            futures = {executor.submit(_done, order): order for order in orders}
+            for future in as_completed(futures):
+                name = futures[future].path.name
+                try:
+                    future.result()
+                except BrokenProcessPool as error:
+                    raise RenderingError(f"{name} was not made: a process died; is memory short?") from error
+                begin(f"made {name}")
+            return [future.result() for future in futures]
+    finally:  # a process that was ended while it wrote leaves a hidden file
+        for order in orders:
+            for unfinished in order.path.parent.glob(f".{order.path.stem}-*"):
+                unfinished.unlink(missing_ok=True)
+
+
+def _done(order: Any) -> Any:
+    """Write what is ordered: reports show on purpose what cannot be trusted."""
+    with warnings.catch_warnings():
+        for kind in (UntrustedWarning, LiquidWarning, AngleWarning):
+            warnings.simplefilter("ignore", kind)
+        return order.write()

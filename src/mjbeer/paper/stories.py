@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from matplotlib.axes import Axes
 from rich.console import Console
 
-from mjbeer.drawing import jobs, opengl
+from mjbeer.drawing import opengl, video
 from mjbeer.drawing.film import Film, MotionFilm
-from mjbeer.drawing.jobs import FilmJob, PlotJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.video import FilmJob, PlotJob
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files
 from mjbeer.output.plots import chart
@@ -68,6 +68,7 @@ STORIES = (
             "One beer swings, one does not: their centres of mass stay abreast",
             _let_go,
             length=0.36,
+            duration=0.65,
             speed=0.1,
             told=str,  # the story has a caption
             still=0.2,
@@ -151,11 +152,10 @@ STORIES = (
             speed=0.04,
             still=0.9,
             look=Look(
-                "Frozen beer rolls down, slips and hops",
+                "With μ = 1, frozen beer slips before it hops",
                 ("lift", "slip"),
-                ("skid", "gap"),
-                "close",
-                "μ = 1; the first 0.68 s are left out",
+                ("paths",),
+                "pan",
                 ("flies", "slips"),
             ),
         ),
@@ -200,7 +200,7 @@ def write(folder: pathlib.Path, filmed: bool, console: Console) -> str:
     with files.atomic_write(folder / "stories.md") as summary:
         (folder / "stories.md").unlink(missing_ok=True)
         files.write(folder / "letters.svg", letters())
-        jobs.produce(
+        video.produce(
             [*([] if missing else orders), *(PlotJob(story.plot, folder / story.name) for story in STORIES)], console
         )
         lines = ["# The paper's stories", "", "![The letters of the formulas](letters.svg)", ""]

@@ -1,7 +1,6 @@
 """A can that is carried by a gripper that holds it upright, and the film of a gentle and a quick move."""
 
 from collections.abc import Generator
-from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -9,51 +8,47 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 
-from mjbeer.drawing.camera import View
-from mjbeer.drawing.carried import CarriedCans
+from mjbeer.drawing.camera import View, circle
 from mjbeer.drawing.film import RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
-from mjbeer.drawing.scene import Painter, Scenery
+from mjbeer.drawing.scene import Display, Scenery
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Chart, Line, Strip
 from mjbeer.model.build import build
+from mjbeer.model.looks import WALL
 from mjbeer.theory.scenes import sliding
 from mjbeer.theory.standing import QUANTITATIVE, Standing, standing
 
-_FORCE_X = 3
-"""Place of the level force in MuJoCo's force of a body on its parent: the moment comes first."""
+_FORCE_X = 3  # place of the level force in MuJoCo's force of a body on its parent: the moment comes first
+_TIMESTEP = 5e-4  # [s]
 _DISTANCE, _LONGEST = 0.4, 2.4  # way of the grippers [m], and how long the film watches them [s]
+_APART, _HIGH = 0.34, 0.015  # distance of the grippers, and height at which they hold their cans [m]
+_LEFT, _EYE = -0.26, np.array([0.1, -2.2, 1.5])  # where the picture begins, and where the eye is [m]
+_PLATES = 24  # flat faces around half a can
+_STEEL = np.array([0.32, 0.36, 0.42])
 
 
-@dataclass(frozen=True, eq=False)
-class Carried:
+class Carried(NamedTuple):
     """What a gripper feels, and what the liquid does; arrays have the shape (steps,)."""
 
-    time: np.ndarray
-    """[s]"""
-    place: np.ndarray
-    """Place of the can [m]."""
-    acceleration: np.ndarray
-    """Acceleration of the can [m/s^2]."""
-    force: np.ndarray
-    """Level force of the gripper on the can [N]."""
-    rise: np.ndarray
-    """How high the surface rises at the wall ahead, by all modes that move, over the radius."""
+    time: np.ndarray  # [s]
+    place: np.ndarray  # place of the can [m]
+    acceleration: np.ndarray  # acceleration of the can [m/s^2]
+    force: np.ndarray  # level force of the gripper on the can [N]
+    rise: np.ndarray  # how high the surface rises at the wall ahead, by all modes that move, over the radius
 
 
-def carry(
-    can: Standing, distance: float = _DISTANCE, duration: float = 1.0, after: float = 1.0, timestep: float = 5e-4
-) -> Carried:
+def carry(can: Standing, distance: float = _DISTANCE, duration: float = 1.0, after: float = 1.0) -> Carried:
     """Return the motion of a can that is moved by a `distance` [m] in a `duration` [s], and then held for `after` [s].
 
     The move has the least jerk that starts and ends at rest. In the frame of the gripper the can stands still and
     gravity is tilted by the acceleration, so that the gripper is as rigid as can be.
     """
-    model = build(can, free=False, timestep=timestep)
+    model = build(can, free=False, timestep=_TIMESTEP)
     data, body = mujoco.MjData(model), model.body("can").id
-    time = timestep * np.arange(round((duration + after) / timestep) + 1)
+    time = _TIMESTEP * np.arange(round((duration + after) / _TIMESTEP) + 1)
     place, acceleration = minimum_jerk(time, distance, duration)
-    _, pushed = minimum_jerk(time + timestep / 2, distance, duration)  # a step has the gravity of its middle
+    _, pushed = minimum_jerk(time + _TIMESTEP / 2, distance, duration)  # a step has the gravity of its middle
     force, rise = np.empty_like(time), np.zeros_like(time)
     for step, now in enumerate(acceleration):
         model.opt.gravity[0] = -now
@@ -73,15 +68,8 @@ def minimum_jerk(time: np.ndarray, distance: float, duration: float) -> tuple[np
     return place, distance / duration**2 * 60 * share * (1 - share) * (1 - 2 * share)
 
 
-class Move(NamedTuple):
-    """A move of the film."""
-
-    duration: float  # [s]
-    name: str
-    colour: tuple[float, float, float]
-
-
-QUICK, GENTLE = Move(1.0, "in 1 s", (0.80, 0.15, 0.20)), Move(1.6, "in 1.6 s", (0.05, 0.40, 0.75))
+MOVES = {1.0: (0.80, 0.15, 0.20), 1.6: (0.05, 0.40, 0.75)}
+"""Times that the moves of the film take [s], and their colours: a quick one in front, and a gentle one."""
 
 
 @dataclass(frozen=True)
@@ -101,49 +89,79 @@ class Carry:
 
     def plan(self) -> RenderPlan:
         """Compute both motions, and return what is needed to draw them."""
-        moves = {
-            move: carry(standing(), duration=move.duration, after=_LONGEST - move.duration) for move in (QUICK, GENTLE)
-        }
-        return RenderPlan(0.0, _LONGEST, self.speed, partial(self._draw, moves))
+        runs = {duration: carry(standing(), duration=duration, after=_LONGEST - duration) for duration in MOVES}
+        return RenderPlan(0.0, _LONGEST, self.speed, partial(self._draw, runs))
 
-    def _draw(self, moves: dict[Move, Carried], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
-        sheet, ground = Sheet(width, height), sliding(0.0)
+    def _draw(self, runs: dict[float, Carried], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
+        sheet, can = Sheet(width, height), standing()
         top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit)
-        cans = CarriedCans.held(standing(modes=0), [move.colour for move in moves], _APART)
-        points = [cans.outline(number, np.array([x])).reshape(-1, 3) for number in (0, 1) for x in (_LEFT, _DISTANCE)]
-        view = View.towards(_EYE, np.concatenate(points), (width, height - top - below), 0.02)
-        strip = Strip([Chart("force [N]", _lines(moves))], width, below)
-        words = self.title, f"half a 12-oz can of beer, carried {_DISTANCE:g} m"
-        scenery = Scenery(ground, cans.model, (0.0, _DISTANCE))
-        with closing(Painter(cans, scenery, *view.pixels, still=True)) as painter:
-            for time in times:
-                sheet.boxes.clear()
-                now = [
-                    [np.interp(time, run.time, run.place), np.interp(time, run.time, run.rise)]
-                    for run in moves.values()
-                ]
-                painter.paint(sheet, view, np.array(now), top)
-                for number, ((move, run), (x, _)) in enumerate(zip(moves.items(), now, strict=True)):
-                    for rise in (-QUANTITATIVE, QUANTITATIVE):
-                        sheet.line(view.pixel(cans.wall(number, x, rise), top), 0.12 * sheet.unit, INK)
-                    highest = np.abs(run.rise[run.time <= time]).max()
-                    trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
-                    place = view.pixel(cans.wall(number, x, 0.0)[0] - [0.03, 0, 0], top)
-                    told = f"rises by {highest:.2f} R: {trust}"
-                    sheet.plate(place, [(move.name, True, move.colour), (told, False, INK)], (1, 0.5))
-                head(sheet, words, time, self.speed)
-                strip.draw(sheet, time, height - below)
-                yield sheet.picture()
+        scenery = Scenery(Display.of([sliding(0.0)] * len(runs), _APART), (0.0, _DISTANCE))
+        corners = [_outline(np.array([x, y, _HIGH])) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
+        view = View.towards(_EYE, np.reshape(corners, (-1, 3)), (width, height - top - below), top, 0.02)
+        lines = [Line(f"moved in {each:g} s", run.time, run.force, MOVES[each]) for each, run in runs.items()]
+        solid = can.mass + can.can.mass
+        lines += [Line("solid beer", run.time, solid * run.acceleration) for run in runs.values()]
+        strip = Strip([Chart("force [N]", lines)], width, below)
+        scenery.draw(sheet, view)
+        empty = sheet.part(top, height - below)
+        for time in times:
+            sheet.put(empty, top)
+            for lane, (duration, run) in reversed(list(enumerate(runs.items()))):
+                place = np.array([np.interp(time, run.time, run.place), lane * _APART, _HIGH])
+                scenery.shade(sheet, view, _outline(place))
+                rise = float(np.interp(time, run.time, run.rise))
+                _draw_gripper(sheet, view, scenery, can, place, rise, np.array(MOVES[duration]))
+                highest = np.abs(run.rise[run.time <= time]).max()
+                trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
+                side = view.pixel(place + np.array([-0.065, 0, can.height]))
+                said = f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"
+                sheet.plate(side, said, MOVES[duration], (1, 0.5))
+            head(sheet, self.title, "half a 12-oz can of beer, carried 0.4 m", time, self.speed)
+            strip.draw(sheet, time, height - below)
+            yield sheet.picture()
 
 
-_APART, _LEFT = 0.34, -0.26
-_EYE = np.array([0.1, -2.2, 1.5])
+def _outline(place: np.ndarray) -> np.ndarray:
+    """Return the corners of the near and the far side of what is around a gripper [m], shape (2, 4, 3)."""
+    corners = (-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19)
+    return place + np.array([[(x, y, z) for x, z in corners] for y in (-0.034, 0.034)])
 
 
-def _lines(moves: dict[Move, Carried]) -> list[Line]:
-    """Return the forces over time, and those of solid beer."""
-    lines = [Line(f"moved {move.name}", run.time, run.force, move.colour) for move, run in moves.items()]
-    for run in moves.values():
-        whole = standing()
-        lines.append(Line("solid beer", run.time, (whole.mass + whole.can.mass) * run.acceleration))
-    return lines
+def _draw_gripper(
+    sheet: Sheet, view: View, scenery: Scenery, can: Standing, place: np.ndarray, rise: float, colour: np.ndarray
+) -> None:
+    """Draw a gripper with pads of a colour, and its can, cut open in front.
+
+    The bottom of the can is at a `place` [m], and its liquid is higher by `rise` radii at the wall ahead.
+    """
+    length, wall = can.can.length, (1 + WALL) * can.can.radius
+    assert abs(rise) * wall < min(can.height, length - can.height), "the surface reaches the lid or the bottom"
+    metal, beer = (scenery.display.model.mat(name).rgba[:3] for name in ("metal", "beer"))
+
+    def face(corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
+        sheet.area(view.pixel(place + corners), scenery.lit(colour, normal, view))
+
+    around = np.insert(circle(1.0, 2 * _PLATES), 2, 0.0, axis=1)  # directions: first behind the axis, then before it
+    surface = wall * around + np.outer(can.height + rise * wall * around[:, 0], [0, 0, 1])
+    for first in range(2 * _PLATES):  # the wall behind, from inside, and the liquid before it
+        behind, two = first < _PLATES, slice(first, first + 3, 2)  # each overlaps with the next, so that no gap is seen
+        high = wall * around[two] + [0, 0, length] if behind else surface[two]
+        side = (metal, -around[first]) if behind else (beer, around[first])
+        face(np.concatenate([wall * around[two], high[::-1]]), *side)
+    face(surface, beer, np.array([-rise, 0, 1]))
+    for limit in (-QUANTITATIVE, QUANTITATIVE):
+        line = wall * around[_PLATES:] + [0, 0, can.height + limit * can.can.radius]
+        sheet.line(view.pixel(place + line), 0.12 * sheet.unit, INK)
+    boxes = [(side * (wall + 0.005), length / 2, [0.004, 0.012, 0.03], colour) for side in (-1, 1)]
+    boxes += [(side * (wall + 0.014), length / 2 + 0.03, [0.005, 0.01, length / 2], _STEEL) for side in (-1, 1)]
+    boxes += [(0.0, length + 0.03, [wall + 0.024, 0.014, 0.008], _STEEL)]
+    for x, z, half, paint in (*boxes, (0.0, length + 0.054, [0.014, 0.012, 0.016], _STEEL)):
+        centre = np.array([x, 0.0, z])
+        for axis in (0, 2, 1):  # of each two sides the one that is turned to the eye, and the front at last
+            normal = np.sign(view.eye - place - centre)[axis] * np.eye(3)[axis]
+            one, other = np.delete(np.eye(3), axis, axis=0)
+            face(
+                centre + half * (normal + np.array([-one - other, one - other, one + other, other - one])),
+                paint,
+                normal,
+            )

@@ -8,9 +8,9 @@ from functools import cache, partial
 import numpy as np
 
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.drawing.jobs import FilmJob
 from mjbeer.drawing.overlay import Look
 from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.video import FilmJob
 from mjbeer.drawing.words import in_degrees
 from mjbeer.paper import stories
 from mjbeer.report.carry import Carry
@@ -108,15 +108,12 @@ def told_of_liquids() -> str:
 
 
 RACES = {
-    "race": Race("Which can wins?", of_beer, LENGTH, 0.25, told_of_beer, still=1.4, after=0.2),
+    "race": Race("Which can wins?", of_beer, LENGTH, 2.3, 0.25, told_of_beer, still=1.4),
     "liquids": Race(
         "Water, oil, honey or ice: which can wins, and which is last?",
-        *(of_liquids, LENGTH, 1 / 3, told_of_liquids),
+        *(of_liquids, LENGTH, 2.72, 1 / 3, told_of_liquids),
         still=2.2,
-        after=0.4,
-        missing=1,
-        facts="all cans ¾ full, let go with a level surface",
-        caveat="Each liquid is one lump here. Real water and oil are soon too fast to stay at the bottom.",
+        facts="all cans ¾ full; here each liquid is one lump, and stays at the bottom",
     ),
 }
 """The films that the page shows first, by the names of their files."""

@@ -18,8 +18,8 @@ from markupsafe import Markup, escape
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.drawing import jobs, opengl
-from mjbeer.drawing.jobs import PlotJob
+from mjbeer.drawing import opengl, video
+from mjbeer.drawing.video import PlotJob
 from mjbeer.output import files
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
@@ -64,7 +64,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
         filmed = [] if not_drawn else filmed
         # The checks take longest, and compile what the films run; plots are quick.
         checks = SimpleNamespace(path=folder / "checks", write=partial(validate, None))
-        validation, *made = jobs.produce([checks, *filmed, *plot_jobs(folder)], console)
+        validation, *made = video.produce([checks, *filmed, *plot_jobs(folder)], console)
         stills, plots = made[: len(filmed)], made[len(filmed) :]
         shown = {each.path.stem: (each.path.read_bytes(), still) for each, still in zip(filmed, stills, strict=True)}
         pictures = {plot.name: plot for plot in plots if plot}

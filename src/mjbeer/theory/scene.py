@@ -25,8 +25,8 @@ DURATION = 2.0  # [s]
 PHI0 = math.radians(60)  # at the start [rad]
 GRAVITY = 9.81  # [m/s^2]; the paper's footnote 8 has 9.8
 
-load_drawing: list[Callable[[], Any]] = []
-"""Returns the module that draws scenes and motions. Set by `mjbeer/__init__`; avoids importing drawing here."""
+load_drawing: list[Callable[[str], Any]] = []
+"""Returns a module that draws motions, by its name. Set by `mjbeer/__init__`; avoids importing drawing here."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -100,10 +100,6 @@ class Scene:
         plain = {name: each.item() if isinstance(each, np.generic) else each for name, each in given.items()}
         arguments = (f"{name}={value!r}" for name, value in plain.items() if value != usual[name].default)
         return f"{getattr(make, '__name__', '')}({', '.join(arguments)})"
-
-    def _repr_html_(self) -> str:
-        """Return a table for a notebook."""
-        return load_drawing[0]().scene_html(self)
 
     @cached_property
     def damping_law(self) -> Damping:

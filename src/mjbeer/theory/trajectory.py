@@ -181,7 +181,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if there is no quantity of a name; the message lists the names.
         """
-        return load_drawing[0]().plot(self, *names, theory=theory)
+        return load_drawing[0]("words").plot(self, *names, theory=theory)
 
     def video(
         self, path: str | os.PathLike[str] | None = None, width: int = 640, height: int = 360, **others: Any
@@ -190,7 +190,7 @@ class Trajectory(Coordinates):
 
         `width` and `height` are in pixels. The other arguments, and the errors, are those of `mjbeer.render`.
         """
-        load_drawing[0]().video(self, path, width, height, **others)
+        load_drawing[0]("video").render(self, path, width, height, **others)
 
     def to_dataframe(self) -> Any:
         """Return the motion as a pandas DataFrame: a row for each sample, columns with their units."""
@@ -216,10 +216,6 @@ class Trajectory(Coordinates):
             f"sample{'s' * (count != 1)} to t = {self.time[-1]:.6g} s, phi = {self.phi[-1]:.6g} rad, "
             f"u = {self.u[-1]:.6g} m>"
         )
-
-    def _repr_html_(self) -> str:
-        """Return key figures for a notebook."""
-        return load_drawing[0]().trajectory_html(self)
 
 
 def csv(motion: Trajectory) -> str:

@@ -1,4 +1,4 @@
-"""What a notebook shows of a run: plots, tables, files and one line."""
+"""What a user sees of a run: plots, a video, and one line."""
 
 import base64
 import math
@@ -11,7 +11,6 @@ import pytest
 from matplotlib import pyplot as plt
 
 from mjbeer import Damping, exact, frozen, pendulum, simulate, sliding
-from mjbeer.drawing.strip import charts
 from mjbeer.drawing.words import damping_in_words, in_words
 from mjbeer.exceptions import ParameterError
 
@@ -74,11 +73,6 @@ def test_a_video_is_written_or_shown(tmp_path: pathlib.Path, monkeypatch: pytest
     assert imageio_ffmpeg.count_frames_and_secs(tmp_path / "shown.mp4") == (4, 0.2)
 
 
-def test_a_video_is_no_file_of_another_kind(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(ParameterError, match=r"the file's name must end in \.mp4, got"):
-        simulate(frozen(), 0.2, 1.0).video(tmp_path / "run.gif")
-
-
 def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatch) -> None:
     run = simulate(frozen(), 0.5, 1.0, rolling="contact")
     monkeypatch.setattr("mjbeer.simulation.run.compare_uneven", lambda _: pytest.fail("a second run"))
@@ -88,20 +82,6 @@ def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatc
     assert repr(exact(sliding(), [1.0], 0.0)) == (
         "<Trajectory sliding, exact, exact: 1 sample to t = 1 s, phi = 0 rad, u = 0.851744 m>"
     )
-
-
-def test_a_notebook_shows_whether_a_run_is_trusted() -> None:
-    good, bad = simulate(frozen(), 0.5, 1.0), simulate(frozen(), 2.0, math.pi)
-    assert "<th>trusted</th><td>yes</td>" in good._repr_html_()
-    assert "no: from t = 0.83" in bad._repr_html_()
-    assert "N &lt; 0" in bad._repr_html_()
-    assert "<th>incline</th><td>10 degrees</td>" in good.scene._repr_html_()
-
-
-def test_a_damped_run_is_drawn_with_the_speed_of_damped_theory() -> None:
-    chart = charts(simulate(sliding(damping=1e-3), 0.1, 1.0, tolerance=1e-9), ["u_dot"])[0]
-    simulated, theory = chart.lines
-    assert np.interp(simulated.time, theory.time, theory.values) == pytest.approx(simulated.values, abs=1e-4)
 
 
 def test_a_scene_in_words() -> None:
