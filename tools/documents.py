@@ -13,7 +13,6 @@ import textwrap
 import warnings
 from collections import Counter
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
@@ -37,7 +36,8 @@ import real_beer  # noqa: E402 - beside the figures that it draws
 from tests.support import rows  # noqa: E402
 
 DOCUMENTS = [CHECKOUT / "README.md", *sorted(CHECKOUT.glob("docs/*.md"))]
-COUNTS = CHECKOUT / "docs" / "stability.json"
+COUNTS = json.loads((CHECKOUT / "docs" / "stability.json").read_text(encoding="utf-8"))
+BENCHMARK, MAPS = Benchmark.load(SHIPPED), stability_maps.load()["maps"]
 MARKED = re.compile(r"(<!-- made: (?P<name>[\w-]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 LEFT_OUT = "sliding-metal", "1e-06", "1e-11"  # the metal can takes as long as the massless one, within 5 %
 GENTLE, USUAL = math.radians(2), math.radians(10)
@@ -46,11 +46,6 @@ GENTLE, USUAL = math.radians(2), math.radians(10)
 def anew(text: str) -> str:
     """Return the text of a document with everything between its marks made anew."""
     return MARKED.sub(lambda found: f"{found[1]}{MADE[found['name']]().strip()}\n{found[3]}", text)
-
-
-def counts() -> dict[str, Any]:
-    """Return the counts that the documents show."""
-    return json.loads(COUNTS.read_text(encoding="utf-8"))
 
 
 def table(columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
@@ -65,13 +60,13 @@ def prose(text: str) -> str:
 
 def ratios(name: str) -> str:
     """Return the range of the run times of another tool over mjbeer's, at equal error; the page has the same."""
-    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(Benchmark.load(SHIPPED), name)))
+    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(BENCHMARK, name)))
 
 
 def holds() -> str:
     """What holds, with the numbers that programs know."""
     wrong = Counter(row.misprint.kind for row in paper.claims() if row.misprint)
-    random = counts()["kinds"]["all"]
+    random = COUNTS["kinds"]["all"]
     return table(
         ("", ""),
         [
@@ -115,7 +110,7 @@ def misprints() -> str:
 
 def cheapest() -> str:
     """The cheapest settings for frozen beer."""
-    shown = benchmark_tables.cheapest(Benchmark.load(SHIPPED), "frozen")
+    shown = benchmark_tables.cheapest(BENCHMARK, "frozen")
     return table(shown.columns, [row for row in shown.rows if row[0][:5] in ("1e-02", "1e-06", "1e-10")])
 
 
@@ -126,17 +121,17 @@ def some(shown: Table) -> str:
 
 def others() -> str:
     """Run times of other tools at equal error."""
-    return some(benchmark_tables.others(Benchmark.load(SHIPPED)))
+    return some(benchmark_tables.others(BENCHMARK))
 
 
 def whole_calls() -> str:
     """Times of whole calls."""
-    return some(benchmark_tables.whole_calls(Benchmark.load(SHIPPED)))
+    return some(benchmark_tables.whole_calls(BENCHMARK))
 
 
 def measured() -> str:
     """When and where the benchmark that comes with mjbeer was measured."""
-    machine = Benchmark.load(SHIPPED).machine
+    machine = BENCHMARK.machine
     versions = f"Python {machine['python']} and MuJoCo {machine['versions']['mujoco']}"
     return prose(
         "The tables show the study that comes with mjbeer, measured in November 2026 on "
@@ -188,7 +183,7 @@ def steps() -> str:
 
 def agreement() -> str:
     """How the maps came out, and how near their borders in gravity are to the limit of a swing."""
-    maps = [each for each in stability_maps.load()["maps"] if each["family"] != "damping"]
+    maps = [each for each in MAPS if each["family"] != "damping"]
     runs, _ = stability_maps.summary(maps)
     return prose(
         f"{len(maps)} maps of timestep and stiffness, {runs:,} short runs in all, agree with this. In gravity the "
@@ -200,7 +195,7 @@ def agreement() -> str:
 def border_error() -> float:
     """Return how far measured borders in gravity are from the limit of a swing [%], at worst."""
     worst = 0.0
-    for each in stability_maps.load()["maps"]:
+    for each in MAPS:
         for value, (border, _) in zip(each["values"], each["boundaries"], strict=True):
             # At the shortest timestep there is no border to measure: all runs explode.
             if each["family"] == "gravity" and border and border > each["timesteps"][0]:
@@ -211,9 +206,9 @@ def border_error() -> float:
 
 def damped() -> str:
     """How damped runs of a millisecond a step end, by damping."""
-    maps, words = stability_maps.load()["maps"], ("explodes", "inaccurate", "accurate")
+    words = "explodes", "inaccurate", "accurate"
     dampings, lines = (0.01, 0.1, 1.0), []
-    for of in (each for each in maps if each["family"] == "damping"):
+    for of in (each for each in MAPS if each["family"] == "damping"):
         step = min(range(len(of["timesteps"])), key=lambda at: abs(math.log(of["timesteps"][at] / 1e-3)))
         values = [min(of["values"], key=lambda value: abs(math.log(value / damping))) for damping in dampings]
         ended = (words[int(of["measured"][of["values"].index(value)][step])] for value in values)
@@ -223,7 +218,7 @@ def damped() -> str:
 
 def damped_runs() -> str:
     """How the runs in the maps of damping ended."""
-    maps = [each for each in stability_maps.load()["maps"] if each["family"] == "damping"]
+    maps = [each for each in MAPS if each["family"] == "damping"]
     count = Counter("".join("".join(each["measured"]) for each in maps))
     _, worst = stability_maps.summary(maps)
     return prose(
@@ -244,7 +239,7 @@ def alone(count: dict[str, int]) -> int:
 
 def kinds() -> str:
     """How the random runs ended, by kind of model, and what judged them."""
-    shown = next(each for each in stability_study.search_tables(counts()) if "by model" in each.title)
+    shown = next(each for each in stability_study.search_tables(COUNTS) if "by model" in each.title)
     left_out = NOBODY, BOTH, SERIES, stability_study.NEEDLESS, stability_study.ABOVE, stability_study.TWICE
     columns = [at for at, name in enumerate(shown.columns) if name not in left_out]
     return table(tuple(shown.columns[at] for at in columns), [tuple(row[at] for at in columns) for row in shown.rows])
@@ -252,7 +247,7 @@ def kinds() -> str:
 
 def honesty() -> str:
     """How many runs were silent, and what that allows; how often a run said too little of its error."""
-    found, known = counts()["kinds"]["all"], counts()["known"]
+    found, known = COUNTS["kinds"]["all"], COUNTS["known"]
     share = stability_study.bound(found)
     allows = "" if share is None else f", so that with 95 % confidence fewer than {100 * share:.1g} % are"
     silent, above, twice = (found.get(name, 0) for name in (SILENT, stability_study.ABOVE, stability_study.TWICE))
