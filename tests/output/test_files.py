@@ -11,7 +11,6 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.exceptions import OutputError
 from mjbeer.output import files
-from tests.support import stubs
 from tests.support.processes import hear, interrupt, start
 
 HOLD = """
@@ -132,8 +131,8 @@ def test_a_second_study_in_a_folder_is_refused_until_the_first_is_gone(
     command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Killed, the first cannot tidy up; what it leaves keeps nobody out."""
-    stubs.benchmark(monkeypatch)
-    monkeypatch.setattr("mjbeer.studies.stability.stability_study.plan", lambda quick: [])
+    for study in ("benchmark.timing", "stability.stability_study"):
+        monkeypatch.setattr(f"mjbeer.studies.{study}.conduct", lambda *_: pytest.fail("it was begun"))
     folder = tmp_path / "new"
     with start([str(folder)], HOLD) as holder:
         hear(holder, "locked")

@@ -17,7 +17,7 @@ from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.output import terminal
-from mjbeer.paper.claim import CORRECTED
+from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS
 from mjbeer.studies.validation.validate import Validation
@@ -67,7 +67,11 @@ def test_validate_tells_a_failure_whatever_is_asked_for(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
-    stubs.audited(monkeypatch, good=1e-6, other=error)
+    seen = {"good": 1e-6, "other": error}
+    rows = [
+        Claim(name, "a stub", Witness("none", seen.copy), Bound(1e-3, ""), f"1 + seen['{name}'] - 1") for name in seen
+    ]
+    monkeypatch.setattr(paper, "claims", lambda: rows)
     monkeypatch.setattr(terminal, "is_read_by_eye", lambda: eye)
     assert main(["validate", *options]) == status
     out, err = capsys.readouterr()

@@ -3,24 +3,47 @@
 import itertools
 import math
 import pathlib
+from collections.abc import Mapping
 
 import numpy as np
 import pytest
 
 from mjbeer.cli.app import main
 from mjbeer.exceptions import DivergenceError
-from mjbeer.studies.benchmark import other_tools
+from mjbeer.studies.benchmark import other_tools, timing
 from mjbeer.studies.benchmark.points import CASES, INTERVAL, Benchmark, Curve, Point
 from mjbeer.studies.benchmark.timing import conduct, ladders, measure
-from tests.support import stubs
 
 pytestmark = pytest.mark.slow
+
+STEPS = tuple(16e-3 / 2**k for k in range(6))
+LARGE = tuple(64e-3 / 2**k for k in range(7))
+LADDERS = {
+    Curve("reduced", "Euler"): STEPS,
+    Curve("reduced", "RK4"): STEPS,
+    Curve("reduced", "DOP853"): LARGE,
+    Curve("reduced", "mjbeer", "tolerance"): (1e-6, 1e-9),
+    Curve("equality", "RK4"): STEPS,
+    Curve("contact", "DOP853"): LARGE[:5],
+    Curve("equality, slide first", "Euler"): (2e-3,),
+    Curve("equality, hinge first", "Euler"): (2e-3,),
+    Curve("contact, defaults", "Euler"): (2e-3,),
+    Curve("SciPy DOP853", "", "tolerance"): (1e-3, 1e-6),
+    Curve("mjbeer.simulate", "", "tolerance"): (1e-6,),
+}
+
+
+def short(monkeypatch: pytest.MonkeyPatch, ladders: Mapping[Curve, tuple[float, ...]] = LADDERS) -> None:
+    """Make the benchmark one of short ladders, timed twice, with all tools there."""
+    monkeypatch.setattr(timing, "ladders", lambda *_: dict(ladders))
+    monkeypatch.setattr(other_tools, "absent", dict)
+    monkeypatch.setattr(timing, "REPEATS", 2)
 
 
 @pytest.fixture(scope="module")
 def measured() -> Benchmark:
     with pytest.MonkeyPatch.context() as monkeypatch:
-        stubs.benchmark(monkeypatch)
+        short(monkeypatch)
         return conduct(["frozen"], False, None)
 
 
@@ -31,7 +54,7 @@ def on(found: Benchmark, *curve: str) -> list[Point]:
 def test_every_point_is_whole(measured: Benchmark) -> None:
     """Evaluations are those of the method: RK4 has four a step."""
     assert {each.curve: len(on(measured, *vars(each.curve).values())) for each in measured.points} == {
-        curve: len(values) for curve, values in stubs.LADDERS.items()
+        curve: len(values) for curve, values in LADDERS.items()
     }
     for point in measured.points:
         assert point.failure is None, point
@@ -41,7 +64,7 @@ def test_every_point_is_whole(measured: Benchmark) -> None:
         assert point.setup is not None
         known = point.parameter == "timestep" or point.model.startswith("SciPy")
         assert (point.evaluations is not None) == known
-    steps = [round(CASES["frozen"].times[-1] / each) for each in stubs.STEPS]
+    steps = [round(CASES["frozen"].times[-1] / each) for each in STEPS]
     assert [each.evaluations for each in on(measured, "reduced", "RK4")] == [4 * count for count in steps]
     few, *_, many = (each.evaluations or 0 for each in on(measured, "reduced", "DOP853"))
     assert 12 * CASES["frozen"].times[-1] / 64e-3 * 0.9 < few < many
@@ -55,7 +78,7 @@ def test_what_is_written_is_read(measured: Benchmark, tmp_path: pathlib.Path) ->
 
 def test_a_setting_that_fails_is_a_point_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
     """A second is too long for a timestep, and the ladder goes on."""
-    stubs.benchmark(monkeypatch, {Curve("reduced", "DOP853"): (1.0, 8e-3)})
+    short(monkeypatch, {Curve("reduced", "DOP853"): (1.0, 8e-3)})
     failed, other = conduct(["frozen"], False, None).points
     assert failed.failure is not None
     assert math.isinf(failed.error)
@@ -88,7 +111,7 @@ def test_the_command_writes_everything(
     tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     reason = "libfmt.so.11: cannot open shared object file: No such file or directory"
-    stubs.benchmark(monkeypatch)
+    short(monkeypatch)
     monkeypatch.setattr(other_tools, "absent", lambda: {"heyoka": reason})
     assert main(["benchmark", "frozen", "--output", str(tmp_path / "new")]) == 0
     names = {each.name for each in (tmp_path / "new").iterdir()}
