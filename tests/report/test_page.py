@@ -67,10 +67,8 @@ def test_validate_tells_a_failure_whatever_is_asked_for(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
-    seen = {"good": 1e-6, "other": error}
-    rows = [
-        Claim(name, "a stub", Witness("none", seen.copy), Bound(1e-3, ""), f"1 + seen['{name}'] - 1") for name in seen
-    ]
+    seen = ("good", lambda: 1e-6), ("other", lambda: error)
+    rows = [Claim(name, "a stub", Witness("none", see), Bound(1e-3, ""), "1 + seen - 1") for name, see in seen]
     monkeypatch.setattr(paper, "claims", lambda: rows)
     monkeypatch.setattr(terminal, "is_read_by_eye", lambda: eye)
     assert main(["validate", *options]) == status

@@ -67,9 +67,8 @@ def test_the_study_is_written(
     first: dict[str, Check] = {}
     for check in stability_study.plan(True):
         first.setdefault(check.group, check)
-    small = {"maps": partial(measure, PLANS[0], 4)}
-    small["search"] = partial(stability_study.batch, 0, 4)
-    first |= {group: replace(first[group], measure=measure) for group, measure in small.items()}
+    small = {"maps": partial(measure, PLANS[0], 4), "search": partial(stability_study.batch, 0, 4)}
+    first |= {group: replace(first[group], measure=few) for group, few in small.items()}
     monkeypatch.setattr(stability_study, "plan", lambda quick: list(first.values()))
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     assert main(["stability", "--quick", "--json", "--output", str(tmp_path)]) == 0
