@@ -25,11 +25,6 @@ def first_metre(volume: float, incline: float, friction: float = 1.0, drag: floa
     return over_first_metre(let_go(scene, times_of(scene)))
 
 
-def footnote_4(volume: float) -> float:
-    scene = water_in(volume, 0.1, friction=0.0)
-    return scene.acceleration() / (scene.gravity * math.sin(scene.incline))
-
-
 def test_the_can_holds_what_it_says() -> None:
     assert CAN.mass == pytest.approx(0.013, rel=1e-14)
     for volume in (0.3, 177.0, 350.0):
@@ -51,22 +46,14 @@ def test_jackson_s_two_facts() -> None:
     """Nearly empty: below a half, which no can without friction is, and still where the wall cannot take all of the
     water. Nearly full: near one."""
     for incline, volume in zip(INCLINES, (8.0, 6.5, 5.0), strict=True):
-        assert footnote_4(volume) > 0.5
+        assert water_in(volume, incline, friction=0.0).acceleration() > 0.5 * GRAVITY * math.sin(incline)
         assert first_metre(volume, incline) < 0.5
         assert first_metre(350, incline) > 0.9
     for incline, volume in zip(INCLINES, (13.0, 9.0, 7.5), strict=True):
         assert first_metre(volume, incline, drag=DRAG) < 0.5
-        assert volume > film_holds(incline)
-
-
-def film_holds(incline: float) -> float:
-    """The volume [mL] of water that a film on the wall can hold at the end of the first metre.
-
-    There the can has the speed that it would have with half of g sin(alpha), sqrt(g sin(alpha) 1 m).
-    """
-    water, gravity = LIQUIDS["water"], GRAVITY
-    speed = math.sqrt(gravity * math.sin(incline) * 1.0)
-    return 1e6 * FILM_LOAD * math.sqrt(water.viscosity * speed / gravity) * CAN.radius * CAN.length
+        speed = math.sqrt(GRAVITY * math.sin(incline) * 1.0)  # with half of g sin(alpha), after a metre
+        film = FILM_LOAD * math.sqrt(LIQUIDS["water"].viscosity * speed / GRAVITY)  # at most, over a l [m]
+        assert volume > 1e6 * film * CAN.radius * CAN.length
 
 
 def metre_of_a_full_can(incline: float) -> float:
