@@ -27,13 +27,7 @@ _no_opengl = functools.cache(opengl.problem)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """If everything is to be there, take warnings for errors, and end the tests at once if something is not there.
-
-    The message has all that is missing.
-
-    Raises:
-      UsageError: in that case.
-    """
+    """If everything is to be there, take warnings for errors, and end the tests with a list of what is not there."""
     if not os.environ.get("MJBEER_EVERYTHING"):
         return
     config.getini("filterwarnings").insert(0, "error")  # below the others, of which the last that fits decides
