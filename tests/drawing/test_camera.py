@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from mjbeer import exact, frozen, hoop, sliding
 from mjbeer.drawing.camera import CAMERAS, View, circle, follow, on_incline, scale
+from mjbeer.drawing.scene import coordinates
 from mjbeer.theory.can import RADIUS
 
 # Rounding of a dozen operations on places of up to 2000 pixels.
@@ -55,7 +56,7 @@ MOTIONS = {
 
 def followed(name: str, camera):
     motion = MOTIONS[name]
-    return follow(motion.scene, camera, TIMES, motion.u, motion.lift, PLANE, WIDE)
+    return follow(motion.scene, camera, TIMES, coordinates(motion, TIMES), PLANE, WIDE)
 
 
 @pytest.mark.parametrize("camera", CAMERAS)

@@ -29,7 +29,7 @@ def motion(incline: float = 0.2) -> Trajectory:
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
     """Return the view of the film of a motion without charts and marks, below its title: 1.9 radii around its can."""
     plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels)[0](0.0)
+    return follow(run.scene, "fixed", run.time, coordinates(run, run.time), plane, pixels)[0](0.0)
 
 
 class Seen:

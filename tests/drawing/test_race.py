@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from mjbeer import Can, exact, frozen, simulate, sliding
+from mjbeer import Can, frozen, simulate, sliding
 from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.scene import Scene
 
 METAL = Can.sheet_metal()
 INCLINE = 0.1
-# A run to a tolerance of 1e-9 radians, over the speed at the finish, 1 m/s: far below a nanosecond.
-SIMULATED = 1e-9
 
 
 def run(scene: Scene, phi0: float = 0.0, duration: float = 2.5) -> Runner:
@@ -33,12 +31,6 @@ def run(scene: Scene, phi0: float = 0.0, duration: float = 2.5) -> Runner:
 def test_times_are_those_of_even_acceleration(scene: Scene, acceleration: float) -> None:
     time = math.sqrt(2 * 1.0 / (acceleration * 9.81 * math.sin(INCLINE)))
     assert run(scene).finish(1.0) == pytest.approx(time, rel=2e-4)  # the fill of 1e-3 is a ten-thousandth of the mass
-
-
-@pytest.mark.parametrize(("scene", "phi0"), [(sliding(INCLINE, can=METAL), 1.0), (frozen(INCLINE, can=METAL), math.pi)])
-def test_at_the_finish_a_can_is_at_the_line(scene: Scene, phi0: float) -> None:
-    motion = exact(scene, np.array([0.0, run(scene, phi0, 2.0).finish(0.7)]), phi0)
-    assert motion.u[1] - motion.u[0] == pytest.approx(0.7, abs=SIMULATED * motion.u_dot[1])
 
 
 def test_the_plates_have_all_times() -> None:

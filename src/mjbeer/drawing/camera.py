@@ -124,18 +124,18 @@ def follow(
     scene: Scene,
     camera: Camera,
     time: np.ndarray,
-    u: np.ndarray,
-    lift: np.ndarray,
-    plane: float,
+    positions: np.ndarray,
+    front: float,
     pixels: tuple[int, int],
     below: float = AROUND,
 ) -> tuple[Callable[[float], View], bool]:
     """Return the view at a time [s] that a camera has of a can, and whether it stands still.
 
-    It shows a can that is at `u` and `lift` [m] at some times [s], its near end in the `plane` y [m], with at least so
-    many radii `below` its axis.
+    It shows a can that is at u, phi, roll and lift in the rows of `positions` at some times [s], its near end in the
+    plane y = `front` [m], with at least so many radii `below` its axis.
     """
-    along, height, shape = u * scale(scene), lift * scale(scene), np.array(pixels) / pixels[1]
+    along, height = scale(scene) * positions[:, [0, 3]].T
+    shape = np.array(pixels) / pixels[1]
 
     def shown(way: Polynomial) -> tuple[np.ndarray, np.ndarray]:
         """Return the middle of what is seen, from the point at the way's distance, and its width and height [m]."""
@@ -153,6 +153,6 @@ def follow(
 
     def view(time: float) -> View:
         x, z = on_incline(scene, way(time), 0.0) + middle
-        return View.facing(np.array([x, plane, z]), metres, pixels)
+        return View.facing(np.array([x, front, z]), metres, pixels)
 
     return view, still

@@ -92,9 +92,9 @@ def _pictures(
     seen = height - top - below  # of the scene, where notes are above what the camera shows
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
     positions, plane = coordinates(trajectory, fine), display.ends()[0]
-    motion = fine, positions[:, 0], positions[:, 3]
     under = _BELOW if "normal" in look.marks else AROUND
-    camera, still = follow(trajectory.scene, look.camera, *motion, plane, (width, seen - spare), under)
+    pixels = width, seen - spare
+    camera, still = follow(trajectory.scene, look.camera, fine, positions, plane, pixels, under)
     marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())

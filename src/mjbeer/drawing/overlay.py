@@ -16,7 +16,6 @@ from mjbeer.drawing.words import in_words
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
@@ -104,22 +103,23 @@ def head(sheet: Sheet, title: str, words: str, time: float, speed: float, digits
         sheet.text((1.2 * unit, row * unit), said, max(fits, 0.5) * size * unit, colour, bold=bold)
 
 
-NOTES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray]]] = {
+NOTES: dict[str, tuple[str, Callable[[Trajectory], np.ndarray]]] = {
     "flies": (
         "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
-        lambda scene, motion: motion.lift > 0.02 * scene.can.radius,
+        lambda motion: motion.lift > 0.02 * motion.scene.can.radius,
     ),
     "slips": (  # what a contact that rolls creeps is no slip
         "it slips: rolling needs more friction than μN",
-        lambda scene, motion: (
-            (motion.u_dot - scene.can.radius * motion.roll_dot) ** 2 > 8e-4 * scene.gravity * scene.can.radius
+        lambda motion: (
+            (motion.u_dot - motion.scene.can.radius * motion.roll_dot) ** 2
+            > 8e-4 * motion.scene.gravity * motion.scene.can.radius
         ),
     ),
-    "heavy": ("the {load} below presses the {body} down", lambda *of: strip.QUANTITIES["normal"][1](*of) > 1.8),
-    "light": ("the {load} pulls up: the {body} hardly presses", lambda *of: strip.QUANTITIES["normal"][1](*of) < 0.4),
+    "heavy": ("the {load} below presses the {body} down", lambda motion: strip.forces(motion)[0] > 1.8),
+    "light": ("the {load} pulls up: the {body} hardly presses", lambda motion: strip.forces(motion)[0] < 0.4),
     "hesitates": (
         "the {load} is uphill: the {body} hesitates",
-        lambda scene, motion: np.gradient(motion.u_dot, motion.time) < scene.acceleration() / 2,
+        lambda motion: np.gradient(motion.u_dot, motion.time) < motion.scene.acceleration() / 2,
     ),
 }
 """What a note says while a motion does something, and when it does, by name; the first that holds is shown."""
@@ -130,7 +130,7 @@ def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[floa
     time, noted = np.append(motion.time, motion.time[-1]), dict[str, list[tuple[float, float]]]()
     _, body, load = _KINDS[looks.name(motion.scene)]
     for words, holds in (NOTES[name] for name in names):
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion.scene, motion), [False]])))
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion), [False]])))
         found = noted.setdefault(words.format(body=body, load=load, lift=1e3 * motion.lift.max()), [])
         for first, last in time[edges].reshape(-1, 2).tolist():  # a brief pause does not interrupt a note
             begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / 50 else first
@@ -166,7 +166,7 @@ class Marks:
         self._motion, self._look, self._plane, self._fine, self._positions = trajectory, look, plane, fine, positions
         self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
         if "normal" in look.marks:
-            forces = strip.forces(trajectory.scene, trajectory) / strip.weight(trajectory.scene)
+            forces = strip.forces(trajectory)
             largest = max(np.percentile(np.hypot(*forces), 90), _FAINT)  # a larger one is rare
             self._forces = min(1.0, LONGEST / largest) * forces  # lengths of their arrows
 
@@ -178,7 +178,7 @@ class Marks:
             getattr(self, f"_{mark}")()
 
     def _ghost(self) -> None:
-        roll = float(strip.even(self._motion.scene, self._motion, np.array(self._time))) / self._radius
+        roll = float(strip.even(self._motion, np.array(self._time))) / self._radius
         centre, turned = np.array([roll, 1.0]), np.array([math.sin(roll), math.cos(roll)])
         self._line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
         self._line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)
