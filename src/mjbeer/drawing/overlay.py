@@ -59,7 +59,6 @@ HEIGHT = 4.1  # height of the first two lines
 HEADER = 5.6  # and with the third, which tells what the marks mean
 STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
-_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
 _RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
@@ -80,27 +79,26 @@ def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed:
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
     sheet.blank(0, round(HEADER * sheet.unit))
     head(sheet, look.title, in_words(trajectory.scene), time, speed, digits)
-    unit, (_, body, _), column = sheet.unit, _KINDS[looks.name(trajectory.scene)], 1.2 * sheet.unit
+    unit, column, row = sheet.unit, 1.2 * sheet.unit, 4.7 * sheet.unit
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
-        *_, column, _ = sheet.text((column, _THIRD * unit), sign, 1.1 * unit, colour, bold=True)
-        *_, column, _ = sheet.text((column + 0.5 * unit, _THIRD * unit), meaning.format(body), 1.0 * unit)
+        words = meaning.format(_KINDS[looks.name(trajectory.scene)][1])
+        *_, column, _ = sheet.text((column, row), sign, 1.1 * unit, colour, bold=True)
+        *_, column, _ = sheet.text((column + 0.5 * unit, row), words, 1.0 * unit)
         column += 1.8 * unit
 
 
 def head(sheet: Sheet, title: str, words: str, time: float, speed: float, digits: int = 2) -> None:
     """Draw a title and a scene in words, the `time` [s] with some digits after the point, and the playback speed."""
     pace, unit = f"slowed down {1 / speed:.3g} times" if speed < 1 else f"sped up {speed:.3g} times", sheet.unit
+    left, right, pace = 1.2 * unit, sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
     sheet.blank(0, round(HEIGHT * unit))
-    right, pace = sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
-    for row, size, colour, said, aside in (
-        (_FIRST, 1.45, INK, title, f"t = {time:.{digits}f} s"),
-        (_SECOND, 1.1, "#52606d", words, pace),
-    ):
-        bold = row == _FIRST
-        room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5), speed > 1 and not bold)
-        *_, end, _ = sheet.box((1.2 * unit, 0), said, size * unit, bold=bold)
-        fits = min(1.0, (room - 2 * unit) / end)
-        sheet.text((1.2 * unit, row * unit), said, max(fits, 0.5) * size * unit, colour, bold=bold)
+    lines = (1.5, 1.45, INK, title, f"t = {time:.{digits}f} s"), (3.2, 1.1, "#52606d", words, pace)
+    for row, size, colour, said, aside in lines:
+        bold = said == title
+        room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5))
+        *_, end, _ = sheet.box((left, 0), said, size * unit, bold=bold)
+        fits = max(0.5, min(1.0, (room - 2 * unit) / end))
+        sheet.text((left, row * unit), said, fits * size * unit, colour, bold=bold)
 
 
 NOTES: dict[str, tuple[str, Callable[[Trajectory], np.ndarray]]] = {
@@ -110,10 +108,7 @@ NOTES: dict[str, tuple[str, Callable[[Trajectory], np.ndarray]]] = {
     ),
     "slips": (  # what a contact that rolls creeps is no slip
         "it slips: rolling needs more friction than μN",
-        lambda motion: (
-            (motion.u_dot - motion.scene.can.radius * motion.roll_dot) ** 2
-            > 8e-4 * motion.scene.gravity * motion.scene.can.radius
-        ),
+        lambda motion: np.abs(np.gradient(motion.slip, motion.time)) > 0.09 * np.sqrt(motion.scene.can.radius),
     ),
     "heavy": ("the {load} below presses the {body} down", lambda motion: strip.forces(motion)[0] > 1.8),
     "light": ("the {load} pulls up: the {body} hardly presses", lambda motion: strip.forces(motion)[0] < 0.4),

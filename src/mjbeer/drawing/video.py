@@ -36,8 +36,7 @@ _ENCODED = (
     *("-movflags", "+faststart"),  # a player can start before it has loaded the whole file
 )
 """What ffmpeg is told about a file besides."""
-_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-"""Errors of the disk. ffmpeg prints the system's message for them."""
+_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # ffmpeg prints the system's message for them
 
 
 def render(

@@ -19,13 +19,11 @@ from mjbeer.model.looks import WALL
 from mjbeer.theory.scenes import sliding
 from mjbeer.theory.standing import QUANTITATIVE, Standing, standing
 
-_FORCE_X = 3  # place of the level force in MuJoCo's force of a body on its parent: the moment comes first
 _TIMESTEP = 5e-4  # [s]
 _DISTANCE, _LONGEST = 0.4, 2.4  # way of the grippers [m], and how long the film watches them [s]
 _APART, _HIGH = 0.34, 0.015  # distance of the grippers, and height at which they hold their cans [m]
 _LEFT, _EYE = -0.26, np.array([0.1, -2.2, 1.5])  # where the picture begins, and where the eye is [m]
-_PLATES = 24  # flat faces around half a can
-_STEEL = np.array([0.32, 0.36, 0.42])
+_PLATES, _STEEL = 24, np.array([0.32, 0.36, 0.42])  # flat faces around half a can, and a colour
 
 
 class Carried(NamedTuple):
@@ -54,7 +52,7 @@ def carry(can: Standing, distance: float = _DISTANCE, duration: float = 1.0, aft
         model.opt.gravity[0] = -now
         mujoco.mj_forward(model, data)
         mujoco.mj_rnePostConstraint(model, data)
-        force[step] = data.cfrc_int[body, _FORCE_X]
+        force[step] = data.cfrc_int[body, 3]  # the level force on its parent: the moment comes first
         rise[step] = sum(data.sensor(f"slosh{mode}_rise").data[0] for mode in range(1, can.modes + 1))
         model.opt.gravity[0] = -pushed[step]
         mujoco.mj_step(model, data)
