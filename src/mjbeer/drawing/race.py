@@ -63,8 +63,8 @@ class Race:
     length: float  # distance from start to finish, or that is seen from the start on [m]
     duration: float  # [s]
     speed: float
-    still: float
     told: Callable[[], str] = str  # a function that says what is seen, in whole sentences, for the text beside the film
+    still: float = 0.0
     facts: str = ""  # what holds for all cans besides the incline, such as "all full"; it stands below the title
     centres: bool = False
 
