@@ -161,7 +161,7 @@ def test_gravity_is_plumb_and_the_angle_of_the_incline_is_drawn_and_written(incl
 
 
 @pytest.mark.parametrize("incline", [-10, 0, 10, 30])
-@pytest.mark.parametrize("radius", [1e-3, 0.033, 1.0])
+@pytest.mark.parametrize("radius", [1e-3, 1.0])
 def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -> None:
     """Each tick is where a point of the board at that distance from the start is seen, in a can of any size."""
     scene, start = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius)), radius / 3

@@ -44,16 +44,13 @@ def test_what_cannot_happen_is_dotted() -> None:
 
 def test_a_plot_shows_what_is_asked_for() -> None:
     run = simulate(frozen(), 0.2, 1.0)
-    (only,) = run.plot("phi")
-    assert (only.get_ylabel(), only.get_xlabel()) == ("φ [°]", "time [s]")
     rate, energy = run.plot("phi_dot", "energy", theory=True)
     assert np.array_equal(rate.get_lines()[1].get_ydata(), np.degrees(run.phi_dot))
     assert np.array_equal(energy.get_lines()[1].get_ydata(), run.energy)
     plt.close("all")
-    with pytest.raises(ParameterError, match=r"quantity must be one of 'phi', 'u', .*'energy'; got 'ph'$"):
-        run.plot("ph")
-    with pytest.raises(ParameterError, match="quantity must be one of 'phi', 'u'"):
-        run.plot(True)
+    for name in ("ph", True):
+        with pytest.raises(ParameterError, match=r"quantity must be one of 'phi', 'u', .*'energy'; got "):
+            run.plot(name)
 
 
 @pytest.mark.draws
