@@ -50,7 +50,7 @@ class Recorder(Sheet):
 def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
     """Draw marks, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
-    view = follow(motion.scene, "fixed", TIMES, positions, PLANE, PIXELS)[0](time)
+    view = follow(motion, "fixed", PLANE, PIXELS)[0](time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
     Marks(motion, Look("", marks=kinds), PLANE, TIMES, positions).draw(sheet, view, time, now)
@@ -132,7 +132,7 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
 def guided(scene: Scene, times: np.ndarray, camera: Camera, start: float = 0.0) -> tuple[Recorder, Board, View]:
     motion, display = exact(scene, times, 1.0), Display.of([scene])
     board = Board(display, start)
-    view = follow(scene, camera, times, coordinates(motion, times), display.ends()[0], PIXELS)[0](0.0)
+    view = follow(motion, camera, display.ends()[0], PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
     board.draw(sheet, view)
     return sheet, board, view

@@ -76,9 +76,6 @@ def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatc
     assert repr(run) == (
         f"<Run frozen, contact, RK4: 501 samples to t = 0.5 s, phi = {run.phi[-1]:.6g} rad, u = {run.u[-1]:.6g} m>"
     )
-    assert repr(exact(sliding(), [1.0], 0.0)) == (
-        "<Trajectory sliding, exact, exact: 1 sample to t = 1 s, phi = 0 rad, u = 0.851744 m>"
-    )
 
 
 def test_a_scene_in_words() -> None:

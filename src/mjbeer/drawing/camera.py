@@ -10,6 +10,7 @@ from numpy.polynomial import Polynomial
 
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
 
 Camera = Literal["auto", "fixed", "pan"]
 """fixed: still, and so far away that all of the motion is seen. pan: moves along the incline with the constant
@@ -121,32 +122,25 @@ class View:
 
 
 def follow(
-    scene: Scene,
-    camera: Camera,
-    time: np.ndarray,
-    positions: np.ndarray,
-    front: float,
-    pixels: tuple[int, int],
-    below: float = AROUND,
+    motion: Trajectory, camera: Camera, front: float, pixels: tuple[int, int], below: float = AROUND
 ) -> tuple[Callable[[float], View], bool]:
-    """Return the view at a time [s] that a camera has of a can, and whether it stands still.
+    """Return the view at a time [s] that a camera has of a moving can, and whether the camera stands still.
 
-    It shows a can that is at u, phi, roll and lift in the rows of `positions` at some times [s], its near end in the
-    plane y = `front` [m], with at least so many radii `below` its axis.
+    The can's near end is in the plane y = `front` [m], and so many radii `below` its axis are seen, at least.
     """
-    along, height = scale(scene) * positions[:, [0, 3]].T
-    shape = np.array(pixels) / pixels[1]
+    scene, time, shape = motion.scene, motion.time, np.array(pixels) / pixels[1]
+    along, height = motion.u * scale(scene), motion.lift * scale(scene)
 
     def shown(way: Polynomial) -> tuple[np.ndarray, np.ndarray]:
         """Return the middle of what is seen, from the point at the way's distance, and its width and height [m]."""
-        places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([AROUND, below])
-        high = places.max(axis=0) + RADIUS * AROUND
+        axis = on_incline(scene, along - way(time), height + RADIUS)
+        low = axis.min(axis=0) - RADIUS * np.array([AROUND, below])
+        high = axis.max(axis=0) + RADIUS * AROUND
         return (low + high) / 2, ((high - low) / shape).max() * shape
 
     way = Polynomial([(along.min() + along.max()) / 2])  # distance of the camera down the incline, as drawn [m]
     middle, metres = shown(way)
-    still = camera == "fixed" or bool(time[0] == time[-1] or (camera == "auto" and RADIUS / metres[1] >= _SMALLEST))
+    still = camera == "fixed" or bool(len(time) < 3 or (camera == "auto" and RADIUS / metres[1] >= _SMALLEST))
     if not still:
         way = Polynomial.fit(time, along, 2).convert()
         middle, metres = shown(way)

@@ -93,8 +93,7 @@ def _pictures(
     fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
     positions, plane = coordinates(trajectory, fine), display.ends()[0]
     under = _BELOW if "normal" in look.marks else AROUND
-    pixels = width, seen - spare
-    camera, still = follow(trajectory.scene, look.camera, fine, positions, plane, pixels, under)
+    camera, still = follow(trajectory, look.camera, plane, (width, seen - spare), under)
     marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())
