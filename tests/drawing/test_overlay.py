@@ -32,15 +32,9 @@ class Recorder(Sheet):
     def __init__(self, width: int, height: int) -> None:
         super().__init__(width, height)
         self.lines, self.arrows, self.discs, self.words = [], [], [], []
-
-    def line(self, places: np.ndarray, *arguments: Any, **more: Any) -> None:
-        self.lines.append(places)
-
-    def arrow(self, tail: np.ndarray, head: np.ndarray, *arguments: Any, **more: Any) -> None:
-        self.arrows.append((np.asarray(tail), np.asarray(head)))
-
-    def disc(self, place: np.ndarray, *arguments: Any, **more: Any) -> None:
-        self.discs.append(place)
+        self.line = lambda places, *_, **__: self.lines.append(places)
+        self.arrow = lambda tail, head, *_, **__: self.arrows.append((np.asarray(tail), np.asarray(head)))
+        self.disc = lambda place, *_, **__: self.discs.append(place)
 
     def text(self, place: Any, words: str, *arguments: Any, **more: Any) -> Box:
         self.words.append(words)

@@ -98,20 +98,15 @@ def test_bad_input_says_what_is_allowed(
 )
 @pytest.mark.usefixtures("undrawn")
 def test_a_broken_ffmpeg_or_a_full_disk_leaves_nothing_and_says_why(
-    script: str,
-    kind: type[Exception],
-    reason: str,
-    tmp_path_factory: pytest.TempPathFactory,
-    tmp_path: pathlib.Path,
-    monkeypatch: pytest.MonkeyPatch,
+    script: str, kind: type[Exception], reason: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    program = tmp_path_factory.mktemp("bin") / "ffmpeg"
+    program = tmp_path / "ffmpeg"
     program.write_text(f"#!/bin/sh\n{script}")
     program.chmod(0o755)
     monkeypatch.setenv("IMAGEIO_FFMPEG_EXE", str(program))
     with pytest.raises(kind, match=reason):
         video.render(motion(), tmp_path / "can.mp4", progress=False, **SIZE)
-    assert os.listdir(tmp_path) == []
+    assert os.listdir(tmp_path) == ["ffmpeg"]
 
 
 @pytest.mark.parametrize("error", [KeyboardInterrupt(), RenderingError("no more"), MemoryError()])
@@ -156,9 +151,8 @@ def test_opengl_that_does_not_start_says_what_installs_it(monkeypatch: pytest.Mo
     assert "apt-get install -y libegl1" in str(opengl.problem())
 
 
-@pytest.mark.parametrize("asked", ["banana", "osmesa"])
-def test_what_draws_nothing_needs_no_opengl(asked: str) -> None:
-    """MuJoCo itself cannot be imported with the first, nor with the second where there is none."""
-    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=os.environ | {"MUJOCO_GL": asked})
+def test_what_draws_nothing_needs_no_opengl() -> None:
+    """MuJoCo itself cannot be imported with this."""
+    status, out, err = run(["simulate", "frozen", "--duration", "0.01"], env=os.environ | {"MUJOCO_GL": "banana"})
     assert (status, err) == (0, "")
     assert "phi at the end" in out

@@ -21,8 +21,6 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 AROUND = 1.9
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
 _SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
-_FAR = 4.0  # distance of the eye, in diagonals of the picture: the longer, the less of the can's inside is seen
-_ABOVE = 0.18  # how far the eye is above the middle of the picture, in heights: it sees the board's upper side
 
 
 def scale(scene: Scene) -> float:
@@ -66,7 +64,8 @@ class View:
 
         `centre` is the rectangle's centre and `metres` its width and height [m].
         """
-        distance, above = _FAR * float(np.hypot(*metres)), _ABOVE * float(metres[1])
+        # The longer the distance, the less of the can's inside is seen; from above, the board's upper side is.
+        distance, above = 4 * float(np.hypot(*metres)), 0.18 * float(metres[1])
         foot = np.array([0.0, -above])
         low, high = (foot - metres / 2) / distance, (foot + metres / 2) / distance
         return cls(centre + np.array([0.0, -distance, above]), _LEVEL, low, high, distance, pixels)

@@ -142,8 +142,7 @@ def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time:
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
 
-LONGEST = 1.6
-"""Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
+LONGEST = 1.6  # longest arrow of a force; that of the weight is 1. Only the blow of a landing would be longer
 _CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
 _FAINT = 0.05  # least length of an arrow that is drawn
 

@@ -13,15 +13,11 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from PIL import Image, ImageDraw, ImageFont
 
-Colour = str | tuple[float, float, float]
-"""A colour as matplotlib takes it."""
-Pair = np.ndarray | tuple[float, float]
-"""A column and a row [pixels], or shares of a width and a height."""
-Box = tuple[float, float, float, float]
-"""Left, top, right and bottom [pixels]."""
+Colour = str | tuple[float, float, float]  # as matplotlib takes it
+Pair = np.ndarray | tuple[float, float]  # a column and a row [pixels], or shares of a width and a height
+Box = tuple[float, float, float, float]  # left, top, right and bottom [pixels]
 
-INK = "#1f2933"
-"""Colour of texts and of lines that explain."""
+INK = "#1f2933"  # colour of texts and of lines that explain
 _EDGE = 2  # width of the white edge around a text that may lie on anything [pixels]
 _HEAD = 3.2  # length of an arrow's head, in widths of its line
 

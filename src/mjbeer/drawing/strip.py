@@ -21,7 +21,6 @@ from mjbeer.theory.trajectory import Trajectory
 
 _MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
 _THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
-_MARKED = "#fff1b8"  # colour of the spans of time that are marked
 _STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.right": False,
@@ -32,7 +31,6 @@ _STYLE: dict[Any, Any] = {
 }
 _LETTERS = 1.15  # height of letters, in units
 _INTERVALS = 50  # number of intervals of a motion over which forces are averaged
-_SMOOTH = 1500  # times at which theory's lines are computed
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +59,7 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
     """Return the charts of some quantities of a trajectory, by their names in QUANTITIES, with what theory says."""
     theory = None
     if trajectory.rolling != "exact" and trajectory.time[0] >= 0:
-        times = np.linspace(trajectory.time[0], trajectory.time[-1], _SMOOTH)
+        times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
             theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
@@ -168,7 +166,7 @@ class Strip:
             width = (0.18 if line.colour else 0.5) * unit
             panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
         for first, last in self._marked:
-            panel.axvspan(first, last, color=_MARKED, linewidth=0)
+            panel.axvspan(first, last, color="#fff1b8", linewidth=0)
         panel.set_title(chart.title, fontsize=_LETTERS * unit, loc="left", pad=0.45 * unit)
         panel.xaxis.set_major_formatter("{x:g} s")
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))

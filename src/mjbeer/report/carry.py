@@ -100,8 +100,7 @@ class Carry:
         corners = [_OUTLINE + np.array([x, y, _HIGH]) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
         view = View.towards(_EYE, np.reshape(corners, (-1, 3)), (width, height - top - below), top, 0.02)
         lines = [Line(f"moved in {each:g} s", run.time, run.force, MOVES[each]) for each, run in runs.items()]
-        solid = can.mass + can.can.mass
-        lines += [Line("solid beer", run.time, solid * run.acceleration) for run in runs.values()]
+        lines += [Line("solid beer", run.time, (can.mass + can.can.mass) * run.acceleration) for run in runs.values()]
         strip = Strip([Chart("force [N]", lines)], width, below)
         scenery.draw(sheet, view)
         empty = sheet.part(top, height - below)
@@ -114,9 +113,8 @@ class Carry:
                 _draw_gripper(sheet, view, scenery, can, place, rise, np.array(MOVES[duration]))
                 highest = np.abs(run.rise[run.time <= time]).max()
                 trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
-                side = view.pixel(place + np.array([-0.065, 0, can.height]))
-                said = f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"
-                sheet.plate(side, said, MOVES[duration], (1, 0.5))
+                said, side = (f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"), [-0.065, 0, can.height]
+                sheet.plate(view.pixel(place + np.array(side)), said, MOVES[duration], (1, 0.5))
             head(sheet, self.title, "half a 12-oz can of beer, carried 0.4 m", time, self.speed)
             strip.draw(sheet, time, height - below)
             yield sheet.picture()
