@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable
 from contextlib import closing
+from functools import partial
 
 import numpy as np
 import pytest
@@ -29,35 +30,29 @@ def motion(incline: float = 0.2) -> Trajectory:
 def still_view(run: Trajectory, pixels: tuple[int, int]) -> View:
     """Return the view of the film of a motion without charts and marks, below its title: 1.9 radii around its can."""
     plane = -run.scene.can.length / run.scene.can.radius * RADIUS / 2
-    return follow(run.scene, "fixed", run.time, run.u, run.lift, plane, pixels)[0](0.0)
+    return follow(run, "fixed", plane, pixels)[0](0.0)
 
 
-class Seen:
-    """A picture of a scene at rest somewhere, and where things are in it."""
+def look(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Callable[[float, float, float], np.ndarray]]:
+    """What is seen of a scene with the load at some angles phi and the can at some angles of roll [rad].
 
-    def __init__(self, pixels: np.ndarray, view: View, top: int, axis: np.ndarray) -> None:
-        self.pixels, self.view, self.top, self.axis = pixels.astype(int), view, top, axis
-
-    def at(self, x: float, z: float, tilt: float) -> np.ndarray:
-        """Colour on the can's open end, at x and z in radii on axes that are turned by `tilt` [rad]."""
-        turned = np.array([x * math.cos(tilt) + z * math.sin(tilt), z * math.cos(tilt) - x * math.sin(tilt)])
-        place = self.axis + RADIUS * turned
-        plane = self.view.eye[1] + self.view.distance
-        column, row = self.view.pixel(np.array([place[0], plane, place[1]]))
-        return self.pixels[int(row) + self.top, int(column)]
-
-
-def look(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Seen]:
-    """Pictures of a scene with the load at some angles phi and the can at some angles of roll [rad]."""
+    That is the colour on the can's open end, at x and z in radii on axes that are turned by a tilt [rad].
+    """
     times, rest, u = np.arange(len(phis), dtype=float), np.zeros(len(phis)), scene.can.radius * rolls
     places = {"u": u, "phi": phis, "roll": rolls, "lift": rest}
     rates = dict.fromkeys(("u_dot", "phi_dot", "roll_dot", "lift_dot"), rest)
     still = Trajectory(scene=scene, phi0=phis[0], phi_dot0=0.0, time=times, **places, **rates)
     top = round(HEADER * Sheet(*SIZE).unit)
     view = still_view(still, (SIZE[0], SIZE[1] - top))
-    axes = on_incline(scene, u * scale(scene), RADIUS)
+
+    def at(picture: np.ndarray, along: float, x: float, z: float, tilt: float) -> np.ndarray:
+        turned = np.array([x * math.cos(tilt) + z * math.sin(tilt), z * math.cos(tilt) - x * math.sin(tilt)])
+        right, up = on_incline(scene, along * scale(scene), RADIUS) + RADIUS * turned
+        column, row = view.pixel(np.array([right, view.eye[1] + view.distance, up]))
+        return picture[int(row) + top, int(column)].astype(int)
+
     drawn = MotionFilm(lambda: still, 1.0, FIXED).plan().draw(times, *SIZE)
-    return [Seen(each, view, top, axis) for each, axis in zip(drawn, axes, strict=True)]
+    return [partial(at, *of) for of in zip(drawn, u, strict=True)]
 
 
 @pytest.mark.draws
@@ -72,11 +67,11 @@ def test_the_end_shows_a_circular_segment_of_beer(fill: float) -> None:
     chord = 2 * fill - 1
     for phi, seen in zip(phis, look(scene, phis, phis + 0.1), strict=True):
         tilt = phi + scene.incline
-        assert is_amber(seen.at(0, -segment(fill).offset, tilt))
+        assert is_amber(seen(0, -segment(fill).offset, tilt))
         there = {True: 0, False: 0}
         for x, z in np.random.default_rng(1).uniform(-0.95, 0.95, (500, 2)):
             if np.hypot(x, z) < 0.95 and abs(z - chord) > 0.05:
-                amber = is_amber(seen.at(x, z, tilt))
+                amber = is_amber(seen(x, z, tilt))
                 assert amber == (z < chord), (phi, x, z)
                 there[amber] += 1
         assert min(there.values()) > 20
@@ -93,7 +88,7 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
     scene = make(0.3)
     rolls = np.linspace(0, 2 * np.pi, 9)[:-1]
     for roll, seen in zip(rolls, look(scene, rolls if make is frozen else np.ones(8), rolls), strict=True):
-        marks = [seen.at(0, side * 1.03, roll + scene.incline) for side in (1, -1)]
+        marks = [seen(0, side * 1.03, roll + scene.incline) for side in (1, -1)]
         reds = [colour[0] > 2 * colour[1] and colour[0] > 2 * colour[2] for colour in marks]
         assert reds == [True, False], roll
 

@@ -32,15 +32,9 @@ class Recorder(Sheet):
     def __init__(self, width: int, height: int) -> None:
         super().__init__(width, height)
         self.lines, self.arrows, self.discs, self.words = [], [], [], []
-
-    def line(self, places: np.ndarray, *arguments: Any, **more: Any) -> None:
-        self.lines.append(places)
-
-    def arrow(self, tail: np.ndarray, head: np.ndarray, *arguments: Any, **more: Any) -> None:
-        self.arrows.append((np.asarray(tail), np.asarray(head)))
-
-    def disc(self, place: np.ndarray, *arguments: Any, **more: Any) -> None:
-        self.discs.append(place)
+        self.line = lambda places, *_, **__: self.lines.append(places)
+        self.arrow = lambda tail, head, *_, **__: self.arrows.append((np.asarray(tail), np.asarray(head)))
+        self.disc = lambda place, *_, **__: self.discs.append(place)
 
     def text(self, place: Any, words: str, *arguments: Any, **more: Any) -> Box:
         self.words.append(words)
@@ -50,7 +44,7 @@ class Recorder(Sheet):
 def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
     """Draw marks, and return the sheet, the view, and the coordinates at that time."""
     positions = coordinates(motion, TIMES)
-    view = follow(motion.scene, "fixed", TIMES, positions[:, 0], positions[:, 3], PLANE, PIXELS)[0](time)
+    view = follow(motion, "fixed", PLANE, PIXELS)[0](time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
     Marks(motion, Look("", marks=kinds), PLANE, TIMES, positions).draw(sheet, view, time, now)
@@ -132,7 +126,7 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
 def guided(scene: Scene, times: np.ndarray, camera: Camera, start: float = 0.0) -> tuple[Recorder, Board, View]:
     motion, display = exact(scene, times, 1.0), Display.of([scene])
     board = Board(display, start)
-    view = follow(scene, camera, times, motion.u, motion.lift, display.ends()[0], PIXELS)[0](0.0)
+    view = follow(motion, camera, display.ends()[0], PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
     board.draw(sheet, view)
     return sheet, board, view
@@ -161,7 +155,7 @@ def test_gravity_is_plumb_and_the_angle_of_the_incline_is_drawn_and_written(incl
 
 
 @pytest.mark.parametrize("incline", [-10, 0, 10, 30])
-@pytest.mark.parametrize("radius", [1e-3, 0.033, 1.0])
+@pytest.mark.parametrize("radius", [1e-3, 1.0])
 def test_the_numbers_on_the_board_are_distances(incline: float, radius: float) -> None:
     """Each tick is where a point of the board at that distance from the start is seen, in a can of any size."""
     scene, start = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius)), radius / 3

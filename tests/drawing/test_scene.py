@@ -17,31 +17,24 @@ from tests.support.scenes import METAL, scenes
 ROUNDING = 1e-12
 
 
-def in_incline(scene: Scene, point: np.ndarray) -> tuple[float, float]:
-    """Distance down the incline and height over it, in the scene's metres, of a point of the drawn world."""
-    sine, cosine = math.sin(scene.incline), math.cos(scene.incline)
-    x, _, z = point / scale(scene)
-    return x * cosine - z * sine, x * sine + z * cosine
-
-
 def check(display: Display, number: int, u: float, phi: float, roll: float, lift: float) -> None:
-    """Check that a can of a posed display is where it should be."""
+    """Check that a can of a posed display is where it should be: distances down the incline and heights over it."""
     scene, data, prefix = display.scenes[number], display.data, f"{number}-" if number else ""
-    a, b = scene.can.radius, scene.load.offset
-    close = pytest.approx
-    tolerance = ROUNDING * (abs(u) + abs(lift) + a) * (1 + abs(phi))
-    # Paper's Fig. 3: the axis at (u, 0), the load's centre of mass at (u - b sin phi, -b cos phi).
-    axis = data.body(f"{prefix}can").xpos
-    assert in_incline(scene, axis) == close((u, a + lift), abs=tolerance)
-    assert axis[1] == close(display.lanes[number], abs=ROUNDING)
-    load = data.body(f"{prefix}{'load' if scene.attachment == 'sliding' else 'can'}")
-    centre = load.xpos + load.xmat.reshape(3, 3) @ [0, 0, -b * scale(scene)]
-    assert in_incline(scene, centre) == close((u - b * math.sin(phi), a + lift - b * math.cos(phi)), abs=tolerance)
-    # What was on top of the can where it has not rolled goes downhill from there.
-    can = data.body(f"{prefix}can")
-    top = can.xpos + can.xmat.reshape(3, 3) @ [0, 0, RADIUS]
-    expected = u + a * math.sin(roll), a + lift + a * math.cos(roll)
-    assert in_incline(scene, top) == close(expected, abs=tolerance * (1 + abs(roll)))
+    a, b, tolerance = scene.can.radius, scene.load.offset, ROUNDING * (abs(u) + abs(lift) + scene.can.radius)
+    sine, cosine = math.sin(scene.incline), math.cos(scene.incline)
+    can, load = (data.body(prefix + name) for name in ("can", "load" if scene.attachment == "sliding" else "can"))
+    # Paper's Fig. 3: the axis at (u, 0), the load's centre of mass at (u - b sin phi, -b cos phi). What was on top of
+    # the can where it has not rolled goes downhill from there.
+    for body, up, along, height, turned in (
+        (can, 0.0, u, a + lift, 0.0),
+        (load, -b * scale(scene), u - b * math.sin(phi), a + lift - b * math.cos(phi), phi),
+        (can, RADIUS, u + a * math.sin(roll), a + lift + a * math.cos(roll), roll),
+    ):
+        x, _, z = (body.xpos + body.xmat.reshape(3, 3) @ [0, 0, up]) / scale(scene)
+        assert (x * cosine - z * sine, x * sine + z * cosine) == pytest.approx(
+            (along, height), abs=tolerance * (1 + abs(phi) + abs(turned))
+        )
+    assert can.xpos[1] == pytest.approx(display.lanes[number], abs=ROUNDING)
 
 
 @pytest.mark.slow

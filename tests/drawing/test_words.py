@@ -44,16 +44,13 @@ def test_what_cannot_happen_is_dotted() -> None:
 
 def test_a_plot_shows_what_is_asked_for() -> None:
     run = simulate(frozen(), 0.2, 1.0)
-    (only,) = run.plot("phi")
-    assert (only.get_ylabel(), only.get_xlabel()) == ("φ [°]", "time [s]")
     rate, energy = run.plot("phi_dot", "energy", theory=True)
     assert np.array_equal(rate.get_lines()[1].get_ydata(), np.degrees(run.phi_dot))
     assert np.array_equal(energy.get_lines()[1].get_ydata(), run.energy)
     plt.close("all")
-    with pytest.raises(ParameterError, match=r"quantity must be one of 'phi', 'u', .*'energy'; got 'ph'$"):
-        run.plot("ph")
-    with pytest.raises(ParameterError, match="quantity must be one of 'phi', 'u'"):
-        run.plot(True)
+    for name in ("ph", True):
+        with pytest.raises(ParameterError, match=r"quantity must be one of 'phi', 'u', .*'energy'; got "):
+            run.plot(name)
 
 
 @pytest.mark.draws
@@ -78,9 +75,6 @@ def test_a_run_is_one_line_and_does_not_run_again(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("mjbeer.simulation.run.compare_uneven", lambda _: pytest.fail("a second run"))
     assert repr(run) == (
         f"<Run frozen, contact, RK4: 501 samples to t = 0.5 s, phi = {run.phi[-1]:.6g} rad, u = {run.u[-1]:.6g} m>"
-    )
-    assert repr(exact(sliding(), [1.0], 0.0)) == (
-        "<Trajectory sliding, exact, exact: 1 sample to t = 1 s, phi = 0 rad, u = 0.851744 m>"
     )
 
 

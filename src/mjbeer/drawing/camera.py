@@ -10,6 +10,7 @@ from numpy.polynomial import Polynomial
 
 from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import Trajectory
 
 Camera = Literal["auto", "fixed", "pan"]
 """fixed: still, and so far away that all of the motion is seen. pan: moves along the incline with the constant
@@ -20,8 +21,6 @@ _LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 AROUND = 1.9
 """What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
 _SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
-_FAR = 4.0  # distance of the eye, in diagonals of the picture: the longer, the less of the can's inside is seen
-_ABOVE = 0.18  # how far the eye is above the middle of the picture, in heights: it sees the board's upper side
 
 
 def scale(scene: Scene) -> float:
@@ -65,7 +64,8 @@ class View:
 
         `centre` is the rectangle's centre and `metres` its width and height [m].
         """
-        distance, above = _FAR * float(np.hypot(*metres)), _ABOVE * float(metres[1])
+        # The longer the distance, the less of the can's inside is seen; from above, the board's upper side is.
+        distance, above = 4 * float(np.hypot(*metres)), 0.18 * float(metres[1])
         foot = np.array([0.0, -above])
         low, high = (foot - metres / 2) / distance, (foot + metres / 2) / distance
         return cls(centre + np.array([0.0, -distance, above]), _LEVEL, low, high, distance, pixels)
@@ -121,38 +121,31 @@ class View:
 
 
 def follow(
-    scene: Scene,
-    camera: Camera,
-    time: np.ndarray,
-    u: np.ndarray,
-    lift: np.ndarray,
-    plane: float,
-    pixels: tuple[int, int],
-    below: float = AROUND,
+    motion: Trajectory, camera: Camera, front: float, pixels: tuple[int, int], below: float = AROUND
 ) -> tuple[Callable[[float], View], bool]:
-    """Return the view at a time [s] that a camera has of a can, and whether it stands still.
+    """Return the view at a time [s] that a camera has of a moving can, and whether the camera stands still.
 
-    It shows a can that is at `u` and `lift` [m] at some times [s], its near end in the `plane` y [m], with at least so
-    many radii `below` its axis.
+    The can's near end is in the plane y = `front` [m], and so many radii `below` its axis are seen, at least.
     """
-    along, height, shape = u * scale(scene), lift * scale(scene), np.array(pixels) / pixels[1]
+    scene, time, shape = motion.scene, motion.time, np.array(pixels) / pixels[1]
+    along, height = motion.u * scale(scene), motion.lift * scale(scene)
 
     def shown(way: Polynomial) -> tuple[np.ndarray, np.ndarray]:
         """Return the middle of what is seen, from the point at the way's distance, and its width and height [m]."""
-        places = on_incline(scene, along - way(time), height + RADIUS)
-        low = places.min(axis=0) - RADIUS * np.array([AROUND, below])
-        high = places.max(axis=0) + RADIUS * AROUND
+        axis = on_incline(scene, along - way(time), height + RADIUS)
+        low = axis.min(axis=0) - RADIUS * np.array([AROUND, below])
+        high = axis.max(axis=0) + RADIUS * AROUND
         return (low + high) / 2, ((high - low) / shape).max() * shape
 
     way = Polynomial([(along.min() + along.max()) / 2])  # distance of the camera down the incline, as drawn [m]
     middle, metres = shown(way)
-    still = camera == "fixed" or bool(time[0] == time[-1] or (camera == "auto" and RADIUS / metres[1] >= _SMALLEST))
+    still = camera == "fixed" or bool(len(time) < 3 or (camera == "auto" and RADIUS / metres[1] >= _SMALLEST))
     if not still:
         way = Polynomial.fit(time, along, 2).convert()
         middle, metres = shown(way)
 
     def view(time: float) -> View:
         x, z = on_incline(scene, way(time), 0.0) + middle
-        return View.facing(np.array([x, plane, z]), metres, pixels)
+        return View.facing(np.array([x, front, z]), metres, pixels)
 
     return view, still

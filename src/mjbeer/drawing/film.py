@@ -18,9 +18,6 @@ from mjbeer.exceptions import ParameterError
 from mjbeer.theory.trajectory import Trajectory
 
 _MOST_FRAMES = 1e6  # largest number of frames of a video: nine hours at 30 frames per second
-_NARROW = 24  # width up to which a picture has no charts below, in units
-_FINE = 2000  # points of a path
-_BELOW = 3.0  # what is seen below the can's axis, in radii, where the arrows of forces are
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,10 +43,9 @@ class RenderPlan:
 
 
 class Film(Protocol):
-    """A film. It can be pickled, so that another process can draw it.
+    """A film, which can be pickled so that another process can draw it, with what its caption says.
 
-    Its caption says what is seen. Its still picture shows a time [s]; 0 is a third of the way through. `plan` computes
-    the motion, and returns what is needed to draw it.
+    Its still picture shows a time [s]; 0 is a third of the way through. `plan` computes its motion.
     """
 
     @property
@@ -86,15 +82,14 @@ def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
     sheet, display = Sheet(width, height), Display.of([trajectory.scene])
-    has_room = len(trajectory.time) > 1 and width > _NARROW * sheet.unit
+    has_room = len(trajectory.time) > 1 and width > 24 * sheet.unit  # in a narrower picture charts are not readable
     below = round(STRIP * sheet.unit) if has_room and look.strips else 0
     top, spare = round(HEADER * sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
     seen = height - top - below  # of the scene, where notes are above what the camera shows
-    fine = np.linspace(trajectory.time[0], trajectory.time[-1], _FINE)
+    fine = np.linspace(trajectory.time[0], trajectory.time[-1], 2000)
     positions, plane = coordinates(trajectory, fine), display.ends()[0]
-    motion = fine, positions[:, 0], positions[:, 3]
-    under = _BELOW if "normal" in look.marks else AROUND
-    camera, still = follow(trajectory.scene, look.camera, *motion, plane, (width, seen - spare), under)
+    under = 3.0 if "normal" in look.marks else AROUND  # in radii: the arrows of forces are below the can
+    camera, still = follow(trajectory, look.camera, plane, (width, seen - spare), under)
     marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())

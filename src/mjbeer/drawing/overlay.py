@@ -16,7 +16,6 @@ from mjbeer.drawing.words import in_words
 from mjbeer.model import looks
 from mjbeer.model.looks import WALL
 from mjbeer.theory.can import RADIUS
-from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
@@ -60,7 +59,6 @@ HEIGHT = 4.1  # height of the first two lines
 HEADER = 5.6  # and with the third, which tells what the marks mean
 STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
-_FIRST, _SECOND, _THIRD = 1.5, 3.2, 4.7  # where each of them is
 _RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
@@ -81,45 +79,42 @@ def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed:
     digits = max(2, math.ceil(-math.log10(duration)) + 1) if duration > 0 else 2
     sheet.blank(0, round(HEADER * sheet.unit))
     head(sheet, look.title, in_words(trajectory.scene), time, speed, digits)
-    unit, (_, body, _), column = sheet.unit, _KINDS[looks.name(trajectory.scene)], 1.2 * sheet.unit
+    unit, column, row = sheet.unit, 1.2 * sheet.unit, 4.7 * sheet.unit
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
-        *_, column, _ = sheet.text((column, _THIRD * unit), sign, 1.1 * unit, colour, bold=True)
-        *_, column, _ = sheet.text((column + 0.5 * unit, _THIRD * unit), meaning.format(body), 1.0 * unit)
+        words = meaning.format(_KINDS[looks.name(trajectory.scene)][1])
+        *_, column, _ = sheet.text((column, row), sign, 1.1 * unit, colour, bold=True)
+        *_, column, _ = sheet.text((column + 0.5 * unit, row), words, 1.0 * unit)
         column += 1.8 * unit
 
 
 def head(sheet: Sheet, title: str, words: str, time: float, speed: float, digits: int = 2) -> None:
     """Draw a title and a scene in words, the `time` [s] with some digits after the point, and the playback speed."""
     pace, unit = f"slowed down {1 / speed:.3g} times" if speed < 1 else f"sped up {speed:.3g} times", sheet.unit
+    left, right, pace = 1.2 * unit, sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
     sheet.blank(0, round(HEIGHT * unit))
-    right, pace = sheet.width - 1.2 * unit, "real time" if speed == 1 else pace
-    for row, size, colour, said, aside in (
-        (_FIRST, 1.45, INK, title, f"t = {time:.{digits}f} s"),
-        (_SECOND, 1.1, "#52606d", words, pace),
-    ):
-        bold = row == _FIRST
-        room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5), speed > 1 and not bold)
-        *_, end, _ = sheet.box((1.2 * unit, 0), said, size * unit, bold=bold)
-        fits = min(1.0, (room - 2 * unit) / end)
-        sheet.text((1.2 * unit, row * unit), said, max(fits, 0.5) * size * unit, colour, bold=bold)
+    lines = (1.5, 1.45, INK, title, f"t = {time:.{digits}f} s"), (3.2, 1.1, "#52606d", words, pace)
+    for row, size, colour, said, aside in lines:
+        bold = said == title
+        room, *_ = sheet.text((right, row * unit), aside, size * unit, colour, (1, 0.5))
+        *_, end, _ = sheet.box((left, 0), said, size * unit, bold=bold)
+        fits = max(0.5, min(1.0, (room - 2 * unit) / end))
+        sheet.text((left, row * unit), said, fits * size * unit, colour, bold=bold)
 
 
-NOTES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray]]] = {
+NOTES: dict[str, tuple[str, Callable[[Trajectory], np.ndarray]]] = {
     "flies": (
         "its {load} pulls it up: it flies, up to {lift:.0f} mm high",
-        lambda scene, motion: motion.lift > 0.02 * scene.can.radius,
+        lambda motion: motion.lift > 0.02 * motion.scene.can.radius,
     ),
     "slips": (  # what a contact that rolls creeps is no slip
         "it slips: rolling needs more friction than μN",
-        lambda scene, motion: (
-            (motion.u_dot - scene.can.radius * motion.roll_dot) ** 2 > 8e-4 * scene.gravity * scene.can.radius
-        ),
+        lambda motion: np.abs(np.gradient(motion.slip, motion.time)) > 0.09 * np.sqrt(motion.scene.can.radius),
     ),
-    "heavy": ("the {load} below presses the {body} down", lambda *of: strip.QUANTITIES["normal"][1](*of) > 1.8),
-    "light": ("the {load} pulls up: the {body} hardly presses", lambda *of: strip.QUANTITIES["normal"][1](*of) < 0.4),
+    "heavy": ("the {load} below presses the {body} down", lambda motion: strip.forces(motion)[0] > 1.8),
+    "light": ("the {load} pulls up: the {body} hardly presses", lambda motion: strip.forces(motion)[0] < 0.4),
     "hesitates": (
         "the {load} is uphill: the {body} hesitates",
-        lambda scene, motion: np.gradient(motion.u_dot, motion.time) < scene.acceleration() / 2,
+        lambda motion: np.gradient(motion.u_dot, motion.time) < motion.scene.acceleration() / 2,
     ),
 }
 """What a note says while a motion does something, and when it does, by name; the first that holds is shown."""
@@ -130,7 +125,7 @@ def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[floa
     time, noted = np.append(motion.time, motion.time[-1]), dict[str, list[tuple[float, float]]]()
     _, body, load = _KINDS[looks.name(motion.scene)]
     for words, holds in (NOTES[name] for name in names):
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion.scene, motion), [False]])))
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], holds(motion), [False]])))
         found = noted.setdefault(words.format(body=body, load=load, lift=1e3 * motion.lift.max()), [])
         for first, last in time[edges].reshape(-1, 2).tolist():  # a brief pause does not interrupt a note
             begins = found.pop()[0] if found and first - found[-1][1] < np.ptp(time) / 50 else first
@@ -147,8 +142,7 @@ def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time:
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
 
-LONGEST = 1.6
-"""Longest arrow of a force; that of the weight is one radius long. Only the blow of a landing would be longer."""
+LONGEST = 1.6  # longest arrow of a force; that of the weight is 1. Only the blow of a landing would be longer
 _CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
 _FAINT = 0.05  # least length of an arrow that is drawn
 
@@ -166,7 +160,7 @@ class Marks:
         self._motion, self._look, self._plane, self._fine, self._positions = trajectory, look, plane, fine, positions
         self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
         if "normal" in look.marks:
-            forces = strip.forces(trajectory.scene, trajectory) / strip.weight(trajectory.scene)
+            forces = strip.forces(trajectory)
             largest = max(np.percentile(np.hypot(*forces), 90), _FAINT)  # a larger one is rare
             self._forces = min(1.0, LONGEST / largest) * forces  # lengths of their arrows
 
@@ -178,7 +172,7 @@ class Marks:
             getattr(self, f"_{mark}")()
 
     def _ghost(self) -> None:
-        roll = float(strip.even(self._motion.scene, self._motion, np.array(self._time))) / self._radius
+        roll = float(strip.even(self._motion, np.array(self._time))) / self._radius
         centre, turned = np.array([roll, 1.0]), np.array([math.sin(roll), math.cos(roll)])
         self._line(centre + circle(1 + WALL), 0.05, _GHOST, dashes=(3, 2.5))
         self._line(centre + np.array([[0.8], [1 + WALL]]) * turned, 0.07, _GHOST)

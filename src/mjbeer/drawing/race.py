@@ -19,10 +19,8 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.trajectory import Trajectory
 
 _APART = 0.225  # distance from lane to lane as drawn [m]; a can is 0.12 m long
-_BEFORE = 0.4  # room for the names on the board before the start, in lengths of the race
 _EYE = np.array([0.0, -math.cos(0.6), math.sin(0.6)])
 """Direction of the eye: in front of the board, and so high above it that no can hides another."""
-_AFTER = 0.4  # how long before its end a race says what time the cans will need that have not finished [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +61,8 @@ class Race:
     length: float  # distance from start to finish, or that is seen from the start on [m]
     duration: float  # [s]
     speed: float
-    told: Callable[[], str]  # a function that says what is seen, in whole sentences, for the text beside the film
-    still: float
+    told: Callable[[], str] = str  # a function that says what is seen, in whole sentences, for the text beside the film
+    still: float = 0.0
     facts: str = ""  # what holds for all cans besides the incline, such as "all full"; it stands below the title
     centres: bool = False
 
@@ -78,19 +76,19 @@ class Race:
         return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, self.runners()))
 
     def results(self, runners: Sequence[Runner]) -> list[tuple[float, str]]:
-        """Return from when on a can's plate has its time at the finish [s], and what it says."""
+        """Return from when on a can's plate has its time [s], 0.4 s before the end at the latest, and what it says."""
         finishes, end = [runner.finish(self.length) for runner in runners], self.duration
         places = [sorted(finishes).index(finish) for finish in finishes]
         ordinals = "1st", "2nd", "3rd", *(f"{place + 1}th" for place in range(3, len(runners)))
         results = [(finish, f"{ordinals[at]}: {finish:.2f} s") for finish, at in zip(finishes, places, strict=True)]
-        return [of if of[0] < end else (end - _AFTER, f"needs {of[0]:.2f} s") for of in results]
+        return [of if of[0] < end else (end - 0.4, f"needs {of[0]:.2f} s") for of in results]
 
     def _pictures(self, runners: Sequence[Runner], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
         top, size, facts = round(HEIGHT * sheet.unit), scale(scenes[0]), [f"incline {in_degrees(scenes[0].incline)}"]
         display = Display.of(scenes, _APART)
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
-        ends = np.outer([-_BEFORE * self.length, self.length], [1, 0, 0, 0])
+        ends = np.outer([-0.4 * self.length, self.length], [1, 0, 0, 0])  # names have room before the start
         points = np.reshape([display.outline(lane, end) for lane in range(len(scenes)) for end in ends], (-1, 3))
         eye = points.mean(axis=0) + 6 * self.length * _EYE
         view = View.towards(eye, points, (width, height - top), top, margin=0.01)

@@ -142,10 +142,6 @@ class Scenery:
 
     def draw(self, sheet: Sheet, view: View) -> None:
         """Draw what a view shows onto a sheet. The rows above and below it are not kept."""
-        self._wall(sheet, view)
-        self._board(sheet, view)
-
-    def _wall(self, sheet: Sheet, view: View) -> None:
         y = float(self.display.model.geom("wall").pos[1])
         corners = view.corners(y)
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -155,8 +151,9 @@ class Scenery:
         sheet.area(view.pixel(np.insert(corners, 1, y, axis=-1)), self.lit(_WALL, _NEAR, view))
         width = _LINE * view.scale(np.insert(low, 1, y))
         sheet.line(_separated(places), width, self.lit(_GRID, _NEAR, view))
+        self._draw_board(sheet, view)
 
-    def _board(self, sheet: Sheet, view: View) -> None:
+    def _draw_board(self, sheet: Sheet, view: View) -> None:
         board, scene = self.display.model.geom("board"), self.display.scenes[0]
         (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
         seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(scene, 1.0, 0.0)

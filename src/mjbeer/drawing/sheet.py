@@ -13,19 +13,13 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from PIL import Image, ImageDraw, ImageFont
 
-Colour = str | tuple[float, float, float]
-"""A colour as matplotlib takes it."""
-Pair = np.ndarray | tuple[float, float]
-"""A column and a row [pixels], or shares of a width and a height."""
-Box = tuple[float, float, float, float]
-"""Left, top, right and bottom [pixels]."""
+Colour = str | tuple[float, float, float]  # as matplotlib takes it
+Pair = np.ndarray | tuple[float, float]  # a column and a row [pixels], or shares of a width and a height
+Box = tuple[float, float, float, float]  # left, top, right and bottom [pixels]
 
-_UNITS = 34  # height of a picture in units
-INK = "#1f2933"
-"""Colour of texts and of lines that explain."""
+INK = "#1f2933"  # colour of texts and of lines that explain
 _EDGE = 2  # width of the white edge around a text that may lie on anything [pixels]
 _HEAD = 3.2  # length of an arrow's head, in widths of its line
-_LINE = 1.5  # height of a line on a plate, in units
 
 
 class Sheet:
@@ -36,7 +30,7 @@ class Sheet:
         self._pixels = np.asarray(self._renderer.buffer_rgba())
         self._pixels[:] = 255
         self._flip = Affine2D().scale(1, -1).translate(0, height)
-        self.width, self.height, self.unit = width, height, height / _UNITS
+        self.width, self.height, self.unit = width, height, height / 34
         """The unit of length of letters and margins [pixels]."""
         self.boxes: list[Box] = []
         """The boxes of all texts on this picture."""
@@ -138,14 +132,12 @@ class Sheet:
         """Draw a plate with lines, the first of them bold and in a colour; `anchor` is as for texts."""
         unit, sizes = self.unit, [(1.05 if number else 1.2) * self.unit for number in range(len(lines))]
         wide = max(self.box((0, 0), *of, bold=of[0] == lines[0])[2] for of in zip(lines, sizes, strict=True))
-        width, height = wide + 1.2 * unit, (len(lines) * _LINE + 0.5) * unit
-        left, top = place - np.multiply(anchor, [width, height])
-        self.area(
-            np.array([[left, top], [left + width, top], [left + width, top + height], [left, top + height]]), ground
-        )
+        width, height = wide + 1.2 * unit, (1.5 * len(lines) + 0.5) * unit
+        corner = place - np.multiply(anchor, [width, height])
+        self.area(corner + np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) * [width, height], ground)
         for number, (words, size) in enumerate(zip(lines, sizes, strict=True)):
-            row = top + ((number + 0.5) * _LINE + 0.25) * unit
-            self.text((left + 0.6 * unit, row), words, size, INK if number else colour, bold=number == 0)
+            start = corner + np.array([0.6, 1.5 * number + 1]) * unit
+            self.text(start, words, size, INK if number else colour, bold=number == 0)
 
     def _pen(self, width: float, colour: Colour, alpha: float):
         pen = self._renderer.new_gc()

@@ -16,12 +16,11 @@ from matplotlib.figure import Figure
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import MjbeerError
 from mjbeer.theory.exact import exact_motion
-from mjbeer.theory.scene import GRAVITY, Scene
+from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory
 
 _MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
 _THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
-_MARKED = "#fff1b8"  # colour of the spans of time that are marked
 _STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.right": False,
@@ -32,7 +31,6 @@ _STYLE: dict[Any, Any] = {
 }
 _LETTERS = 1.15  # height of letters, in units
 _INTERVALS = 50  # number of intervals of a motion over which forces are averaged
-_SMOOTH = 1500  # times at which theory's lines are computed
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,16 +59,16 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
     """Return the charts of some quantities of a trajectory, by their names in QUANTITIES, with what theory says."""
     theory = None
     if trajectory.rolling != "exact" and trajectory.time[0] >= 0:
-        times = np.linspace(trajectory.time[0], trajectory.time[-1], _SMOOTH)
+        times = np.linspace(trajectory.time[0], trajectory.time[-1], 1500)
         with contextlib.suppress(MjbeerError):  # a start that rounding decides has no exact motion
             theory = exact_motion(trajectory.scene, times, trajectory.phi0, trajectory.phi_dot0)
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
     for name in names:
         title, values, limits = QUANTITIES[name]
-        lines = [Line(source, trajectory.time, values(trajectory.scene, trajectory), _MUJOCO)]
+        lines = [Line(source, trajectory.time, values(trajectory), _MUJOCO)]
         if theory is not None:
             rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
-            lines.append(Line("theory", theory.time[rolls], values(theory.scene, theory)[rolls]))
+            lines.append(Line("theory", theory.time[rolls], values(theory)[rolls]))
         if name == "normal" and trajectory.rolling == "contact":
             title = f"N [weights], mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
         if (peak := lines[0].values.max()) > limits.get("high", math.inf):
@@ -84,16 +82,15 @@ def wrapped(angle: np.ndarray | float) -> np.ndarray:
     return (np.degrees(angle) + 180) % 360 - 180
 
 
-def even(scene: Scene, motion: Trajectory, time: np.ndarray) -> np.ndarray:
+def even(motion: Trajectory, time: np.ndarray) -> np.ndarray:
     """Return where a can would be at some times [s] that accelerates evenly [m].
 
     It starts with the same momentum as the can of the motion, and with its load at rest in it where that has an
     equilibrium: the motion goes to and fro about it. With damping or drag no can accelerates evenly. It is then one
     that has neither, and what it gains on the motion is what they cost.
     """
-    if scene.dissipates:
-        scene = dataclasses.replace(scene, damping=0.0, drag=0.0)
-    u, u_dot = motion.u[0], motion.u_dot[0]
+    scene, u, u_dot = motion.scene, motion.u[0], motion.u_dot[0]
+    scene = dataclasses.replace(scene, damping=0.0, drag=0.0) if scene.dissipates else scene
     if scene.attachment == "sliding":
         swing = scene.load.moment / scene.effective_mass
         u = u - swing * (math.sin(motion.phi[0]) - math.sin(scene.equilibrium()))
@@ -102,45 +99,32 @@ def even(scene: Scene, motion: Trajectory, time: np.ndarray) -> np.ndarray:
     return u + u_dot * since + scene.acceleration() * since**2 / 2
 
 
-def forces(scene: Scene, motion: Trajectory) -> np.ndarray:
-    """Return the normal and the friction force [N] that act in a motion, also while the can slips or is in the air.
+def forces(motion: Trajectory) -> np.ndarray:
+    """Return the normal force and the friction that act in a motion, also while the can slips or is in the air.
 
-    They follow from the change of the momentum of can and load. Each is the mean force over a fiftieth of the motion: a
-    can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre, and each
-    landing is a blow. The friction is positive up the incline. The shape is (2, samples).
+    They are in weights of can and load, without gravity those on earth, and have the shape (2, samples); the friction
+    is positive up the incline. They follow from the change of the momentum, and each is the mean over a fiftieth of the
+    motion: a can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre,
+    and each landing is a blow.
     """
-    load, heavy = scene.load.moment, scene.mass * scene.gravity
+    scene, time, load = motion.scene, motion.time, motion.scene.load.moment
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
     along = scene.mass * motion.u_dot - load * np.cos(motion.phi) * motion.phi_dot
-    half = np.ptp(motion.time) / _INTERVALS / 2
-    first = np.maximum(motion.time - half, motion.time[0])
-    last = np.minimum(motion.time + half, motion.time[-1])
-
-    def change(momentum: np.ndarray) -> np.ndarray:
-        values = np.interp(last, motion.time, momentum) - np.interp(first, motion.time, momentum)
-        return values / (last - first)
-
-    normal = heavy * math.cos(scene.incline) + change(across)
-    return np.array([normal, heavy * math.sin(scene.incline) - change(along)])
+    half = np.ptp(time) / _INTERVALS / 2
+    first, last = np.maximum(time - half, time[0]), np.minimum(time + half, time[-1])
+    ends = [[np.interp(end, time, momentum) for end in (first, last)] for momentum in (across, -along)]
+    gravity = scene.mass * scene.gravity * np.array([[math.cos(scene.incline)], [math.sin(scene.incline)]])
+    return (gravity + np.diff(ends, axis=1)[:, 0] / (last - first)) / (scene.mass * (scene.gravity or GRAVITY))
 
 
-def weight(scene: Scene) -> float:
-    """Return the weight of can and load [N], in which forces are drawn; without gravity, that on earth."""
-    return scene.mass * (scene.gravity or GRAVITY)
-
-
-QUANTITIES: dict[str, tuple[str, Callable[[Scene, Trajectory], np.ndarray], dict[str, float]]] = {
-    "phi": ("angle of the load, φ [°]", lambda _, motion: wrapped(motion.phi), {"least": 10.0}),
-    "u": ("distance [m]", lambda _, motion: motion.u - motion.u[0], {}),
-    "u_dot": ("speed [m/s]", lambda _, motion: motion.u_dot, {}),
-    "ahead": (
-        "ahead of even acceleration [mm]",
-        lambda scene, motion: 1e3 * (motion.u - even(scene, motion, motion.time)),
-        {},
-    ),
-    "normal": ("normal force, N [weights]", lambda *of: forces(*of)[0] / weight(of[0]), {"low": -1.0, "high": 4.0}),
-    "lift": ("height of flight [mm]", lambda _, motion: 1e3 * motion.lift, {}),
-    "slip": ("slid instead of rolled [mm]", lambda _, motion: 1e3 * (motion.slip - motion.slip[0]), {}),
+QUANTITIES: dict[str, tuple[str, Callable[[Trajectory], np.ndarray], dict[str, float]]] = {
+    "phi": ("angle of the load, φ [°]", lambda motion: wrapped(motion.phi), {"least": 10.0}),
+    "u": ("distance [m]", lambda motion: motion.u - motion.u[0], {}),
+    "u_dot": ("speed [m/s]", lambda motion: motion.u_dot, {}),
+    "ahead": ("ahead of even acceleration [mm]", lambda motion: 1e3 * (motion.u - even(motion, motion.time)), {}),
+    "normal": ("normal force, N [weights]", lambda motion: forces(motion)[0], {"low": -1.0, "high": 4.0}),
+    "lift": ("height of flight [mm]", lambda motion: 1e3 * motion.lift, {}),
+    "slip": ("slid instead of rolled [mm]", lambda motion: 1e3 * (motion.slip - motion.slip[0]), {}),
 }
 """What a chart can show, by name: its title, its values, shape (samples,), and the chart's limits."""
 
@@ -182,7 +166,7 @@ class Strip:
             width = (0.18 if line.colour else 0.5) * unit
             panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
         for first, last in self._marked:
-            panel.axvspan(first, last, color=_MARKED, linewidth=0)
+            panel.axvspan(first, last, color="#fff1b8", linewidth=0)
         panel.set_title(chart.title, fontsize=_LETTERS * unit, loc="left", pad=0.45 * unit)
         panel.xaxis.set_major_formatter("{x:g} s")
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))

@@ -3,7 +3,6 @@
 import contextlib
 import errno
 import io
-import itertools
 import os
 import pathlib
 import re
@@ -37,8 +36,7 @@ _ENCODED = (
     *("-movflags", "+faststart"),  # a player can start before it has loaded the whole file
 )
 """What ffmpeg is told about a file besides."""
-_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
-"""Errors of the disk. ffmpeg prints the system's message for them."""
+_DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # ffmpeg prints the system's message for them
 
 
 def render(
@@ -69,7 +67,6 @@ def render(
     console = terminal.STDERR if require.boolean("progress", progress) else None
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
-    speed = require.positive("speed", speed)
     film = MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
     if target is None:
         with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
@@ -160,13 +157,9 @@ class FilmJob:
         """Write the film, and return its still picture as WebP."""
         plan, file = self.film.plan(), io.BytesIO()
         still = self.film.still or (2 * plan.start + plan.end) / 3  # at the start nothing has happened yet
-        nearest, number = np.argmin(np.abs(plan.times(self.fps) - still)), itertools.count()
-
-        def keep(picture: np.ndarray) -> None:
-            if next(number) == nearest:
-                Image.fromarray(picture).save(file, "WEBP", quality=70)
-
-        write(plan, self.path, self.width, self.height, self.fps, keep)
+        write(plan, self.path, self.width, self.height, self.fps)
+        (picture,) = plan.draw(np.array([still]), self.width, self.height)
+        Image.fromarray(picture).save(file, "WEBP", quality=70)
         return file.getvalue()
 
 

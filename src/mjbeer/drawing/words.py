@@ -49,7 +49,6 @@ def damping_in_words(scene: Scene) -> str:
     return " + ".join(f"{share:.4g} {unit}" for share, unit in shares if share) or "0"
 
 
-_SMOOTH = 2000  # number of samples of the line of exact theory in a plot
 _LABELS = {
     "phi": "φ [°]",
     "u": "u [m]",
@@ -88,7 +87,7 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Any
     with mpl.rc_context(STYLE):
         panels = tuple(figure.subplots(len(names), 1, sharex=True, squeeze=False).flat)
         if theory:
-            dense = np.union1d(time, np.linspace(0, time[-1], _SMOOTH))
+            dense = np.union1d(time, np.linspace(0, time[-1], 2000))
             truth = exact_motion(scene, dense, trajectory.phi0, trajectory.phi_dot0)
             for axes, name in zip(panels, names, strict=True):
                 axes.plot(dense, _values(truth, name), label="exact theory", **THEORY)

@@ -70,7 +70,6 @@ STORIES = (
             length=0.36,
             duration=0.65,
             speed=0.1,
-            told=str,  # the story has a caption
             still=0.2,
             centres=True,
         ),

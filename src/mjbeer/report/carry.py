@@ -19,13 +19,14 @@ from mjbeer.model.looks import WALL
 from mjbeer.theory.scenes import sliding
 from mjbeer.theory.standing import QUANTITATIVE, Standing, standing
 
-_FORCE_X = 3  # place of the level force in MuJoCo's force of a body on its parent: the moment comes first
 _TIMESTEP = 5e-4  # [s]
 _DISTANCE, _LONGEST = 0.4, 2.4  # way of the grippers [m], and how long the film watches them [s]
 _APART, _HIGH = 0.34, 0.015  # distance of the grippers, and height at which they hold their cans [m]
 _LEFT, _EYE = -0.26, np.array([0.1, -2.2, 1.5])  # where the picture begins, and where the eye is [m]
-_PLATES = 24  # flat faces around half a can
-_STEEL = np.array([0.32, 0.36, 0.42])
+_PLATES, _STEEL = 24, np.array([0.32, 0.36, 0.42])  # flat faces around half a can, and a colour
+_CORNERS = (-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19)
+_OUTLINE = np.array([[(x, y, z) for x, z in _CORNERS] for y in (-0.034, 0.034)])
+"""The corners of the near and the far side of what is around a gripper, from the bottom of its can [m]."""
 
 
 class Carried(NamedTuple):
@@ -54,7 +55,7 @@ def carry(can: Standing, distance: float = _DISTANCE, duration: float = 1.0, aft
         model.opt.gravity[0] = -now
         mujoco.mj_forward(model, data)
         mujoco.mj_rnePostConstraint(model, data)
-        force[step] = data.cfrc_int[body, _FORCE_X]
+        force[step] = data.cfrc_int[body, 3]  # the level force on its parent: the moment comes first
         rise[step] = sum(data.sensor(f"slosh{mode}_rise").data[0] for mode in range(1, can.modes + 1))
         model.opt.gravity[0] = -pushed[step]
         mujoco.mj_step(model, data)
@@ -96,11 +97,10 @@ class Carry:
         sheet, can = Sheet(width, height), standing()
         top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit)
         scenery = Scenery(Display.of([sliding(0.0)] * len(runs), _APART), (0.0, _DISTANCE))
-        corners = [_outline(np.array([x, y, _HIGH])) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
+        corners = [_OUTLINE + np.array([x, y, _HIGH]) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
         view = View.towards(_EYE, np.reshape(corners, (-1, 3)), (width, height - top - below), top, 0.02)
         lines = [Line(f"moved in {each:g} s", run.time, run.force, MOVES[each]) for each, run in runs.items()]
-        solid = can.mass + can.can.mass
-        lines += [Line("solid beer", run.time, solid * run.acceleration) for run in runs.values()]
+        lines += [Line("solid beer", run.time, (can.mass + can.can.mass) * run.acceleration) for run in runs.values()]
         strip = Strip([Chart("force [N]", lines)], width, below)
         scenery.draw(sheet, view)
         empty = sheet.part(top, height - below)
@@ -108,23 +108,16 @@ class Carry:
             sheet.put(empty, top)
             for lane, (duration, run) in reversed(list(enumerate(runs.items()))):
                 place = np.array([np.interp(time, run.time, run.place), lane * _APART, _HIGH])
-                scenery.shade(sheet, view, _outline(place))
+                scenery.shade(sheet, view, place + _OUTLINE)
                 rise = float(np.interp(time, run.time, run.rise))
                 _draw_gripper(sheet, view, scenery, can, place, rise, np.array(MOVES[duration]))
                 highest = np.abs(run.rise[run.time <= time]).max()
                 trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
-                side = view.pixel(place + np.array([-0.065, 0, can.height]))
-                said = f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"
-                sheet.plate(side, said, MOVES[duration], (1, 0.5))
+                said, side = (f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"), [-0.065, 0, can.height]
+                sheet.plate(view.pixel(place + np.array(side)), said, MOVES[duration], (1, 0.5))
             head(sheet, self.title, "half a 12-oz can of beer, carried 0.4 m", time, self.speed)
             strip.draw(sheet, time, height - below)
             yield sheet.picture()
-
-
-def _outline(place: np.ndarray) -> np.ndarray:
-    """Return the corners of the near and the far side of what is around a gripper [m], shape (2, 4, 3)."""
-    corners = (-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19)
-    return place + np.array([[(x, y, z) for x, z in corners] for y in (-0.034, 0.034)])
 
 
 def _draw_gripper(
@@ -155,13 +148,10 @@ def _draw_gripper(
     boxes = [(side * (wall + 0.005), length / 2, [0.004, 0.012, 0.03], colour) for side in (-1, 1)]
     boxes += [(side * (wall + 0.014), length / 2 + 0.03, [0.005, 0.01, length / 2], _STEEL) for side in (-1, 1)]
     boxes += [(0.0, length + 0.03, [wall + 0.024, 0.014, 0.008], _STEEL)]
-    for x, z, half, paint in (*boxes, (0.0, length + 0.054, [0.014, 0.012, 0.016], _STEEL)):
+    for x, z, half, paint in boxes:
         centre = np.array([x, 0.0, z])
         for axis in (0, 2, 1):  # of each two sides the one that is turned to the eye, and the front at last
             normal = np.sign(view.eye - place - centre)[axis] * np.eye(3)[axis]
             one, other = np.delete(np.eye(3), axis, axis=0)
-            face(
-                centre + half * (normal + np.array([-one - other, one - other, one + other, other - one])),
-                paint,
-                normal,
-            )
+            corners = normal + np.array([-one - other, one - other, one + other, other - one])
+            face(centre + half * corners, paint, normal)
