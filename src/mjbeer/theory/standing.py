@@ -34,14 +34,6 @@ class Reaction(NamedTuple):
     moment: np.ndarray | float  # per angular acceleration about a level axis, M_Theta [kg m^2]
 
 
-class Mode(NamedTuple):
-    """The pendulums of the modes."""
-
-    mass: np.ndarray  # slosh masses m_n [kg]
-    bob: np.ndarray  # heights z_n of the bobs above the centroid [m]
-    length: np.ndarray  # L_n [m]
-
-
 @dataclass(frozen=True)
 class Standing:
     """A can that stands, with a liquid in it whose surface is free.
@@ -110,16 +102,17 @@ class Standing:
 
         By default, here and below, the modes are those that move in the model.
         """
-        return np.sqrt(self.gravity / self._modes(count).length)
+        _, _, length = self._pendulums(count)
+        return np.sqrt(self.gravity / length)
 
     def slosh_masses(self, count: int | None = None) -> np.ndarray:
         """Return the masses of the pendulums [kg], shape (count,)."""
-        return self._modes(count).mass
+        return self._pendulums(count)[0]
 
     def pivots(self, count: int | None = None) -> np.ndarray:
         """Return the heights of the pendulums' pivots above the inside of the bottom [m], shape (count,)."""
-        modes = self._modes(count)
-        return self.height / 2 + modes.bob + modes.length
+        _, bob, length = self._pendulums(count)
+        return self.height / 2 + bob + length
 
     def damping_ratios(self, count: int | None = None) -> np.ndarray:
         """Return the damping of the modes over the critical one, shape (count,).
@@ -152,10 +145,10 @@ class Standing:
         for each in np.atleast_1d(omega):
             require.within("omega", each, 1e-6, 1e6, "rad/s")
         omega = np.asarray(omega, float)
-        series = self._modes(SERIES)
+        mass, bob, length = self._pendulums(SERIES)
         square = omega[..., None] ** 2
-        share = series.mass * square / (self.gravity / series.length - square)
-        arm = series.bob + self.gravity / square
+        share = mass * square / (self.gravity / length - square)
+        arm = bob + self.gravity / square
         force, coupling, moment = (np.sum(share * arm**power, axis=-1)[()] for power in range(3))
         return Reaction(self.mass + force, coupling, self.held_inertia + moment)
 
@@ -167,20 +160,20 @@ class Standing:
         """
         if self.modes == 0:
             return np.array([self.mass, 0.0, self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)])
-        left = Mode(*(each[self.modes :] for each in self._modes(SERIES)))
-        pivot = left.bob + left.length
-        second = self.held_inertia + np.sum(left.mass * (pivot**2 - left.bob**2))
-        return np.array([self.mass, np.sum(left.mass * left.length), second])
+        mass, bob, length = self._pendulums(SERIES)[:, self.modes :]
+        second = self.held_inertia + np.sum(mass * ((bob + length) ** 2 - bob**2))
+        return np.array([self.mass, np.sum(mass * length), second])
 
     def _xi(self, count: int | None) -> np.ndarray:
         return _roots()[: self.modes if count is None else _checked_count("count", count, SERIES)]
 
-    def _modes(self, count: int | None) -> Mode:
+    def _pendulums(self, count: int | None) -> np.ndarray:
+        """Return masses m_n [kg], heights z_n of the bobs above the centroid [m] and lengths L_n [m], (3, count)."""
         radius, height, xi = self.can.radius, self.height, self._xi(count)
         tanh = np.tanh(xi * height / radius)
         mass = self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1))
         bob = height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius))
-        return Mode(mass, bob, radius / (xi * tanh))
+        return np.array([mass, bob, radius / (xi * tanh)])
 
 
 def standing(
