@@ -139,8 +139,9 @@ class Start:
         # Rounding of the scene puts the crest elsewhere. On level ground it is at an odd multiple of pi, and how far a
         # double is from that is known to an eps.
         shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep) + EPS * abs(self.angle_past_crest)
+        torque = abs(float(potential.mean_torque(self.angle_past_crest, 0.0)))
         rounding = ROUNDINGS * (self.kinetic + abs(float(potential.below(self.angle_past_crest))))
-        rounding += abs(float(potential.torque(self.angle_past_crest))) * shift + potential.curvature * shift**2
+        rounding += torque * shift + potential.curvature * shift**2
         share = ROUNDINGS * steep**2 + (rounding / margin if margin > 0 else math.inf)
         # Each time that the motion passes or nears a crest, it is early or late by that share of 1/lambda.
         lingering = math.sqrt(float(self.oscillator.inertia(math.pi + potential.crest_past_pi)) / potential.curvature)

@@ -58,10 +58,6 @@ class Potential:
         """Return V(crest) - V(crest + x) [J] for `x` [rad] of either sign; at x = -y it is V(rest + y) - V(rest)."""
         return self.excess * x + self.balanced * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
 
-    def torque(self, x: np.ndarray | float) -> np.ndarray:
-        """Return -V' [N m] at an angle `x` [rad] past the crest."""
-        return self.excess + 2 * self.balanced * np.sin(x / 2) ** 2 + self.curvature * np.sin(x)
-
     def mean_torque(self, x: float, length: np.ndarray | float) -> np.ndarray:
         """Return (V(crest + x) - V(crest + x + length)) / length [N m], which is smooth through length 0."""
         middle, half = x + length / 2, length / 2
