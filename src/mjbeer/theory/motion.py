@@ -215,9 +215,9 @@ class Turns:
 
     def __init__(self, start: Start, energies: np.ndarray, uphill: bool = False) -> None:
         self._oscillator, self._potential, self._energies = start.oscillator, start.potential, energies
-        self._uphill, begin = uphill, start.potential.turn_begins
+        self._uphill = uphill
         # At the crest, 0, doubles are dense: a load that hardly passes it spends its time there.
-        edges = begin, 0.0, begin + math.tau
+        edges = -math.pi, 0.0, math.pi
         self._travel_time = TravelTime(lambda x: 1 / self._speed(x, energies[:, None, None]), *edges)
         self.duration = self._travel_time.duration
 
@@ -294,11 +294,10 @@ def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]
         if energy == 0 and potential.excess == 0:
             raise NoLibrationError("the motion comes to rest on a crest")
         # A load that passes the crest uphill turns behind it: the well there is shallow, or there is none.
-        end = potential.turn_begins + math.tau
-        lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, end)
+        lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, math.pi)
         at_rest = start.kinetic == 0
         stop = start.angle_past_crest if at_rest else root(lambda x: potential.below(x) + energy, lower, upper)
-        yield Arc(start, stop, end), turn, min(abs(energy), ahead)
+        yield Arc(start, stop, math.pi), turn, min(abs(energy), ahead)
         energy, turn = ahead, turn + 1
     while left:
         energies, batch = energy + drop * np.arange(min(batch, left)), min(4 * batch, 256)
