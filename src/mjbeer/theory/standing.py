@@ -16,7 +16,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import LIQUIDS, NAMES, Liquid
+from mjbeer.theory.liquid import LIQUIDS, NAMES
 from mjbeer.theory.scene import GRAVITY
 
 QUANTITATIVE, INDICATIVE = 0.1, 0.3
@@ -177,7 +177,7 @@ class Standing:
 
 
 def standing(
-    liquid: str | Liquid = "beer",
+    liquid: str = "beer",
     fill: float = 0.5,
     can: Can | None = None,
     modes: int = 1,
@@ -186,25 +186,21 @@ def standing(
 ) -> Standing:
     """Return a can that stands, with a liquid in it that sloshes.
 
-    `liquid` is a name that `mjbeer.liquid` knows, or what `liquid_in` returns. `fill` is the height of the liquid over
-    the can's length. `modes` of the slosh move in the model, the others are fixed to the can; with 0 the liquid is
-    solid. `damping_ratio` is that of every mode; by default it follows from the viscosity, for clean walls and a clean
-    surface: foam or dust doubles it. `gravity` is in [m/s^2]. The default can is `Can.sheet_metal()`.
+    `liquid` is a name that `mjbeer.liquid` knows. `fill` is the height of the liquid over the can's length. `modes` of
+    the slosh move in the model, the others are fixed to the can; with 0 the liquid is solid. `damping_ratio` is that of
+    every mode; by default it follows from the viscosity, for clean walls and a clean surface: foam or dust doubles it.
+    `gravity` is in [m/s^2]. The default can is `Can.sheet_metal()`.
 
     A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude.
 
     Raises:
       ParameterError: if a parameter is not allowed.
     """
-    if isinstance(liquid, Liquid):
-        name, density, viscosity = liquid.name, liquid.density, liquid.viscosity
-    else:
-        name = require.choice("liquid", liquid, NAMES)
-        density, viscosity = LIQUIDS[name]
+    name = require.choice("liquid", liquid, NAMES)
     can = Can.sheet_metal() if can is None else can
-    standing_can = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
+    standing_can = Standing(can, fill, name, *LIQUIDS[name], modes, damping_ratio, gravity)
     if modes > 0 and damping_ratio is None:
-        layer = math.sqrt(2 * viscosity / standing_can.frequencies(1)[0]) / standing_can.can.radius
+        layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0]) / can.radius
         if layer > 0.1:
             thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
             warn_of_liquid(f"{thick}, not 0.1 or less; give a damping_ratio", stacklevel=2)
