@@ -161,11 +161,11 @@ def liquid_in(
     layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
     creep = 8 / math.pi * density * nu * a**2 * length * math.log(2 / _EDGE)
     omega = math.sqrt(load.moment * free.gravity / free.oscillator.base)
-    swing = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
+    swinging = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
 
     torque = min(abs(free.downhill_weight) * a, load.moment * free.gravity)  # the latter is all that the load can hold
     steady = min((torque / layers) ** (2 / 3), torque / creep)
-    wide = (swing / layers) ** 2 if swing > creep else 0.0
+    wide = (swinging / layers) ** 2 if swinging > creep else 0.0
     slip = max(steady, wide)
     drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
     rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0
