@@ -121,8 +121,8 @@ class Start:
         """
         if self.kinetic > 0 or self.potential.excess > 0:
             return self.still
-        nearest = min(abs(self.angle_past_crest), abs(math.tau - self.angle_past_crest))
-        return nearest <= EPS * max(abs(phi), math.pi) or self.potential.depth == 0 or self.still
+        on_top = abs(self.angle_past_crest) <= EPS * max(abs(phi), math.pi)
+        return on_top or self.potential.depth == 0 or self.still
 
     def rounding_delay(self, margin: float, latest: float) -> float:
         """Return a rough bound on the time [s] by which rounding delays a motion until `latest` [s].
