@@ -32,7 +32,7 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 
 def number(name: str, value: Any, unit: str = "") -> float:
     """Return a real number of Python's or NumPy's as a finite float."""
-    if not math.isfinite(result := _float(value)):
+    if not math.isfinite(result := value if type(value) is float else _float(value)):
         raise _refused(f"{name} must be a finite number", unit, value)
     return result
 
@@ -149,8 +149,6 @@ def _refused(what: str, unit: str, value: object) -> ParameterError:
 
 def _float(value: Any) -> float:
     """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
-    if type(value) is float:  # as nearly always
-        return value
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
     try:

@@ -8,7 +8,6 @@ import pytest
 
 from mjbeer import Can, LiquidWarning, standing
 from mjbeer.exceptions import ParameterError
-from mjbeer.theory.liquid import liquid_in
 from mjbeer.theory.standing import MOST_MODES, SERIES, Standing
 from tests.support.laplace import Volume
 
@@ -92,7 +91,6 @@ def test_damping_may_be_given_and_gravity_scales_time() -> None:
     moon, earth = standing(gravity=GRAVITY / 4), standing()
     assert moon.frequencies(2) == pytest.approx(earth.frequencies(2) / 2, rel=1e-14)
     assert moon.damping_ratios(2) == pytest.approx(earth.damping_ratios(2) * math.sqrt(2), rel=1e-14)
-    assert standing(liquid_in("honey"), damping_ratio=0.5).density == 1420.0
 
 
 def test_a_thick_liquid_warns() -> None:

@@ -7,12 +7,10 @@ where the damping is strong and w small. Divided by M a^2, with M = m + m_can + 
     inertia(phi) phi_ddot = -depth sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
                             + (1 - beta cos(phi)) torque(w) - beta cos(phi) drag roll_dot |roll_dot|.
 
-Each step is a collocation polynomial whose last terms are below rounding, through the equations at the Radau points of
-the step, whose last one is its end: the Radau IIA method of order 2s - 1. It is L-stable: what decays at once, however
-fast, takes no small steps once it is gone. Polynomials are kept as sums of Legendre polynomials over the step, x = -1
-to 1. (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, IV.5.)
-
-Where w or roll_dot passes zero, its absolute value has a corner: a step that would pass one is taken again up to there.
+Each step is a collocation polynomial whose last terms are below rounding, by Legendre polynomials over the step, x = -1
+to 1, through the equations at its Radau points: the Radau IIA method of order 2s - 1. It is L-stable: what has decayed,
+however fast, takes no small steps. (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, IV.5.) Where w
+or roll_dot passes zero, its absolute value has a corner: a step that would pass one is taken again up to there.
 """
 
 import itertools

@@ -75,15 +75,15 @@ def accelerations(
     if scene.attachment == "frozen":
         phi_ddot = scene.oscillator.acceleration(phi, phi_dot)
         return scene.can.radius * phi_ddot, phi_ddot
-    mass, swing, along, torque = scene.effective_mass, scene.load.moment * np.cos(phi), scene.downhill_weight, 0.0
+    mass, lever, along, torque = scene.effective_mass, scene.load.moment * np.cos(phi), scene.downhill_weight, 0.0
     if scene.dissipates:
         # Torque T and drag D act beside the forces of eqs. (46) and (47). Without u_ddot, which eq. (46) gives, they
         # turn phi by T - (m b cos(phi) / M) (T / a + D), against the inertia J(phi).
         torque = scene.damping_law.torque(slip_rate(scene, phi_dot, u_dot) if slip is None else slip)
         braking = torque / scene.can.radius + scene.drag * u_dot * np.abs(u_dot)
-        along, torque = along - braking, torque - swing / mass * braking
+        along, torque = along - braking, torque - lever / mass * braking
     phi_ddot = scene.oscillator.acceleration(phi, phi_dot, torque)
-    return (along + swing * phi_ddot - scene.load.moment * np.sin(phi) * phi_dot**2) / mass, phi_ddot  # eq. (46)
+    return (along + lever * phi_ddot - scene.load.moment * np.sin(phi) * phi_dot**2) / mass, phi_ddot  # eq. (46)
 
 
 def axis_motion(

@@ -1,7 +1,6 @@
 """A can with a real liquid in it: the scene that has its damping.
 
-The liquid is one lump here, as in the rest of the theory, that lies still in the rolling can. Three things drag it
-along, at a slip rate W:
+The liquid is one lump that lies still in the rolling can. Three things drag it along, at a slip rate W:
 
 - on the wall and the ends of a can that rolls on, a thin liquid's layers, which enter the liquid at one edge and
   thicken to the other (Sakiadis, AIChE J. 7, 221, 1961; von Karman, Z. angew. Math. Mech. 1, 233, 1921):
@@ -12,12 +11,11 @@ along, at a slip rate W:
 - in a can that only swings, the oscillating layers of Stokes on wall and ends:
   c = rho sqrt(nu omega/2) (2 beta a^3 L + 2 I A/m), omega being the frequency of small swings on level ground.
 
-One law follows, continuous in the incline, the viscosity and all the rest. MuJoCo's damping is a polynomial in W,
-and so is the law. It has the larger of the first two torques at the slip rate of steady rolling; but where a swing of
-some two radians slips faster than that, it has the swing's torque at the rate at which the layers of rolling drag as
-much as those of swinging. Where steady rolling is slower than `DECADE` of that, the swing's layers take over, until on
-level ground they are all there is: it then rolls more slowly than the layers of rolling alone would have it, which a
-`LiquidWarning` says. A real liquid sloshes as well, 1.5 times faster than the lump swings.
+One law follows, continuous in the incline and the viscosity, and a polynomial in W, as MuJoCo's damping is. It has the
+larger of the first two torques at the slip rate of steady rolling; but where a swing of some two radians slips faster
+than that, it has the swing's torque at the rate at which the layers of rolling drag as much as those of swinging. Where
+steady rolling is slower than `DECADE` of that, the swing's layers take over, until on level ground they are all there
+is. A real liquid sloshes as well, 1.5 times faster than the lump swings.
 """
 
 import math
@@ -163,11 +161,11 @@ def liquid_in(
     layers = density * a**3 * math.sqrt(nu) * (WALL * math.sqrt(arc) * length + ENDS * moment * a)
     creep = 8 / math.pi * density * nu * a**2 * length * math.log(2 / _EDGE)
     omega = math.sqrt(load.moment * free.gravity / free.oscillator.base)
-    swing = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
+    swinging = density * math.sqrt(nu * omega / 2) * a**3 * (arc * length + 2 * moment * a)
 
     torque = min(abs(free.downhill_weight) * a, load.moment * free.gravity)  # the latter is all that the load can hold
     steady = min((torque / layers) ** (2 / 3), torque / creep)
-    wide = (swing / layers) ** 2 if swing > creep else 0.0
+    wide = (swinging / layers) ** 2 if swinging > creep else 0.0
     slip = max(steady, wide)
     drag = max(creep, layers * math.sqrt(slip))  # torque over slip rate there
     rolled = min(1.0, steady / (DECADE[0] * wide)) if wide > 0 else 1.0

@@ -12,7 +12,7 @@ from mjbeer.theory.can import LENGTH, RADIUS
 
 BEER = 1000.0
 """Density of beer [kg/m^3]: that of water, rounded, from which beer differs by about 1 %."""
-# At most sixth-degree trigonometric polynomials over half a turn: 24 Gauss points already integrate them to rounding.
+# Trigonometric polynomials of sixth degree over half a turn: 24 Gauss points would integrate them to rounding.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 
 

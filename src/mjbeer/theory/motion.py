@@ -121,8 +121,8 @@ class Start:
         """
         if self.kinetic > 0 or self.potential.excess > 0:
             return self.still
-        nearest = min(abs(self.angle_past_crest), abs(math.tau - self.angle_past_crest))
-        return nearest <= EPS * max(abs(phi), math.pi) or self.potential.depth == 0 or self.still
+        on_top = abs(self.angle_past_crest) <= EPS * max(abs(phi), math.pi)
+        return on_top or self.potential.depth == 0 or self.still
 
     def rounding_delay(self, margin: float, latest: float) -> float:
         """Return a rough bound on the time [s] by which rounding delays a motion until `latest` [s].
@@ -139,8 +139,9 @@ class Start:
         # Rounding of the scene puts the crest elsewhere. On level ground it is at an odd multiple of pi, and how far a
         # double is from that is known to an eps.
         shift = ROUNDINGS * (abs(potential.bottom) + potential.lean + steep) + EPS * abs(self.angle_past_crest)
+        torque = abs(float(potential.mean_torque(self.angle_past_crest, 0.0)))
         rounding = ROUNDINGS * (self.kinetic + abs(float(potential.below(self.angle_past_crest))))
-        rounding += abs(float(potential.torque(self.angle_past_crest))) * shift + potential.curvature * shift**2
+        rounding += torque * shift + potential.curvature * shift**2
         share = ROUNDINGS * steep**2 + (rounding / margin if margin > 0 else math.inf)
         # Each time that the motion passes or nears a crest, it is early or late by that share of 1/lambda.
         lingering = math.sqrt(float(self.oscillator.inertia(math.pi + potential.crest_past_pi)) / potential.curvature)
@@ -214,9 +215,9 @@ class Turns:
 
     def __init__(self, start: Start, energies: np.ndarray, uphill: bool = False) -> None:
         self._oscillator, self._potential, self._energies = start.oscillator, start.potential, energies
-        self._uphill, begin = uphill, start.potential.turn_begins
+        self._uphill = uphill
         # At the crest, 0, doubles are dense: a load that hardly passes it spends its time there.
-        edges = begin, 0.0, begin + math.tau
+        edges = -math.pi, 0.0, math.pi
         self._travel_time = TravelTime(lambda x: 1 / self._speed(x, energies[:, None, None]), *edges)
         self.duration = self._travel_time.duration
 
@@ -293,11 +294,10 @@ def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]
         if energy == 0 and potential.excess == 0:
             raise NoLibrationError("the motion comes to rest on a crest")
         # A load that passes the crest uphill turns behind it: the well there is shallow, or there is none.
-        end = potential.turn_begins + math.tau
-        lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, end)
+        lower, upper = (-math.pi, -potential.well) if energy > 0 else (0.0, math.pi)
         at_rest = start.kinetic == 0
         stop = start.angle_past_crest if at_rest else root(lambda x: potential.below(x) + energy, lower, upper)
-        yield Arc(start, stop, end), turn, min(abs(energy), ahead)
+        yield Arc(start, stop, math.pi), turn, min(abs(energy), ahead)
         energy, turn = ahead, turn + 1
     while left:
         energies, batch = energy + drop * np.arange(min(batch, left)), min(4 * batch, 256)

@@ -49,18 +49,12 @@ class Potential:
         self.crest_past_pi, self.rest = bottom - self.lean, bottom + self.lean
         self.drop_per_turn = math.tau * ramp
         self.well = 2 * math.atan2(self.curvature, self.balanced) if self.curvature > 0 else 0.0
-        # A turn begins where no load is slow: at the equilibrium, or in a narrow well where V is steepest. From there
-        # it may be uphill to the crest, by `highest` [J].
-        self.turn_begins = -math.pi if self.well < 0.5 else -self.well
-        self.highest = max(0.0, -float(self.below(self.turn_begins)))
+        # A turn begins half a turn before its crest, from where it may be downhill to it, by `highest` [J].
+        self.highest = max(0.0, -float(self.below(-math.pi)))
 
     def below(self, x: np.ndarray | float) -> np.ndarray:
         """Return V(crest) - V(crest + x) [J] for `x` [rad] of either sign; at x = -y it is V(rest + y) - V(rest)."""
         return self.excess * x + self.balanced * x * sinc_gap(x) + 2 * self.curvature * np.sin(x / 2) ** 2
-
-    def torque(self, x: np.ndarray | float) -> np.ndarray:
-        """Return -V' [N m] at an angle `x` [rad] past the crest."""
-        return self.excess + 2 * self.balanced * np.sin(x / 2) ** 2 + self.curvature * np.sin(x)
 
     def mean_torque(self, x: float, length: np.ndarray | float) -> np.ndarray:
         """Return (V(crest + x) - V(crest + x + length)) / length [N m], which is smooth through length 0."""
@@ -77,13 +71,12 @@ class Potential:
         past_rest = math.remainder(reduced(phi) - self.rest, math.tau)
         if self.well > 0 and abs(past_rest) < abs(past_crest):
             return self.distances_by_rest(past_rest)
-        past_crest += 0.0 if past_crest >= self.turn_begins else math.tau
         return past_crest, past_crest + self.well - (0.0 if past_crest < 0 else math.tau)
 
     def distances_by_rest(self, past_rest: float) -> tuple[float, float]:
         """Return the `distances` by the angle [rad] past the equilibrium of a well."""
         past_crest = _past_pi(past_rest) + 2 * self.lean
-        return past_crest - (math.tau if past_crest >= self.turn_begins + math.tau else 0.0), past_rest
+        return past_crest - (math.tau if past_crest >= math.pi else 0.0), past_rest
 
     def below_next_crest(self, past_crest: float, past_rest: float) -> float:
         """Return by how much V at these `distances` is below the next crest downhill [J]."""

@@ -75,9 +75,9 @@ class Record:
         self.largest_distance = _largest(self.largest_distance, motion.u - first.u)
         self.largest_rate = _largest(self.largest_rate, motion.phi_dot)
         covered = np.abs(np.diff(motion.phi, prepend=last.phi))
-        swing = oscillator.kinetic_energy(motion.phi, motion.phi_dot)
+        in_swing = oscillator.kinetic_energy(motion.phi, motion.phi_dot)
         self.angle_covered += float(covered.sum())
-        self._kinetic, self.swing_energy = _largest(self._kinetic, kinetic), _largest(self.swing_energy, swing)
+        self._kinetic, self.swing_energy = _largest(self._kinetic, kinetic), _largest(self.swing_energy, in_swing)
         self._energy_change = _largest(self._energy_change, energy - self._energy)
         if scene.dissipates:
             self.largest_slip_rate = _largest(self.largest_slip_rate, slip_rate(scene, motion.phi_dot, motion.u_dot))
@@ -85,9 +85,10 @@ class Record:
                 fast = np.flatnonzero(centrifugal_ratio(scene, motion.u_dot) > 1)
                 self.no_lump_at = min(self.no_lump_at, *motion.time[fast[:1]].tolist(), math.inf)
             return
-        swing -= oscillator.kinetic_energy(first.phi, first.phi_dot) + oscillator.drop(motion.phi, first.phi)
-        self._swing_change = _largest(self._swing_change, swing)
-        drift = self._swing_drift + np.cumsum(swing * covered)
+        begun = oscillator.kinetic_energy(first.phi, first.phi_dot)
+        excess = in_swing - (begun + oscillator.drop(motion.phi, first.phi))
+        self._swing_change = _largest(self._swing_change, excess)
+        drift = self._swing_drift + np.cumsum(excess * covered)
         self._swing_drift, self._largest_swing_drift = float(drift[-1]), _largest(self._largest_swing_drift, drift)
         if scene.attachment == "sliding":  # a frozen load conserves no momentum
             begin = tuple(float(each[0]) for each in (first.phi, first.phi_dot, first.u, first.u_dot))

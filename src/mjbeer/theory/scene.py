@@ -252,9 +252,9 @@ class Scene:
     def modes(self) -> np.ndarray:
         """Return the roots s [1/s] of the three modes exp(s t) of small motions about steady rolling.
 
-        They are complex, of shape (3,), and sorted by their real parts: what decays fastest is first. With P = m b
-        cos(phi), k = m g b cos(alpha + phi), N = M I - P^2 and J_f = M a^2 + I - 2 P a at the terminal tilt, and the
-        slopes c of the damping and d of the drag at the terminal speed,
+        They are complex, of shape (3,), and what decays fastest is first. With P = m b cos(phi), k = m g b cos(alpha +
+        phi), N = M I - P^2 and J_f = M a^2 + I - 2 P a at the terminal tilt, and the slopes c of the damping and d of
+        the drag at the terminal speed,
 
             N s^3 + (c J_f/a^2 + d I) s^2 + (M k + c d) s + k (c/a^2 + d) = 0.
 

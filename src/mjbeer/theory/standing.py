@@ -16,7 +16,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
-from mjbeer.theory.liquid import LIQUIDS, NAMES, Liquid
+from mjbeer.theory.liquid import LIQUIDS, NAMES
 from mjbeer.theory.scene import GRAVITY
 
 QUANTITATIVE, INDICATIVE = 0.1, 0.3
@@ -32,14 +32,6 @@ class Reaction(NamedTuple):
     force: np.ndarray | float  # per sideways acceleration, F_X [kg]
     coupling: np.ndarray | float  # force per angular, and moment per sideways acceleration, F_Theta = M_X [kg m]
     moment: np.ndarray | float  # per angular acceleration about a level axis, M_Theta [kg m^2]
-
-
-class Mode(NamedTuple):
-    """The pendulums of the modes."""
-
-    mass: np.ndarray  # slosh masses m_n [kg]
-    bob: np.ndarray  # heights z_n of the bobs above the centroid [m]
-    length: np.ndarray  # L_n [m]
 
 
 @dataclass(frozen=True)
@@ -110,16 +102,17 @@ class Standing:
 
         By default, here and below, the modes are those that move in the model.
         """
-        return np.sqrt(self.gravity / self._modes(count).length)
+        _, _, length = self._pendulums(count)
+        return np.sqrt(self.gravity / length)
 
     def slosh_masses(self, count: int | None = None) -> np.ndarray:
         """Return the masses of the pendulums [kg], shape (count,)."""
-        return self._modes(count).mass
+        return self._pendulums(count)[0]
 
     def pivots(self, count: int | None = None) -> np.ndarray:
         """Return the heights of the pendulums' pivots above the inside of the bottom [m], shape (count,)."""
-        modes = self._modes(count)
-        return self.height / 2 + modes.bob + modes.length
+        _, bob, length = self._pendulums(count)
+        return self.height / 2 + bob + length
 
     def damping_ratios(self, count: int | None = None) -> np.ndarray:
         """Return the damping of the modes over the critical one, shape (count,).
@@ -152,10 +145,10 @@ class Standing:
         for each in np.atleast_1d(omega):
             require.within("omega", each, 1e-6, 1e6, "rad/s")
         omega = np.asarray(omega, float)
-        series = self._modes(SERIES)
+        mass, bob, length = self._pendulums(SERIES)
         square = omega[..., None] ** 2
-        share = series.mass * square / (self.gravity / series.length - square)
-        arm = series.bob + self.gravity / square
+        share = mass * square / (self.gravity / length - square)
+        arm = bob + self.gravity / square
         force, coupling, moment = (np.sum(share * arm**power, axis=-1)[()] for power in range(3))
         return Reaction(self.mass + force, coupling, self.held_inertia + moment)
 
@@ -167,24 +160,24 @@ class Standing:
         """
         if self.modes == 0:
             return np.array([self.mass, 0.0, self.mass * (self.can.radius**2 / 4 + self.height**2 / 12)])
-        left = Mode(*(each[self.modes :] for each in self._modes(SERIES)))
-        pivot = left.bob + left.length
-        second = self.held_inertia + np.sum(left.mass * (pivot**2 - left.bob**2))
-        return np.array([self.mass, np.sum(left.mass * left.length), second])
+        mass, bob, length = self._pendulums(SERIES)[:, self.modes :]
+        second = self.held_inertia + np.sum(mass * ((bob + length) ** 2 - bob**2))
+        return np.array([self.mass, np.sum(mass * length), second])
 
     def _xi(self, count: int | None) -> np.ndarray:
         return _roots()[: self.modes if count is None else _checked_count("count", count, SERIES)]
 
-    def _modes(self, count: int | None) -> Mode:
+    def _pendulums(self, count: int | None) -> np.ndarray:
+        """Return masses m_n [kg], heights z_n of the bobs above the centroid [m] and lengths L_n [m], (3, count)."""
         radius, height, xi = self.can.radius, self.height, self._xi(count)
         tanh = np.tanh(xi * height / radius)
         mass = self.mass * 2 * radius * tanh / (height * xi * (xi**2 - 1))
         bob = height / 2 - 2 * radius / xi * np.tanh(xi * height / (2 * radius))
-        return Mode(mass, bob, radius / (xi * tanh))
+        return np.array([mass, bob, radius / (xi * tanh)])
 
 
 def standing(
-    liquid: str | Liquid = "beer",
+    liquid: str = "beer",
     fill: float = 0.5,
     can: Can | None = None,
     modes: int = 1,
@@ -193,25 +186,21 @@ def standing(
 ) -> Standing:
     """Return a can that stands, with a liquid in it that sloshes.
 
-    `liquid` is a name that `mjbeer.liquid` knows, or what `liquid_in` returns. `fill` is the height of the liquid over
-    the can's length. `modes` of the slosh move in the model, the others are fixed to the can; with 0 the liquid is
-    solid. `damping_ratio` is that of every mode; by default it follows from the viscosity, for clean walls and a clean
-    surface: foam or dust doubles it. `gravity` is in [m/s^2]. The default can is `Can.sheet_metal()`.
+    `liquid` is a name that `mjbeer.liquid` knows. `fill` is the height of the liquid over the can's length. `modes` of
+    the slosh move in the model, the others are fixed to the can; with 0 the liquid is solid. `damping_ratio` is that of
+    every mode; by default it follows from the viscosity, for clean walls and a clean surface: foam or dust doubles it.
+    `gravity` is in [m/s^2]. The default can is `Can.sheet_metal()`.
 
     A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude.
 
     Raises:
       ParameterError: if a parameter is not allowed.
     """
-    if isinstance(liquid, Liquid):
-        name, density, viscosity = liquid.name, liquid.density, liquid.viscosity
-    else:
-        name = require.choice("liquid", liquid, NAMES)
-        density, viscosity = LIQUIDS[name]
+    name = require.choice("liquid", liquid, NAMES)
     can = Can.sheet_metal() if can is None else can
-    standing_can = Standing(can, fill, name, density, viscosity, modes, damping_ratio, gravity)
+    standing_can = Standing(can, fill, name, *LIQUIDS[name], modes, damping_ratio, gravity)
     if modes > 0 and damping_ratio is None:
-        layer = math.sqrt(2 * viscosity / standing_can.frequencies(1)[0]) / standing_can.can.radius
+        layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0]) / can.radius
         if layer > 0.1:
             thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
             warn_of_liquid(f"{thick}, not 0.1 or less; give a damping_ratio", stacklevel=2)

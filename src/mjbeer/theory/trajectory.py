@@ -20,11 +20,7 @@ from mjbeer.theory.scene import Scene, load_drawing
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Trajectory(Coordinates):
-    """A motion of a scene, with the energy, forces and warnings that follow from it.
-
-    `u` is the place of the axis [m], which does not start at 0; `distance` is counted from the start. `phi` is the
-    angle of the load to the incline, and `roll` that by which the can has turned [rad]; `lift` is the can's height
-    above the incline [m]. `u_dot`, `phi_dot`, `roll_dot` and `lift_dot` are their rates. `Coordinates` has more.
+    """A motion of a scene, an array for each of the `Coordinates`, with the energy, forces and warnings that follow.
 
     Raises:
       ParameterError: if an array is not finite, not one-dimensional, empty, or not as long as the times.
@@ -127,9 +123,9 @@ class Trajectory(Coordinates):
     @cached_property
     def liquid_warnings(self) -> tuple[str, ...]:
         """Return where a liquid is no lump, or slips at rates that its damping is not for, in one sentence."""
-        record, turn = self.record, math.tau * self.scene.can.radius
+        record = self.record
         spread = f"from t = {record.no_lump_at:.6g} s on" if record.no_lump_at < math.inf else ""
-        turns = record.largest_distance / turn
+        turns = record.largest_distance / (math.tau * self.scene.can.radius)
         warning = lump_warning("the liquid", self.scene, record.largest_slip_rate, spread, turns)
         return (warning,) if warning else ()
 
@@ -246,8 +242,8 @@ def _columns(motion: Trajectory) -> dict[str, np.ndarray]:
 def angle_distance(angles: np.ndarray, truth: np.ndarray, start: float | None = None) -> float:
     """Return the largest distance of `angles` from `truth` [rad].
 
-    With the angle at the `start` [rad], each distance is divided by the largest angle that `truth` has turned from
-    there so far, where that exceeds 1 rad: this is the error that a tolerance bounds. `truth` is then in order of time.
+    With the angle at the `start` [rad], each distance is divided by the largest angle that `truth`, in order of time,
+    has turned from there so far, where that exceeds 1 rad: this is the error that a tolerance bounds.
     """
     apart = np.abs(angles - truth)
     if start is not None:
