@@ -161,10 +161,14 @@ def test_what_was_asked_for_arrives(integrator: str, incline: float, tmp_path: p
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
-        ({"integrator": OWN[0]}, UnsupportedError, f"{OWN[0]} is mjbeer's integrator, not MuJoCo's"),
+        ({"integrator": OWN[0]}, ParameterError, f"integrator must be one of 'Euler', .*; got '{OWN[0]}'"),
         ({"path": "x.XML"}, ParameterError, r"MJCF is written: the file's name must end in \.xml, got 'x\.XML'"),
         ({"path": "file/model.xml"}, OutputError, r"cannot write .*model\.xml"),
-        ({"integrator": "discrete", "portable": True}, UnsupportedError, "Euler, implicitfast, RK4, not discrete"),
+        (
+            {"integrator": "discrete", "portable": True},
+            ParameterError,
+            "'Euler', 'implicitfast', 'RK4'; got 'discrete'",
+        ),
         *(
             ({"scene": scene, "portable": True}, UnsupportedError, "damping in proportion to the slip rate only")
             for scene in (sliding(drag=0.1), sliding(damping=Damping(cubic=1.0)))

@@ -18,14 +18,14 @@ from mjbeer.model.build import (
 )
 from mjbeer.model.free import standing_spec
 from mjbeer.model.mujoco_library import library
-from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting
+from mjbeer.model.setting import FRICTION, INTEGRATORS, Integrator, MujocoIntegrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import QUANTITATIVE, Standing
 
 CAMERA = "side"
 """The camera with which the viewer opens. It goes along with the can."""
-PORTABLE = ("Euler", "implicitfast", "RK4")
+PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
 
@@ -67,17 +67,9 @@ def export(
         raise ParameterError(
             f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
         )
+    require.choice("integrator", integrator, PORTABLE if require.boolean("portable", portable) else INTEGRATORS)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     require_meaningful(scene, setting, free, phi0, phi_dot0)
-    if setting.integrator in OWN:
-        raise UnsupportedError(
-            f"{setting.integrator} is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(INTEGRATORS)}"
-        )
-    if require.boolean("portable", portable) and setting.integrator not in PORTABLE:
-        raise UnsupportedError(
-            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {setting.integrator}: MJX and "
-            "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
-        )
     if isinstance(scene, Standing):
         spec = standing_viewer_spec(scene, free, setting)
         spec.comment = f" Written by mjbeer: {scene!r}. "
