@@ -97,8 +97,7 @@ def specify(
 
     The parameters and the errors are those of `build`. The can is the body "can", in the body "incline". A joint
     equality is as stiff as MJCF can express, which `build` makes rigid in the compiled model. Attached to another
-    specification, bodies keep their joints, masses and geoms, and lose all options: `mjcf/README.md` lists those that
-    the parent needs.
+    specification, bodies keep their joints, masses and geoms, and lose all options: the parent needs the same ones.
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = _specification(scene, setting, visuals, free)
