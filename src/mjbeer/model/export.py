@@ -23,8 +23,6 @@ from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import QUANTITATIVE, Standing
 
-CAMERA = "side"
-"""The camera with which the viewer opens. It goes along with the can."""
 PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
@@ -58,7 +56,7 @@ def export(
 
     Raises:
       ParameterError: if a parameter is not allowed.
-      UnsupportedError: if MuJoCo cannot have such a model, or cannot write all digits.
+      UnsupportedError: if MuJoCo cannot have such a model.
       TemplateError: if a file of MJCF is missing, lacks an element, or moves otherwise than the scene.
       OutputError: if the file cannot be written.
     """
@@ -96,10 +94,8 @@ def viewer_spec(scene: Scene, setting: Setting, phi0: float, phi_dot0: float) ->
     """
     spec = rolling_spec(scene, setting, visuals=True)
     add_start(spec, scene, phi0, phi_dot0)
-    model = compile_spec(spec)
-    if fault := mechanics_fault(scene, setting, model):
+    if fault := mechanics_fault(scene, setting, compile_spec(spec)):
         raise TemplateError(fault)
-    spec.visual.global_.cameraid = model.camera(CAMERA).id
     return spec
 
 
@@ -109,7 +105,6 @@ def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
     spec = standing_spec(can, setting, visuals=True, free=free)
-    spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
     if not free:
         return spec
     upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
@@ -126,11 +121,7 @@ def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.
 
 def _text(spec: mujoco.MjSpec) -> str:
     """Return the specification as XML with 17 digits, which give all doubles back; MuJoCo's default is 6."""
-    c = library()
-    try:
-        before, set_digits = c._mjPRIVATE__get_xml_precision(), c._mjPRIVATE__set_xml_precision
-    except AttributeError:
-        raise UnsupportedError(f"MuJoCo {mujoco.__version__} cannot write MJCF with all digits; 4.0 can") from None
+    before, set_digits = library()._mjPRIVATE__get_xml_precision(), library()._mjPRIVATE__set_xml_precision
     set_digits(17)
     try:
         return spec.to_xml()
