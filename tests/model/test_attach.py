@@ -25,7 +25,6 @@ from mjbeer import (
 from mjbeer.exceptions import MjbeerError, ParameterError, UnsupportedError
 from mjbeer.model import free
 from mjbeer.model.mujoco_library import quiet
-from mjbeer.studies.validation import standing_checks as measured
 from mjbeer.theory.standing import Standing
 from tests.support.scenes import METAL
 
@@ -93,9 +92,7 @@ def test_a_can_may_be_fixed_to_a_body() -> None:
         (standing(modes=3), {"timestep": 5e-3, "integrator": RK4}, r"with RK4 its damping may diverge at .* 0\.005 s"),
         (HONEY, {}, r"with RK4 its damping may diverge at .* 0\.002 s: give 0\.0016 s or less$"),
         (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_DAMPER)}, "damper disabled it has no damping"),
-        (HONEY, {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_DAMPER)}, "damper disabled it has no damping"),
         (standing(), {"timestep": 0.05}, r"the timestep of 0\.05 s is coarse: the fastest mode turns by 1\.17 rad"),
-        (standing(), {"timestep": 0.501 / standing().frequencies(1)[0]}, r"turns by 0\.501 rad in it, not 0\.5 or"),
         (standing(), {"gravity": [0, 0, -1.62]}, r"gravity is 1\.62 m/s\^2, and the can is made for 9\.81"),
         (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_CONTACT)}, "contact disabled it touches nothing"),
         (frozen(can=METAL), {"integrator": mujoco.mjtIntegrator.mjINT_IMPLICITFAST}, "another integrator than RK4"),
@@ -113,7 +110,6 @@ def test_what_the_parent_spoils_is_said(can: Scene, options: dict[str, object], 
     ("name", "value", "reason"),
     [
         ("settotalmass", 5.0, "settotalmass scales its masses"),
-        ("boundmass", 0.1, r"boundmass raises what is less, from 0\.0086 on, once the world is saved and read again"),
         ("boundinertia", 1e-6, r"boundinertia raises what is less, from 1\.7e-14 on, once the world is saved"),
     ],
 )
@@ -141,7 +137,7 @@ def test_what_spoils_nothing_is_not_warned_of() -> None:
 
 
 def test_the_timestep_that_rk4_is_given_is_the_limit() -> None:
-    """Damping in proportion to the rate has a sharp limit, in the air; what grows with it fails well beyond."""
+    """Damping in proportion to the rate has a sharp limit, in the air."""
     for can in (standing(modes=3, damping_ratio=0.3), HONEY):
         for share, diverges in ((0.97, False), (1.03, True)):
             spec = mujoco.MjSpec()
@@ -158,9 +154,6 @@ def test_the_timestep_that_rk4_is_given_is_the_limit() -> None:
                 for _ in range(2000):
                     mujoco.mj_step(model, data)
             assert any(warning.number for warning in data.warning) == diverges
-    can = standing("water", modes=3)
-    assert measured.thrown(can, 0.99 * free._RK4 / free._fastest_decay(can), "RK4", count=24) == 0
-    assert measured.thrown(can, 8e-3, "RK4", count=24) > 0
 
 
 @pytest.mark.parametrize("modes", [0, 1])
@@ -252,13 +245,8 @@ def test_a_can_is_filled_anew_as_if_it_were_compiled(old: Standing | Scene, new:
 
 def test_what_cannot_be_filled_anew_is_refused() -> None:
     model = shared(OLD)
-    for can, prefix in (
-        (OLD, "other-"),
-        (standing(modes=2), "own-"),
-        (standing(modes=3, can=BOX), "own-"),
-        (sliding(can=METAL), "own-"),
-        (sliding(can=METAL), "can-"),
-    ):
+    boxed = standing(modes=3, can=BOX)
+    for can, prefix in ((OLD, "other-"), (standing(modes=2), "own-"), (boxed, "own-"), (sliding(can=METAL), "can-")):
         with pytest.raises(ParameterError, match=f"the model must have a can under the prefix '{prefix}' with radius"):
             refill(model, can, prefix)
     with pytest.raises(ParameterError, match="it has can, load, swing, slide"):
@@ -274,19 +262,13 @@ def test_what_cannot_be_filled_anew_is_refused() -> None:
 @pytest.mark.parametrize(
     ("can", "arguments", "error", "message"),
     [
-        ("can", {}, ParameterError, "can must be a Standing, got 'can'"),
-        (standing(), {"body": "hand"}, ParameterError, "body must be one of 'world'; got 'hand'"),
         (standing(), {"body": "hand", "free": False}, ParameterError, "body must be one of 'world'; got 'hand'"),
         (standing(), {"pos": [0, 0]}, ParameterError, "pos must have 3 numbers, got"),
         (standing(), {"quat": [0, 0, 0, 0]}, ParameterError, "quat must have 4 numbers, not all 0, got"),
-        *(
-            (standing(), {"prefix": each}, ParameterError, "prefix must be a text that can")
-            for each in ("", "\0", "\ud800")
-        ),
+        (standing(), {"prefix": ""}, ParameterError, "prefix must not be empty"),
         (sliding(), {}, UnsupportedError, "without mass and inertia around a sliding load"),
         (pendulum(), {}, UnsupportedError, "has beer in it, got a load without a fill"),
         (sliding(can=METAL, drag=0.1), {}, UnsupportedError, "no drag of the air"),
-        (standing(), {"friction": -0.1}, ParameterError, r"friction must be 0 or greater, got -0\.1"),
         (standing(), {"friction": [1, 0, 0, 0]}, ParameterError, "friction must have 1, 2 or 3 numbers"),
         (standing(), {"friction": "steel"}, ParameterError, "friction must be a finite number, got 'steel'"),
     ],
@@ -305,6 +287,3 @@ def test_a_massless_frozen_can_and_other_sizes_move_too() -> None:
     attach(spec, standing(can=BOX, fill=0.3, modes=5), [1, 0, 0], prefix="large-")
     data = settled(spec, 0.3)
     assert data.body("can-can").xpos[2] == pytest.approx(Can().radius, abs=1e-6)
-    for depth in (0.06, 3.0, 40.0):  # what MuJoCo cannot move it refuses
-        for ratio in (0.0, 1.0):
-            build(standing("water", 0.5, Can.sheet_metal(length=0.066 * depth), 5, ratio))

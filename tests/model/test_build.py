@@ -14,12 +14,12 @@ import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
 from mjbeer.model.build import ReusableModel, compile_spec, rolling_spec
-from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
+from mjbeer.model.joints import joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
 from mjbeer.theory.damping import Damping
-from mjbeer.theory.equations import accelerations, kinetic_energy
-from tests.support.scenes import MASSIVE, METAL, SCENES, scenes
+from mjbeer.theory.equations import accelerations
+from tests.support.scenes import METAL, SCENES, scenes
 
 # Sums of a few products each, some of which cancel in part on a random scene; compared with their largest term.
 ROUNDING = 1e-11
@@ -139,34 +139,6 @@ def test_models_with_other_elements_have_another_structure_and_no_others(monkeyp
     simulate(sliding(), 0.01, 1.0)
     monkeypatch.setattr("mjbeer.model.build.rolling_spec", None)
     simulate(sliding(fill=0.3), 0.01, 1.0)
-
-
-@pytest.mark.parametrize("name", MASSIVE)
-@pytest.mark.parametrize("rolling", ["equality", "contact"])
-def test_constrained_models_have_the_scene_s_mass_matrix(name: str, rolling: Rolling) -> None:
-    """Kinetic energy and weight of any state, slipping and lifting too, are those of can and load."""
-    scene = SCENES[name]
-    model = build(scene, rolling)
-    data = mujoco.MjData(model)
-    wild = initial_state(model, scene, 0.6, 1.7) * np.linspace(1, 2, model.nq + model.nv)
-    data.qpos, data.qvel = np.split(wild, 2)
-    model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
-    mujoco.mj_forward(model, data)
-    kinetic = kinetic_energy(scene, to_coordinates(model, scene, wild[None], times=np.zeros(1)))
-    assert data.energy[1] == pytest.approx(kinetic[0], rel=1e-13)  # a dozen products
-
-
-def test_contact_has_the_forces_of_damping_and_drag() -> None:
-    """Its solver is left out: the torque acts on the load and, against it, on the can."""
-    scene = sliding(can=METAL, damping=Damping(1e-4, 1e-6, 1e-8), drag=0.2)
-    model = build(scene, "contact")
-    data, radius = mujoco.MjData(model), scene.can.radius
-    data.joint("slide").qvel, data.joint("roll").qvel, data.joint("swing").qvel = 1.5, 1.5 / radius, -2 - 1.5 / radius
-    mujoco.mj_forward(model, data)
-    torque = float(scene.damping_law.torque(1.5 / radius + 2))
-    expected = {"slide": -0.2 * 1.5**2, "lift": 0.0, "roll": 0.0, "swing": torque}
-    for name, place in joint_addresses(model).items():
-        assert data.qfrc_passive[place] == pytest.approx(expected[name], rel=1e-14), name
 
 
 @pytest.mark.parametrize("rolling", ["equality", "contact"])

@@ -11,7 +11,7 @@ from mjbeer.model import looks
 from mjbeer.model.build import rolling_spec
 from mjbeer.model.setting import ROLLINGS, Setting, mjcf_folder
 from mjbeer.theory.can import LENGTH, RADIUS
-from mjbeer.theory.load import BEER, segment
+from mjbeer.theory.load import segment
 from tests.support.scenes import METAL
 
 TEMPLATES = {"sliding": sliding(can=METAL), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
@@ -73,7 +73,7 @@ def test_a_template_s_own_scene_is_drawn_as_the_template(name: str) -> None:
     assert board.pos[2] + board.size[2] == pytest.approx(-looks.WALL * RADIUS, rel=1e-9)
 
 
-@pytest.mark.parametrize("fill", [1e-100, 1e-9, 0.5, 1 - 1e-6, 1.0])
+@pytest.mark.parametrize("fill", [1e-100, 0.5, 1 - 1e-6, 1.0])
 @pytest.mark.parametrize("radius", [1e-3, 100.0])
 def test_every_fill_can_be_drawn(fill: float, radius: float) -> None:
     """With masses that MuJoCo can take; those of so little beer it cannot."""
@@ -118,28 +118,3 @@ def test_marks_turn_with_the_can_or_are_not_there_and_ice_has_no_foam() -> None:
     assert ["foam" in drawn(model) for model in models] == [True, False]
     assert [model.mat(int(model.geom("load").matid[0])).name for model in models] == ["beer", "ice"]
     assert tuple(each for each in looks.TURNING if each in {*drawn(models[0]), "can_spokes"}) == looks.TURNING
-
-
-def mesh_errors(fill: float, resolution: int = looks.EDGES) -> tuple[float, ...]:
-    """Return the relative errors of mass, centre of mass and axial inertia of the beer's mesh as MuJoCo compiles it."""
-    vertices, faces = looks.beer(fill, RADIUS, LENGTH, resolution)
-    spec = mujoco.MjSpec()
-    method = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
-    spec.add_mesh(name="beer", uservert=vertices.ravel(), userface=faces.ravel(), inertia=method)
-    spec.worldbody.add_body(name="beer").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="beer", density=BEER)
-    model = spec.compile()
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    mujoco.mj_comPos(model, data)
-    load, body = Load.segment(fill=fill), model.body("beer")
-    axes = data.body("beer").ximat.reshape(3, 3)
-    inertia = (axes @ np.diag(body.inertia) @ axes.T)[1, 1]
-    pairs = (body.mass[0], load.mass), (-data.body("beer").xipos[2], load.offset), (inertia, load.inertia)
-    return tuple(abs(compiled / exact_value - 1) for compiled, exact_value in pairs)
-
-
-@pytest.mark.parametrize("fill", [0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95])
-def test_the_beer_that_is_seen_has_the_mass_and_inertia_of_the_formulas(fill: float) -> None:
-    """Eqs. (33) to (37), but for the polygon, whose error falls as 1/resolution^2; another fill is found out."""
-    assert max(mesh_errors(fill)) < 1e-3
-    assert max(mesh_errors(fill, resolution=2 * looks.EDGES)) < 0.3 * max(mesh_errors(fill))

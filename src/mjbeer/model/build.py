@@ -24,12 +24,9 @@ from mjbeer.theory.standing import Standing
 
 START = "start"
 """The name of the keyframe."""
-_SINGULAR = "Inertia matrix is too close to singular"
-"""What MuJoCo warns of, and goes on, when masses and inertias are too unequal for it to compute accelerations."""
 _skeletons: dict[Structure, mujoco.MjModel] = {}
 """A compiled model of each structure, with the numbers of the scene that came first."""
-_compiling = threading.RLock()
-"""Warnings are caught by the whole process, and so by one thread at a time."""
+_compiling = threading.Lock()
 
 
 def build(
@@ -97,8 +94,7 @@ def specify(
 
     The parameters and the errors are those of `build`. The can is the body "can", in the body "incline". A joint
     equality is as stiff as MJCF can express, which `build` makes rigid in the compiled model. Attached to another
-    specification, bodies keep their joints, masses and geoms, and lose all options: `mjcf/README.md` lists those that
-    the parent needs.
+    specification, bodies keep their joints, masses and geoms, and lose all options: the parent needs the same ones.
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     spec = _specification(scene, setting, visuals, free)
@@ -175,12 +171,10 @@ def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -
 
 def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
     """Return the model that a specification compiles to, in which a joint equality is made `rigid` if asked for."""
-    with _compiling, warnings.catch_warnings():
-        warnings.filterwarnings("error", _SINGULAR)
-        try:
-            model = spec.compile()
-        except (ValueError, UserWarning) as error:
-            raise _refused("; ".join(str(error).splitlines())) from error
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise _refused("; ".join(str(error).splitlines())) from error
     if rigid:
         _make_rigid(model)
     return model
@@ -228,7 +222,7 @@ class ReusableModel:
         if min(min(body.mass, body.inertia) for body in mechanics.bodies.values()) < mujoco.mjMINVAL:
             raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
         if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
-            raise _refused(_SINGULAR)
+            raise _refused("masses and inertias are too unequal for it to compute accelerations")
         mujoco.mj_resetData(model, data)
         self._written = mechanics
 

@@ -44,18 +44,17 @@ def file_fault(folder: pathlib.Path, attachment: Attachment, rolling: Rolling) -
     path, setting = folder / "mechanics" / f"{attachment}_{rolling}.xml", Setting(rolling)
     metal = Can.sheet_metal() if attachment == "sliding" and rolling != "reduced" else Can.massless()
     paper = Scene(metal, Load.segment(), attachment=attachment)
-    for scene, given in ((_PROBES[attachment], True), (paper, False)):
-        root, values = mjcf_file.read(path), Mechanics.of(scene, setting, visuals=True).parameters
-        if given:
-            mjcf_file.write(root, values, path)
-        try:
-            model = mjcf_file.to_spec(root, path).compile()
-        except ValueError as error:
-            raise TemplateError(f"{path} is refused by MuJoCo: {'; '.join(str(error).splitlines())}") from error
-        edited = [] if given else mjcf_file.differences(root, values)
-        told = f"; mjbeer writes a scene's own numbers into {', '.join(edited)}" if edited else ""
-        if (fault := model_fault(model, scene, setting)) or edited:
-            return f"{path} {fault or 'has other numbers than the paper'}{told}"
+    root, probe = mjcf_file.read(path), _PROBES[attachment]
+    edited = mjcf_file.differences(root, Mechanics.of(paper, setting, visuals=True).parameters)
+    mjcf_file.write(root, Mechanics.of(probe, setting, visuals=True).parameters, path)
+    try:
+        model = mjcf_file.to_spec(root, path).compile()
+    except ValueError as error:
+        raise TemplateError(f"{path} is refused by MuJoCo: {'; '.join(str(error).splitlines())}") from error
+    if fault := model_fault(model, probe, setting):
+        return f"{path} {fault}"
+    if edited:
+        return f"{path} has other numbers than the paper; mjbeer writes a scene's own numbers into {', '.join(edited)}"
     return None
 
 

@@ -18,14 +18,12 @@ from mjbeer.model.build import (
 )
 from mjbeer.model.free import standing_spec
 from mjbeer.model.mujoco_library import library
-from mjbeer.model.setting import FRICTION, INTEGRATORS, OWN, Integrator, Rolling, Setting
+from mjbeer.model.setting import FRICTION, INTEGRATORS, Integrator, MujocoIntegrator, Rolling, Setting
 from mjbeer.output import files
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import QUANTITATIVE, Standing
 
-CAMERA = "side"
-"""The camera with which the viewer opens. It goes along with the can."""
-PORTABLE = ("Euler", "implicitfast", "RK4")
+PORTABLE: tuple[MujocoIntegrator, ...] = ("Euler", "implicitfast", "RK4")
 """The integrators that all have which load a portable export: MJX and mujoco_warp have no "implicit", and MuJoCo 3.3
 has no "discrete"."""
 
@@ -58,7 +56,7 @@ def export(
 
     Raises:
       ParameterError: if a parameter is not allowed.
-      UnsupportedError: if MuJoCo cannot have such a model, or cannot write all digits.
+      UnsupportedError: if MuJoCo cannot have such a model.
       TemplateError: if a file of MJCF is missing, lacks an element, or moves otherwise than the scene.
       OutputError: if the file cannot be written.
     """
@@ -67,17 +65,9 @@ def export(
         raise ParameterError(
             f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
         )
+    require.choice("integrator", integrator, PORTABLE if require.boolean("portable", portable) else INTEGRATORS)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     require_meaningful(scene, setting, free, phi0, phi_dot0)
-    if setting.integrator in OWN:
-        raise UnsupportedError(
-            f"{setting.integrator} is mjbeer's integrator, not MuJoCo's; export with one of {', '.join(INTEGRATORS)}"
-        )
-    if require.boolean("portable", portable) and setting.integrator not in PORTABLE:
-        raise UnsupportedError(
-            f"a portable export has one of the integrators {', '.join(PORTABLE)}, not {setting.integrator}: MJX and "
-            "mujoco_warp have no implicit, MuJoCo 3.3 has no discrete"
-        )
     if isinstance(scene, Standing):
         spec = standing_viewer_spec(scene, free, setting)
         spec.comment = f" Written by mjbeer: {scene!r}. "
@@ -104,10 +94,8 @@ def viewer_spec(scene: Scene, setting: Setting, phi0: float, phi_dot0: float) ->
     """
     spec = rolling_spec(scene, setting, visuals=True)
     add_start(spec, scene, phi0, phi_dot0)
-    model = compile_spec(spec)
-    if fault := mechanics_fault(scene, setting, model):
+    if fault := mechanics_fault(scene, setting, compile_spec(spec)):
         raise TemplateError(fault)
-    spec.visual.global_.cameraid = model.camera(CAMERA).id
     return spec
 
 
@@ -117,7 +105,6 @@ def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
     spec = standing_spec(can, setting, visuals=True, free=free)
-    spec.visual.global_.cameraid = spec.compile().camera(CAMERA).id
     if not free:
         return spec
     upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
@@ -134,11 +121,7 @@ def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.
 
 def _text(spec: mujoco.MjSpec) -> str:
     """Return the specification as XML with 17 digits, which give all doubles back; MuJoCo's default is 6."""
-    c = library()
-    try:
-        before, set_digits = c._mjPRIVATE__get_xml_precision(), c._mjPRIVATE__set_xml_precision
-    except AttributeError:
-        raise UnsupportedError(f"MuJoCo {mujoco.__version__} cannot write MJCF with all digits; 4.0 can") from None
+    before, set_digits = library()._mjPRIVATE__get_xml_precision(), library()._mjPRIVATE__set_xml_precision
     set_digits(17)
     try:
         return spec.to_xml()

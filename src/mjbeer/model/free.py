@@ -19,7 +19,7 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mechanics, mjcf_file
-from mjbeer.model.setting import INTEGRATORS, Setting, mjcf_folder
+from mjbeer.model.setting import INTEGRATORS, Setting
 from mjbeer.theory.can import Can
 from mjbeer.theory.load import segment
 from mjbeer.theory.scene import Scene
@@ -37,13 +37,6 @@ _COARSE = 0.5
 """Largest angle [rad] of a mode's oscillation in a timestep: semi-implicit integrators then have it 1 % too fast."""
 _RK4 = 2.785
 """Largest product of a timestep and a rate of decay with which RK4 is stable."""
-_SPOILING = {
-    "CONTACT": "touches nothing",
-    "CONSTRAINT": "touches nothing",
-    "GRAVITY": "does not slosh",
-    "DAMPER": "has no damping",
-}
-"""What a can does under a flag that disables a stage of MuJoCo's."""
 _PARTS = ("can", "load", "swing", "liquid", *(f"slosh{mode}" for mode in range(1, MOST_MODES + 1)), "slide", "phi")
 """Bodies and joints by which cans differ; the last two are those of a scene that `build` made."""
 
@@ -81,38 +74,34 @@ def attach(
     require.instance("parent", parent, mujoco.MjSpec)
     free = require.boolean("free", free)
     place = require.samples("pos", pos, "m"), require.samples("quat", quat)
-    for name, value, array, count in (("pos", pos, place[0], 3), ("quat", quat, place[1], 4)):
-        if len(array) != count or (name == "quat" and not array.any()):
-            zero = ", not all 0" if name == "quat" else ""
-            raise ParameterError(f"{name} must have {count} numbers{zero}, got {require.format_value(value)}")
-    if not (isinstance(prefix, str) and prefix and prefix.isprintable()):  # MuJoCo's names end at the first "\0"
-        raise ParameterError(
-            f"prefix must be a text that can be printed and is not empty, got {require.format_value(prefix)}"
-        )
+    if len(place[0]) != 3:
+        raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")
+    if len(place[1]) != 4 or not place[1].any():
+        raise ParameterError(f"quat must have 4 numbers, not all 0, got {require.format_value(quat)}")
+    if not require.instance("prefix", prefix, str):
+        raise ParameterError("prefix must not be empty, got ''")
     if parent.body(f"{prefix}can") is not None:
         raise ParameterError(f"the parent has a can of this prefix already: give another one, got {prefix!r}")
     require.choice("body", body, ["world"] if free else [each.name for each in parent.bodies])
-    several = isinstance(friction, (list, tuple)) or (isinstance(friction, np.ndarray) and friction.ndim > 0)
-    listed = friction if several else [friction]
-    coefficients = [] if friction is None else [require.non_negative("friction", each) for each in listed]
-    if friction is not None and not 1 <= len(coefficients) <= 3:
+    coefficients = [] if friction is None else np.atleast_1d(np.asarray(friction, dtype=object)).tolist()
+    for each in coefficients:
+        require.non_negative("friction", each)
+    if len(coefficients) > 3:
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
-    lying = isinstance(can, Scene)
-    child = _lying_spec(can) if lying else _standing_spec(require.instance("can", can, Standing))
-    option = parent.option
+    child, option = _specification(can, Setting()), parent.option
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
-    if lying and option.impratio == 1:
-        option.impratio = child.option.impratio
-    if lying and option.integrator == mujoco.mjtIntegrator.mjINT_EULER:
-        option.integrator = child.option.integrator
-    reasons = _spoiling_options(parent.option, can) + _mass_bounds(parent.compiler, child)
     touching = child.geom("can")
     touching.friction = [*coefficients, *touching.friction[len(coefficients) :]]
     if isinstance(can, Scene):
-        kind = mujoco.mjtIntegrator(parent.option.integrator).name.removeprefix("mjINT_")
+        if option.impratio == 1:
+            option.impratio = child.option.impratio
+        if option.integrator == mujoco.mjtIntegrator.mjINT_EULER:
+            option.integrator = child.option.integrator
+        kind = mujoco.mjtIntegrator(option.integrator).name.removeprefix("mjINT_")
         integrator = next(each for each in INTEGRATORS if each.upper() == kind)
-        touching.solref = [mechanics.stiffest(integrator, parent.option.timestep, contact=True), 1]
+        touching.solref = [mechanics.stiffest(integrator, option.timestep, contact=True), 1]
+    reasons = _spoiling_options(option, can) + _mass_bounds(parent.compiler, child)
     child.option, child.visual.map.zfar = parent.option, parent.visual.map.zfar  # MuJoCo warns of what differs
     root = child.body("can")
     root.pos, root.quat = [0, 0, 0], [1, 0, 0, 0]
@@ -136,13 +125,18 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
       UnsupportedError: if MuJoCo cannot move such a can freely.
     """
     require.instance("model", model, mujoco.MjModel)
-    if not (isinstance(prefix, str) and prefix.isprintable()):
-        raise ParameterError(f"prefix must be a text that can be printed, got {require.format_value(prefix)}")
-    if isinstance(can, Scene):
-        spec, drawn = _lying_spec(can, visuals=False), {}
-    else:
-        spec, drawn = _standing_spec(require.instance("can", can, Standing), visuals=False), looks.beer_column(can)
-    _require_parts(model, prefix, spec, can)
+    require.instance("prefix", prefix, str)
+    spec, find = _specification(can, Setting(), visuals=False), mujoco.mj_name2id
+    kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
+    there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
+    needed = [each for each in _PARTS if spec.body(each) is not None or spec.joint(each) is not None]
+    size = [can.can.radius, can.can.length / 2]  # written to MJCF with 6 digits or more
+    if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
+        raise ParameterError(
+            f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
+            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
+            f"got {require.format_value(can)}"
+        )
     if any(min(spec.body(each.name).inertia) < mujoco.mjMINVAL for each in spec.joints if each.name != "swing"):
         raise UnsupportedError(
             f"MuJoCo moves no pendulum with an inertia below {mujoco.mjMINVAL:g} kg m^2, as of {can}"
@@ -157,28 +151,14 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
         joint.damping[:], joint.dampingpoly[:] = each.damping[0], each.damping[1:]
     for each in spec.sites:
         model.site(f"{prefix}{each.name}").pos = each.pos
+    drawn = looks.beer_column(can) if isinstance(can, Standing) else {}
     for name, (low, high, radius) in drawn.items():
-        if mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}{name}") >= 0:
+        if find(model, mujoco.mjtObj.mjOBJ_GEOM, f"{prefix}{name}") >= 0:
             geom = model.geom(f"{prefix}{name}")
             geom.pos[2], geom.size[:2] = (low + high) / 2, (radius, (high - low) / 2)
     mujoco.mj_setConst(model, mujoco.MjData(model))  # which it takes as its workspace
     if reasons := _spoiling_options(model.opt, can):
         warnings.warn(f"the model's options spoil the can: {'; '.join(reasons)}", UntrustedWarning, stacklevel=2)
-
-
-def _require_parts(model: mujoco.MjModel, prefix: str, spec: mujoco.MjSpec, can: Standing | Scene) -> None:
-    """Check that the can of a model has the parts of a specification, and the size."""
-    find, shell = mujoco.mj_name2id, can.can
-    kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
-    there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
-    needed = [each for each in _PARTS if spec.body(each) is not None or spec.joint(each) is not None]
-    size = [shell.radius, shell.length / 2]  # written to MJCF with 6 digits or more
-    if there != needed or not np.allclose(model.geom(f"{prefix}can").size[:2], size, rtol=1e-6, atol=0):
-        raise ParameterError(
-            f"the model must have a can under the prefix {require.format_value(prefix)} with radius and half length "
-            f"{size} m and with {', '.join(needed)}; it has {', '.join(there) or 'none'}, "
-            f"got {require.format_value(can)}"
-        )
 
 
 def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[str]:
@@ -201,11 +181,10 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
         )
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
-    for flag, told in _SPOILING.items():
-        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag}"]) and (
-            flag != "DAMPER" or decay > 0
-        ):
-            reasons.append(f"with the flag {flag.lower()} disabled it {told}")
+    flags = {"contact": "touches nothing", "constraint": "touches nothing", "gravity": "does not slosh"}
+    for flag, told in (flags | ({"damper": "has no damping"} if decay > 0 else {})).items():
+        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag.upper()}"]):
+            reasons.append(f"with the flag {flag} disabled it {told}")
     return reasons
 
 
@@ -244,20 +223,17 @@ def _bob_shares(can: Standing) -> np.ndarray:
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
 
 
+def _specification(can: Standing | Scene, setting: Setting, visuals: bool = True) -> mujoco.MjSpec:
+    """Return the specification of a can that has no free joint yet."""
+    if isinstance(can, Scene):
+        return _lying_spec(can, setting.folder, visuals)
+    return standing_spec(require.instance("can", can, Standing), setting, visuals, free=False)
+
+
 def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
-    """Return the specification of a standing can: on the floor if it is `free`, or else held by the world."""
-    integrator = require.choice("integrator", setting.integrator, INTEGRATORS)
-    spec = _standing_spec(can, visuals, free, setting.folder)
-    spec.option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
-    spec.option.timestep = setting.timestep
-    return spec
-
-
-def _standing_spec(
-    can: Standing, visuals: bool = True, free: bool = False, folder: pathlib.Path | None = None
-) -> mujoco.MjSpec:
     """Return the specification of a standing can; one that is not `free` has neither a joint nor a floor."""
-    root, path = _read("standing", folder or mjcf_folder())
+    integrator = require.choice("integrator", setting.integrator, INTEGRATORS)
+    root, path = _read("standing", setting.folder)
     if not free:
         mjcf_file.remove(root, "freejoint", "geom[@name='surface']")
     parents = [*root.iterfind(".//body[@name='can']"), *root.iterfind("sensor")]
@@ -274,13 +250,14 @@ def _standing_spec(
     spec = mjcf_file.to_spec(root, path)
     if visuals:
         looks.fit_to_standing(spec, can, path.parents[1])
+    spec.option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
+    spec.option.timestep = setting.timestep
     return spec
 
 
-def _lying_spec(scene: Scene, visuals: bool = True) -> mujoco.MjSpec:
-    """Return the specification of a lying can, which has no free joint yet."""
+def _lying_spec(scene: Scene, folder: pathlib.Path, visuals: bool) -> mujoco.MjSpec:
     values = lying_parameters(scene)
-    root, path = _read("lying", mjcf_folder())
+    root, path = _read("lying", folder)
     mjcf_file.remove(root, "freejoint")
     if scene.attachment == "frozen":
         mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
