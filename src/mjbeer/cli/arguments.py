@@ -139,12 +139,7 @@ OPTIONS = {
     ),
     "sweep": (
         *_RUN,
-        Option(
-            "--quantity",
-            "what is plotted, as phi, u, error or period; files have all, the period if asked for",
-            "phi",
-            str,
-        ),
+        Option("--quantity", "plotted, as phi, u, error or period; files have all, the last if asked for", "phi", str),
         Option("--output", "plot (.png, .svg), table (.csv), or NetCDF (.nc), which is resumed", "sweep.png", Path),
     ),
     "validate": (Option("--table", "print every row, not only those that failed", False), _JSON),
@@ -155,11 +150,7 @@ OPTIONS = {
     ),
     "stability": (
         Option("--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path),
-        Option(
-            "--quick",
-            "fewer integrators, coarser maps, 250 random runs in place of 3000; two minutes",
-            False,
-        ),
+        Option("--quick", "fewer integrators, coarser maps, 250 random runs, not 3000; two minutes", False),
         _JSON,
     ),
     "paper": (Option("--output", _FOLDER, "paper", Path), Option("--films", "also draw films of the motions", False)),
