@@ -132,7 +132,7 @@ def trajectory_of(given: Namespace) -> Trajectory:
         return simulate(thing, given.duration, **start(given), **steps(given))
 
 
-def simulate(given: Namespace) -> int:
+def simulate(given: Namespace) -> None:
     """Simulate a scene and print its key figures, with an estimate of the error."""
     to_output = str(given.output) == "-"
     if to_output and given.json:
@@ -149,10 +149,9 @@ def simulate(given: Namespace) -> int:
     else:
         terminal.write(summary.json() if given.json else summary.text())
     _warn(summary)
-    return 0
 
 
-def render(given: Namespace) -> int:
+def render(given: Namespace) -> None:
     """Simulate a scene and draw it as a video (MP4)."""
     from mjbeer.drawing.video import render
 
@@ -160,10 +159,9 @@ def render(given: Namespace) -> int:
     _warn(Summary(trajectory, given.friction))
     render(trajectory, given.output, given.width, given.height, speed=given.speed, camera=given.camera)
     say(f"wrote {given.output}")
-    return 0
 
 
-def view(given: Namespace) -> int:
+def view(given: Namespace) -> None:
     """Open a scene in MuJoCo's viewer, which runs it at once.
 
     The space bar pauses it, - and = change its speed, and F4 plots u, phi and the other sensors. The reduced model of a
@@ -194,17 +192,15 @@ def view(given: Namespace) -> int:
         )
     os.environ.setdefault("LP_NUM_THREADS", "0")  # see `opengl.context`
     mujoco.viewer.launch(model, data, show_left_ui=False, show_right_ui=False)
-    return 0
 
 
-def export(given: Namespace) -> int:
+def export(given: Namespace) -> None:
     """Write a scene with its start as one MJCF file that MuJoCo 4 loads without mjbeer."""
     from mjbeer.model.export import export
 
     export(scene(given), given.output, **start(given), **steps(given), portable=given.portable)
     keyframe = 'its start is a keyframe: mujoco.mj_resetDataKeyframe(model, data, model.key("start").id)'
     say(f"wrote {given.output}; {keyframe}")
-    return 0
 
 
 def _warn(summary: Summary) -> None:
@@ -215,7 +211,7 @@ def _warn(summary: Summary) -> None:
         say(line, "yellow")
 
 
-def fit(given: Namespace) -> int:
+def fit(given: Namespace) -> None:
     """Tell from the track of a filmed can what was in it, and on which incline it rolled."""
     from mjbeer.tracks.fit import fit
     from mjbeer.tracks.track import read_track
@@ -246,4 +242,3 @@ def fit(given: Namespace) -> int:
             figure.savefig(temporary, facecolor="white", dpi=150)
     if output:
         say(f"wrote {output}")
-    return 0

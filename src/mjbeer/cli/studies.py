@@ -20,7 +20,7 @@ _PLOTS = (".png", ".svg")
 _ENDINGS = (*_PLOTS, ".csv", ".nc")
 
 
-def sweep(given: Namespace) -> int:
+def sweep(given: Namespace) -> None:
     """Simulate a scene for several values of its options, as 1,2,5, or as 1:20:39, which is 39 numbers from 1 to 20."""
     from mjbeer.studies.sweep import sweep
     from mjbeer.studies.sweep_runs import STATUSES, WELL
@@ -52,7 +52,6 @@ def sweep(given: Namespace) -> int:
     counts = [f"{np.count_nonzero(status == number)}: {text}" for number, text in STATUSES.items() if number in status]
     doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
     terminal.write("; ".join(counts + [f"{doubted}: not trusted"] * bool(doubted)) + "\n")
-    return 0
 
 
 def validate(given: Namespace) -> int:
@@ -78,7 +77,7 @@ def report(given: Namespace) -> int:
     return _conclude(validation)
 
 
-def benchmark(given: Namespace) -> int:
+def benchmark(given: Namespace) -> None:
     """Measure error against run time of integrators and other tools, in seven minutes."""
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
@@ -88,7 +87,6 @@ def benchmark(given: Namespace) -> int:
         benchmark_tables.write(study, given.output)
     show(*benchmark_tables.tables(study))
     say(f"the study is in {given.output / 'summary.md'}")
-    return 0
 
 
 def stability(given: Namespace) -> int:
@@ -108,7 +106,7 @@ def stability(given: Namespace) -> int:
     return 1 if study.failed else 0
 
 
-def paper(given: Namespace) -> int:
+def paper(given: Namespace) -> None:
     """Plot each of the paper's scenarios, and write a folder with a summary."""
     from mjbeer.paper import stories
 
@@ -116,7 +114,6 @@ def paper(given: Namespace) -> int:
     say(f"the stories are in {given.output / 'stories.md'}")
     if not_drawn:
         say(not_drawn, "yellow")
-    return 0
 
 
 def _conclude(validation: Any) -> int:
