@@ -3,15 +3,21 @@
 import inspect
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
 
-from mjbeer import Can, Scene, build, frozen, hoop, liquid, pendulum, render, simulate, sliding
+from mjbeer import Can, build, render, simulate
 from mjbeer.cli.app import OF_SCENES, main, parse
-from mjbeer.cli.arguments import angle, angles, numbers, of_scene, scene, start, steps
+from mjbeer.cli.arguments import SCENES, angle, angles, numbers, of_scene, scene, start, steps
 from mjbeer.model.export import export
 
+OWN: dict[str, Any] = {
+    "name": "honey", "incline": math.radians(-20), "fill": 0.3, "can": Can.sheet_metal(0.04, 0.2), "density": 900.0,
+    "viscosity": 1e-5, "gravity": 1.6, "damping": 1e-3, "drag": 1e-4, "wheel_mass": 0.5, "hoop_mass": 0.4,
+    "load_mass": 0.6, "offset": 0.03, "radius": 0.04, "length": 0.2,
+}  # fmt: skip
 PURE_NUMBERS = {"--fill", "--friction", "--speed", "--damping-ratio"}
 
 
@@ -24,42 +30,20 @@ def test_help_states_the_unit_of_every_number() -> None:
                 assert name in PURE_NUMBERS or re.search(r"\[\S", meaning), name
 
 
-@pytest.mark.parametrize(
-    ("words", "meant"),
-    [
-        ("sliding", sliding()),
-        ("frozen", frozen()),
-        ("pendulum", pendulum()),
-        ("hoop", hoop()),
-        ("liquid", liquid()),
-        (
-            "sliding --incline -2e1 --radius 0.04 --length 0.2 --gravity 1.6 --fill 0.3 --can metal --density 900 "
-            "--damping 1e-3 --drag 1e-4",
-            sliding(math.radians(-20), 0.3, Can.sheet_metal(0.04, 0.2), 900, 1.6, 1e-3, 1e-4),
-        ),
-        (
-            "liquid --liquid honey --incline 5 --radius 0.04 --length 0.2 --gravity 1.6 --fill 0.3 --can metal "
-            "--density 900 --viscosity 1e-5 --drag 1e-4",
-            liquid("honey", math.radians(5), 0.3, Can.sheet_metal(0.04, 0.2), 900, 1e-5, 1.6, 1e-4),
-        ),
-        (
-            "frozen --incline 5 --radius 0.04 --length 0.2 --gravity 1.6 --fill 0.3 --density 900",
-            frozen(math.radians(5), 0.3, Can.massless(0.04, 0.2), 900, 1.6),
-        ),
-        (
-            "pendulum --incline 20 --radius 0.04 --length 0.2 --gravity 1.6 --wheel-mass 0.5 --load-mass 0.6 "
-            "--offset 0.03",
-            pendulum(math.radians(20), 0.5, 0.6, 0.03, 0.04, 0.2, 1.6),
-        ),
-        (
-            "hoop --incline 7 --radius 0.04 --length 0.2 --gravity 1.6 --hoop-mass 0.5 --load-mass 0.6",
-            hoop(math.radians(7), 0.5, 0.6, 0.04, 0.2, 1.6),
-        ),
-    ],
-)
-def test_a_scene_is_that_of_python(words: str, meant: Scene) -> None:
-    given = parse(["simulate", *words.split()])
-    assert scene(given) == meant
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scene_is_that_of_python(name: str) -> None:
+    """With its defaults, and with a value of its own for each parameter."""
+    assert scene(parse(["simulate", name])) == SCENES[name]()
+    values = OWN | {"can": "metal", "liquid": "honey", "incline": -20}
+    names = [each.name for each in of_scene(name, "simulate") if spelt(each.name) in values]
+    words = [f"{each}={values[spelt(each)]}" for each in names]
+    meant = {each: OWN[each] for each in inspect.signature(SCENES[name]).parameters}
+    assert scene(parse(["simulate", name, *words])) == SCENES[name](**meant)
+
+
+def spelt(option: str) -> str:
+    """The name in Python."""
+    return option.removeprefix("--").replace("-", "_")
 
 
 def test_the_options_of_the_run_arrive() -> None:

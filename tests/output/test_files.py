@@ -4,7 +4,7 @@ import errno
 import os
 import pathlib
 import signal
-import stat
+from collections.abc import Callable
 
 import pytest
 
@@ -22,16 +22,12 @@ with files.locked(pathlib.Path(sys.argv[1])):
 """
 
 
-@pytest.mark.parametrize("mask", [0o022, 0o000])
-def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path, mask: int) -> None:
-    target, before = tmp_path / "motion.csv", os.umask(mask)
-    try:
-        files.write(target, "φ\n")
-    finally:
-        assert os.umask(before) == mask
+def test_a_file_is_written_with_any_user_s_permissions(tmp_path: pathlib.Path) -> None:
+    target, usual = tmp_path / "motion.csv", tmp_path / "usual"
+    usual.touch()
+    files.write(target, "φ\n")
     assert target.read_bytes() == "φ\n".encode()
-    assert os.listdir(target.parent) == ["motion.csv"]
-    assert stat.S_IMODE(target.stat().st_mode) == 0o666 & ~mask
+    assert target.stat().st_mode == usual.stat().st_mode
 
 
 def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -50,20 +46,6 @@ def test_a_folder_that_may_be_misspelt_is_not_made(tmp_path: pathlib.Path, monke
     assert os.listdir(tmp_path) == ["results"]
 
 
-def test_two_may_write_one_file_at_a_time(tmp_path: pathlib.Path) -> None:
-    """It is whole whenever it is looked at: the one, and then the other."""
-    target = tmp_path / "film.mp4"
-    with files.atomic_write(target) as one:
-        # Only within a file system is a rename atomic; ffmpeg takes the format from the suffix.
-        assert (one.parent, one.suffix) == (tmp_path, ".mp4")
-        with files.atomic_write(target) as other:
-            one.write_text("one")
-            other.write_text("other")
-        assert target.read_text() == "other"
-    assert target.read_text() == "one"
-    assert os.listdir(tmp_path) == ["film.mp4"]
-
-
 @pytest.mark.parametrize("error", [RuntimeError("drawing failed"), KeyboardInterrupt()])
 def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path, error: BaseException) -> None:
     target = tmp_path / "film.mp4"
@@ -71,6 +53,8 @@ def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path,
 
     def fail() -> None:
         with files.atomic_write(target) as temporary:
+            # Only within a file system is a rename atomic; ffmpeg takes the format from the suffix.
+            assert (temporary.parent, temporary.suffix) == (tmp_path, ".mp4")
             temporary.write_text("ne")
             raise error
 
@@ -81,37 +65,38 @@ def test_what_fails_leaves_the_old_file_and_nothing_else(tmp_path: pathlib.Path,
     assert os.listdir(tmp_path) == ["film.mp4"]
 
 
-def full(*_: object, **__: object) -> None:
-    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+def fault(number: int) -> Callable[..., None]:
+    def fail(*_: object, **__: object) -> None:
+        raise OSError(number, os.strerror(number))
 
-
-def closed(*_: object, **__: object) -> None:
-    raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    return fail
 
 
 @pytest.mark.parametrize(
-    ("where", "name", "fault", "reason"),
+    ("where", "name", "number"),
     [
-        (pathlib.Path, "write_text", full, "No space left on device"),
-        (os, "fsync", full, "No space left on device"),  # what has its name is on the disk, over a network too
-        (pathlib.Path, "touch", closed, "Permission denied"),  # to the superuser no folder is closed
+        (pathlib.Path, "write_text", errno.ENOSPC),
+        (os, "fsync", errno.ENOSPC),  # what has its name is on the disk, over a network too
+        (pathlib.Path, "touch", errno.EACCES),  # to the superuser no folder is closed
     ],
 )
 def test_a_disk_that_does_not_take_it_is_an_output_error(
-    where: object, name: str, fault: object, reason: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+    where: object, name: str, number: int, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     target = tmp_path / "motion.csv"
     target.write_text("old")
     with monkeypatch.context() as patched:
-        patched.setattr(where, name, fault)
+        patched.setattr(where, name, fault(number))
         with pytest.raises(OutputError) as caught:
             files.write(target, "new and longer")
-    assert str(caught.value) == f"cannot write {target}: {reason}"
+    assert str(caught.value) == f"cannot write {target}: {os.strerror(number)}"
     assert target.read_text() == "old"
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
-def test_a_link_stays_and_leads_to_the_new_file_and_a_device_is_not_replaced(tmp_path: pathlib.Path) -> None:
+def test_a_link_stays_and_what_is_read_only_or_a_device_is_not_replaced(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     link, target, pipe = tmp_path / "link.csv", tmp_path / "far" / "motion.csv", tmp_path / "pipe"
     link.symlink_to(target)
     target.parent.mkdir()
@@ -123,6 +108,10 @@ def test_a_link_stays_and_leads_to_the_new_file_and_a_device_is_not_replaced(tmp
     with pytest.raises(OutputError, match="pipe: it is not a regular file"):
         files.write(pipe, "")
     assert pipe.is_fifo()
+    monkeypatch.setattr(os, "access", lambda *_: False)  # to the superuser no file is read-only
+    with pytest.raises(OutputError, match="it is read-only"):
+        files.write(target, "")
+    assert target.read_text() == "replaced"
 
 
 @pytest.mark.slow

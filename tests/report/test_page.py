@@ -16,15 +16,13 @@ from mjbeer.checks import Result
 from mjbeer.cli.app import main, parse
 from mjbeer.drawing import opengl
 from mjbeer.drawing.film import MotionFilm
-from mjbeer.output import terminal
 from mjbeer.paper.claim import CORRECTED, Bound, Claim, Witness
 from mjbeer.report import films, page
 from mjbeer.report.films import FILMS
 from mjbeer.studies.validation.validate import Validation
 from tests.support import stubs
 
-SENTENCE = r"{} of {} checks and {} of {} claims of the paper passed\n"
-SECTIONS = ["verdict", "races", "scenes", "errors", "stability", "stories", "misprints", "machine"]
+SENTENCE = "{} of {} checks and {} of {} claims of the paper passed"
 MISPRINTS = [row for row in paper.claims() if row.misprint]
 
 
@@ -55,39 +53,26 @@ class Page(html.parser.HTMLParser):
         return [str(of[attribute]) for tag, of in self.elements if attribute in of and (tag in tags or not tags)]
 
 
-@pytest.mark.parametrize("options", [[], ["--table"], ["--json"]])
-@pytest.mark.parametrize("eye", [True, False])
+@pytest.mark.parametrize("option", ["", "--table", "--json"])
 @pytest.mark.parametrize(("error", "status"), [(1e-3, 0), (2e-3, 1), (math.nan, 1)])
 def test_validate_tells_a_failure_whatever_is_asked_for(
-    options: list[str],
-    eye: bool,
-    error: float,
-    status: int,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    option: str, error: float, status: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     stubs.validate(monkeypatch, first=1e-5, second=error)
     seen = ("good", lambda: 1e-6), ("other", lambda: error)
     rows = [Claim(name, "a stub", Witness("none", see), Bound(1e-3, ""), "1 + seen - 1") for name, see in seen]
     monkeypatch.setattr(paper, "claims", lambda: rows)
-    monkeypatch.setattr(terminal, "is_read_by_eye", lambda: eye)
-    assert main(["validate", *options]) == status
+    assert main(["validate", *option.split()]) == status
     out, err = capsys.readouterr()
-    *failures, last = err.splitlines()
-    assert (
-        failures
-        == [
-            f"FAILED: stubs: second (a stub): error {error:.1e}, at most 1.0e-03 rad",
-            f"FAILED: other: a stub (none): error {error:.1e}, at most 1.0e-03",
-        ][: 2 * status]
-    )
-    assert re.fullmatch(SENTENCE.format(2 - status, 2, 2 - status, 2), last + "\n")
-    if options == ["--json"]:
+    failed = "stubs: second (a stub)", "other: a stub (none)"
+    told = [f"FAILED: {name}: error {error:.1e}, at most 1.0e-03" for name in failed[: 2 * status]]
+    assert err.replace(" rad\n", "\n").splitlines() == [*told, SENTENCE.format(2 - status, 2, 2 - status, 2)]
+    if option == "--json":
         content = json.loads(out, parse_constant=pytest.fail)
         assert content["passed"] == (status == 0)
         assert [row["error"] for row in content["checks"]] == [1e-5, None if math.isnan(error) else error]
     else:
-        assert ("│ first" in out, "\nfirst\t" in out) == (bool(options) and eye, bool(options) and not eye)
+        assert ("\nfirst\t" in out) == bool(option)
 
 
 @pytest.mark.slow
@@ -101,16 +86,13 @@ def test_a_report_is_one_page_with_all_films(
     assert main(["report", "--output", str(folder), *(["--quick"] if quick else [])]) == 0
     assert set(os.listdir(folder)) == {"index.html", "live.html", "stability-more.svg"}
     text = (folder / "index.html").read_text()
-    names = [*films.RACES, *(name for name in FILMS if name not in films.RACES), *([] if quick else ["told"])]
     found = [base64.b64decode(each.partition(",")[2]).decode() for each in Page(text).values("src", "source")]
-    assert found == [f"film {name}" for name in names]
+    assert found == [f"film {name}" for name in (*FILMS, *([] if quick else ["told"]))]
     assert ("The films were left out of this quick report." in text) == quick
-    assert "2 of 2 checks and 0 of 0 claims of the paper passed." in text
-    assert "A plot &amp; a title" in text
-    assert "<td>first</td>" in text
+    assert all(words in text for words in (SENTENCE.format(2, 2, 0, 0), "A plot &amp; a title", "<td>first</td>"))
     assert {call.width for call in calls} == {640 if quick else 768}
-    err = capsys.readouterr().err
-    assert re.fullmatch(SENTENCE.format(2, 2, 0, 0), err.partition(f"the report is in {folder / 'index.html'}\n")[2])
+    told = f"the report is in {folder / 'index.html'}", SENTENCE.format(2, 2, 0, 0)
+    assert capsys.readouterr().err.endswith("\n".join(told) + "\n")
 
 
 @pytest.mark.slow
@@ -160,21 +142,13 @@ def test_nothing_comes_from_elsewhere_and_nothing_runs(text: str) -> None:
     """Links that a reader may follow are the only addresses; the policy forbids the rest, and all scripts."""
     read = Page(text)
     taken = read.values("src") + read.values("poster") + read.values("href", "link", "image", "use")
-    assert len(taken) > 5
     assert all(each.startswith(("data:", "#")) for each in taken)
     (policy,) = read.values("content", "meta")[:1]
     assert "default-src 'none'" in policy
     assert not re.search(r"\bhttps?:|\*|script", policy)
-    assert "<script" not in text
-
-
-def test_links_lead_to_sections_and_everything_has_a_name_of_its_own(text: str) -> None:
-    read = Page(text)
-    assert read.values("id", "section") == SECTIONS
-    names = read.values("id")
+    names, inside = read.values("id"), {each[1:] for each in read.values("href", "a", "use") if each[0] == "#"}
     assert len(names) == len(set(names))
-    inside = {each[1:] for each in read.values("href", "a", "use") if each[0] == "#"}
-    assert set(SECTIONS) <= inside <= set(names)
+    assert set(read.values("id", "section")) <= inside <= set(names)
     assert all(read.values("alt", "img"))
 
 
@@ -195,9 +169,8 @@ def test_a_film_s_command_makes_the_same_motion(name: str) -> None:
     assert isinstance(film, MotionFilm)
     given = parse(shlex.split(films.COMMANDS[name])[1:])
     ours, theirs = film.trajectory(), trajectory_of(given)
-    assert (ours.phi0, ours.phi_dot0) == pytest.approx(
-        (theirs.phi0, theirs.phi_dot0), abs=1e-6
-    )  # seven digits in degrees
+    # The degrees of a command have seven digits.
+    assert (ours.phi0, ours.phi_dot0) == pytest.approx((theirs.phi0, theirs.phi_dot0), abs=1e-6)
     assert (ours.scene, ours.rolling, ours.integrator) == (theirs.scene, theirs.rolling, theirs.integrator)
 
 
@@ -208,7 +181,4 @@ def test_formulas_are_mathml_without_what_was_not_understood(row) -> None:
         assert shown.count("<math") >= 1
         assert "\\" not in re.sub("<[^>]*>", "", shown)
         assert (r"\textcolor" in latex) == ('class="differs"' in shown)
-
-
-def test_letters_are_those_of_the_formulas() -> None:
     assert page.letters("phi_0^2 and u_ddot") == "φ₀² and u\N{COMBINING DIAERESIS}"

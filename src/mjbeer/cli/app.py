@@ -21,7 +21,7 @@ from mjbeer.output.terminal import say
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
 COMMANDS = {name: getattr(motions, name, None) or getattr(studies, name) for name in OPTIONS}
-"""The functions that run commands, whose docstrings are their help."""
+"""The functions that run commands, whose docstrings are their help; one returns an exit status that is not 0."""
 OF_SCENES: dict[str, dict[str, Callable[..., Any]]] = {
     **dict.fromkeys(("simulate", "render", "fit", "sweep"), SCENES),
     **dict.fromkeys(("view", "export"), SCENES | STANDING),
@@ -75,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             # A study goes where a liquid is no lump on purpose, and its documents say so.
             warnings.simplefilter("always" if given.command in OF_SCENES else "ignore", LiquidWarning)
             cast("Any", warnings).showwarning = lambda message, *_: say(f"note: {message}", "yellow")
-            return COMMANDS[given.command](given)
+            return COMMANDS[given.command](given) or 0
     except (MjbeerError, OSError) as error:  # OSError: a limit of the machine, such as too many processes
         say(f"mjbeer: {error}", "red")
         return 2

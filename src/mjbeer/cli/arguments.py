@@ -99,16 +99,14 @@ class Option(NamedTuple):
 
 
 _MODEL = (
-    Option(
-        "--rolling", "what makes it roll; by default reduced coordinates, in a viewer a joint equality", None, ROLLINGS
-    ),
+    Option("--rolling", "what makes it roll; by default reduced coordinates, equality in a viewer", None, ROLLINGS),
     Option("--integrator", "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance", None, INTEGRATORS + OWN),
     Option("--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep),
     Option("--friction", "coefficient of friction: a contact slips beyond it", Setting.friction),
 )
 _RUN = (
     Option("--duration", "duration of the motion [s]", DURATION),
-    Option("--tolerance", "largest error in phi and u/radius [rad]; a sweep has 1e-6 by default, or an integrator"),
+    Option("--tolerance", "largest error in phi and u/radius [rad]; a sweep without an integrator takes 1e-6"),
     *_MODEL,
 )
 _JSON = Option("--json", "print the results as JSON", False)
@@ -141,7 +139,7 @@ OPTIONS = {
     ),
     "sweep": (
         *_RUN,
-        Option("--quantity", "quantity of the plot, as phi, u, error or period; files have all of them", "phi", str),
+        Option("--quantity", "plotted, as phi, u, error or period; files have all, the last if asked for", "phi", str),
         Option("--output", "plot (.png, .svg), table (.csv), or NetCDF (.nc), which is resumed", "sweep.png", Path),
     ),
     "validate": (Option("--table", "print every row, not only those that failed", False), _JSON),
@@ -152,17 +150,10 @@ OPTIONS = {
     ),
     "stability": (
         Option("--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path),
-        Option(
-            "--quick",
-            "fewer integrators, coarser maps, 250 random runs in place of 3000; two minutes",
-            False,
-        ),
+        Option("--quick", "fewer integrators, coarser maps, 250 random runs, not 3000; two minutes", False),
         _JSON,
     ),
-    "paper": (
-        Option("--output", _FOLDER, "paper", Path),
-        Option("--films", "also draw films of the motions", False),
-    ),
+    "paper": (Option("--output", _FOLDER, "paper", Path), Option("--films", "also draw films of the motions", False)),
     "report": (
         Option("--output", _FOLDER, "report", Path),
         Option("--quick", "draw smaller videos with fewer frames, and no films for the paper's scenarios", False),

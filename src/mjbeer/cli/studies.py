@@ -5,7 +5,7 @@ import functools
 import math
 from argparse import Namespace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -16,21 +16,12 @@ from mjbeer.output import files, terminal
 from mjbeer.output.terminal import STDERR, say, show
 from mjbeer.studies.benchmark.points import CASES
 
-if TYPE_CHECKING:
-    import xarray
-
-    from mjbeer.studies.validation.validate import Validation
-
-_FAILED = 1
 _PLOTS = (".png", ".svg")
 _ENDINGS = (*_PLOTS, ".csv", ".nc")
 
 
-def sweep(given: Namespace) -> int:
-    """Simulate a scene for ranges of its options, as --incline 1:20:39, which is 39 numbers from 1 to 20.
-
-    NUMBERS and ANGLES are one number, several as 1,2,5, or such a range.
-    """
+def sweep(given: Namespace) -> None:
+    """Simulate a scene for several values of its options, as 1,2,5, or as 1:20:39, which is 39 numbers from 1 to 20."""
     from mjbeer.studies.sweep import sweep
     from mjbeer.studies.sweep_runs import STATUSES, WELL
 
@@ -61,7 +52,6 @@ def sweep(given: Namespace) -> int:
     counts = [f"{np.count_nonzero(status == number)}: {text}" for number, text in STATUSES.items() if number in status]
     doubted = np.count_nonzero((status == WELL) & ~result["trusted"].values)
     terminal.write("; ".join(counts + [f"{doubted}: not trusted"] * bool(doubted)) + "\n")
-    return 0
 
 
 def validate(given: Namespace) -> int:
@@ -77,10 +67,7 @@ def validate(given: Namespace) -> int:
 
 
 def report(given: Namespace) -> int:
-    """Validate, draw the scenes and the paper's stories, and write a page that shows it all.
-
-    The exit status is 1 if a check fails. Without OpenGL there are no films.
-    """
+    """Validate, draw films and plots, and write a page that shows it all; exit status 1 if a check fails."""
     from mjbeer.report.page import write
 
     validation, not_drawn = write(given.output, given.quick, STDERR)
@@ -90,7 +77,7 @@ def report(given: Namespace) -> int:
     return _conclude(validation)
 
 
-def benchmark(given: Namespace) -> int:
+def benchmark(given: Namespace) -> None:
     """Measure error against run time of integrators and other tools, in seven minutes."""
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
@@ -100,7 +87,6 @@ def benchmark(given: Namespace) -> int:
         benchmark_tables.write(study, given.output)
     show(*benchmark_tables.tables(study))
     say(f"the study is in {given.output / 'summary.md'}")
-    return 0
 
 
 def stability(given: Namespace) -> int:
@@ -117,10 +103,10 @@ def stability(given: Namespace) -> int:
     for result in study.failed:
         say(f"not as it must be: {result.summary_line()}", "red")
     say(f"the study is in {given.output / 'summary.md'}")
-    return _FAILED if study.failed else 0
+    return 1 if study.failed else 0
 
 
-def paper(given: Namespace) -> int:
+def paper(given: Namespace) -> None:
     """Plot each of the paper's scenarios, and write a folder with a summary."""
     from mjbeer.paper import stories
 
@@ -128,18 +114,17 @@ def paper(given: Namespace) -> int:
     say(f"the stories are in {given.output / 'stories.md'}")
     if not_drawn:
         say(not_drawn, "yellow")
-    return 0
 
 
-def _conclude(validation: "Validation") -> int:
+def _conclude(validation: Any) -> int:
     """Print what failed and, on the last line, what passed; return the exit status."""
     for failure in validation.failures:
         say(f"FAILED: {failure}", "red")
     say(validation.sentence, "green" if validation.passed else "red")
-    return 0 if validation.passed else _FAILED
+    return 0 if validation.passed else 1
 
 
-def _plot(result: "xarray.Dataset", quantity: str, path: Path) -> None:
+def _plot(result: Any, quantity: str, path: Path) -> None:
     """Plot a quantity over one parameter, or as a map over two, with angles in degrees."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
@@ -157,7 +142,7 @@ def _plot(result: "xarray.Dataset", quantity: str, path: Path) -> None:
         figure.savefig(path, dpi=150)
 
 
-def _in_degrees(values: "xarray.DataArray") -> "xarray.DataArray":
+def _in_degrees(values: Any) -> Any:
     """Return values in degrees if they are angles or their rates."""
     if "rad" not in (unit := values.attrs.get("units", "")):
         return values

@@ -22,20 +22,16 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from mjbeer.output import files
 
+# M. Okabe and K. Ito's palette for colour-blind readers, without its yellow, which is hard to see on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-"""M. Okabe and K. Ito's palette for colour-blind readers, without its yellow, which is hard to see on white."""
-GREY = "#666666"
-"""Colour of notes, and of lines that something is compared with: dark enough to be read on white."""
+GREY = "#666666"  # of notes, and of lines that something is compared with: dark enough to be read on white
+# Lines: a motion by exact theory is wide and pale, so that the simulation's lies on it; then a motion by MuJoCo, an
+# equation as it is printed in the paper where that is wrong, what cannot happen, and a level or a time to compare with.
 THEORY: dict[str, Any] = {"color": "#C4C4C4", "linewidth": 5, "zorder": 1.5}
-"""A motion by exact theory: a wide pale line, on which the simulation's lies."""
 SIMULATED: dict[str, Any] = {"color": COLOURS[0]}
-"""A motion by MuJoCo."""
 PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
-"""An equation as it is printed in the paper, where that is wrong."""
 UNPHYSICAL: dict[str, Any] = {"color": "#8C8C8C", "linestyle": ":"}
-"""What cannot happen, as the motion of a can after it would have left the incline."""
 REFERENCE: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1.2}
-"""A level or a time that something is compared with."""
 
 STYLE: Any = {
     "axes.grid": True,
@@ -53,13 +49,11 @@ STYLE: Any = {
     "svg.fonttype": "none",
     "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
 }
-"""Settings of matplotlib."""
 _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
 _EDGE = 0.1  # distance of the title from the edge [inches]
 _LETTERS = 8.3  # letters of the title in an inch; the subtitle's are narrower
-_TOOLTIPS = "tooltips "
-"""Begins the name of a line in an SVG whose points have tooltips."""
+_TOOLTIPS = "tooltips "  # begins the name of a line in an SVG whose points have tooltips
 
 
 @dataclass
@@ -149,11 +143,9 @@ def _with_tooltips(svg: str) -> str:
     """Return an SVG in which each point of `add_tooltips` has its text as a title."""
 
     def line(found: re.Match[str]) -> str:
-        texts = found[1].split("\n")
-        left = iter(texts)
-        told = re.sub(
-            "(<use [^>]*)/>", lambda use: f"{use[1]}><title>{next(left)}</title></use>", found[2], count=len(texts)
-        )
+        told = found[2]
+        for text in found[1].split("\n"):
+            told = re.sub("(<use [^>]*)/>", rf"\1><title>{text}</title></use>", told, count=1)
         return f"<g>{told}"
 
     return re.sub(rf'(?s)<g id="{_TOOLTIPS}([^"]*)">(.*?)(?=<g id="{_TOOLTIPS}|$)', line, svg)

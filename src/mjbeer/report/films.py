@@ -4,6 +4,7 @@ import math
 import pathlib
 from collections.abc import Sequence
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,7 @@ honey, the thickest of the liquids, from 7.38."""
 _FILL = 0.75  # how full the cans are that are neither full nor empty
 _EMPTY = 2e-4  # fill of the empty can: its beer weighs less than a thousandth of the can
 _ICE = 917.0  # density of ice [kg/m^3]
+_HESITATES: Any = {"strips": ("u_dot", "ahead"), "marks": ("phi", "ghost"), "notes": ("hesitates",)}
 _SMALL = 640, 360, 25  # width and height [pixels] and pictures per second in a quick report
 
 
@@ -125,9 +127,7 @@ FILMS: dict[str, Race | MotionFilm | Carry] = RACES | {
         "can goes to and fro about the dashed one, which accelerates evenly: it hesitates with every swing. The camera "
         "moves along evenly.",
         still=0.4,
-        look=Look(
-            "Beer slides in its can, and the can hesitates", ("u_dot", "ahead"), ("phi", "ghost"), notes=("hesitates",)
-        ),
+        look=Look("Beer slides in its can, and the can hesitates", **_HESITATES),
     ),
     "frozen": MotionFilm(
         partial(simulate, frozen(), 0.82, math.pi, tolerance=1e-9),
@@ -149,12 +149,7 @@ FILMS: dict[str, Race | MotionFilm | Carry] = RACES | {
         "one, which accelerates evenly. Nothing but their weight drives wheel and bob down the incline together, so "
         "that the wheel hesitates whenever its bob is uphill, and runs ahead whenever it is downhill.",
         still=0.4,
-        look=Look(
-            "A pendulum in a wheel: does the wheel roll evenly?",
-            ("u_dot", "ahead"),
-            ("phi", "ghost"),
-            notes=("hesitates",),
-        ),
+        look=Look("A pendulum in a wheel: does the wheel roll evenly?", **_HESITATES),
     ),
     "hoop": MotionFilm(
         partial(simulate, hoop(), 0.5, -3.0, 16.0, rolling="contact", timestep=2e-4),

@@ -91,15 +91,13 @@ def page(
 
     `not_drawn` says why films are missing, or is "".
     """
-    environment = Environment(
-        loader=PackageLoader("mjbeer.report", "web"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    loader = PackageLoader("mjbeer.report", "web")
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data, "inline": _inline}
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
+    # The least and the largest run time of another tool over that of mjbeer's best setting, at equal error.
+    spans = {name: benchmark_tables.span(benchmark, name) for name in ("MuJoCo RK4", "heyoka")}
+    ratios = {name: " to ".join(map(benchmark_tables.two_digits, span)) for name, span in spans.items()}
     runs, border = stability_maps.summary(maps["maps"])
     claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
     misprints = [
@@ -115,8 +113,8 @@ def page(
         errors=[plots[f"error-{case}"] for case in benchmark.cases],
         benchmark=benchmark,
         costs=benchmark_tables.tables(benchmark),
-        slower=_range(benchmark, "MuJoCo RK4"),
-        heyoka=_range(benchmark, "heyoka"),
+        slower=ratios["MuJoCo RK4"],
+        heyoka=ratios["heyoka"],
         maps=maps,
         map=plots[_MAP],
         families=stability_maps.FAMILIES,
@@ -171,11 +169,6 @@ def _inline(plot: Picture) -> Markup:
     """Return a plot as an element of the page, whose points then tell what they are; its names are its own."""
     svg = re.sub(r'(id="|="#|url\(#)', rf"\1{plot.name}-", plot.svg)
     return Markup(svg.replace("<svg ", f'<svg role="img" aria-label="{escape(plot.title)}" ', 1))
-
-
-def _range(benchmark: Benchmark, name: str) -> str:
-    """Return the least and the largest run time of another tool over that of mjbeer's best setting, at equal error."""
-    return " to ".join(map(benchmark_tables.two_digits, benchmark_tables.span(benchmark, name)))
 
 
 def _marked(cell: str) -> Markup:
