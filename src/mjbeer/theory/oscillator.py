@@ -216,8 +216,8 @@ def root(function: Callable[[np.ndarray], np.ndarray], lower: float, upper: floa
 
     If it is not positive at `upper` it should be 0 there, and is only rounded.
     """
-    while True:
-        points = np.linspace(lower, upper, 65)
+    while True:  # SciPy's brentq takes longer to import than all the theory
+        points = np.linspace(lower, upper, 257)
         positive = function(points) > 0
         positive[-1] = True
         first = max(1, int(np.argmax(positive)))
