@@ -54,16 +54,6 @@ def test_an_angle_that_jumps_is_not_joined() -> None:
     assert not np.isnan(unbroken(np.zeros(3))).any()
 
 
-def test_a_simulation_has_theory_beside_it_and_theory_has_not() -> None:
-    run = simulate(frozen(), 0.5, 1.0)
-    (chart,) = charts(run, ["phi"])
-    assert [line.name for line in chart.lines] == ["MuJoCo", "theory"]
-    truth = exact(frozen(), chart.lines[1].time, 1.0)
-    assert chart.lines[1].values == pytest.approx(np.degrees(truth.phi))
-    (chart,) = charts(exact(frozen(), TIME, 1.0), ["phi"])
-    assert [line.name for line in chart.lines] == ["exact theory"]
-
-
 @pytest.mark.parametrize("make", [frozen, sliding])
 def test_forces_of_a_rolling_can_are_those_that_rolling_needs(make) -> None:
     """The mean over a width w is off by N'' w^2/24: at 50 rad/s and a w of 20 ms by 0.04 of a weight."""

@@ -20,7 +20,7 @@ from mjbeer.theory.trajectory import Trajectory
 
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
 """ghost: a can that accelerates evenly. paths: of a point on the rim and of the load's centre of mass. normal: N.
-friction: F, beside N. phi: the angle of the load. measured: where a film has had the axis so far."""
+friction: F. phi: the angle of the load. measured: where a film has had the axis so far."""
 _KINDS = {
     "sliding": ("Beer that slides in its can without friction", "can", "beer"),
     "frozen": ("Beer frozen to its can", "can", "beer"),
@@ -80,10 +80,10 @@ def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed:
     sheet.blank(0, round(HEADER * sheet.unit))
     head(sheet, look.title, in_words(trajectory.scene), time, speed, digits)
     unit, column, row = sheet.unit, 1.2 * sheet.unit, 4.7 * sheet.unit
+    body = _KINDS[looks.name(trajectory.scene)][1]
     for sign, colour, meaning in (entry for mark in look.marks for entry in _LEGENDS[mark]):
-        words = meaning.format(_KINDS[looks.name(trajectory.scene)][1])
         *_, column, _ = sheet.text((column, row), sign, 1.1 * unit, colour, bold=True)
-        *_, column, _ = sheet.text((column + 0.5 * unit, row), words, 1.0 * unit)
+        *_, column, _ = sheet.text((column + 0.5 * unit, row), meaning.format(body), unit)
         column += 1.8 * unit
 
 
@@ -135,16 +135,16 @@ def spans(motion: Trajectory, names: Sequence[str]) -> dict[str, list[tuple[floa
 
 def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time: float, top: int) -> None:
     """Write the first of some notes that holds at a `time` [s] into the scene, whose upper edge is at a row `top`."""
-    for words in [words for words, of in notes.items() if any(first <= time <= last for first, last in of)][:1]:
-        place = np.array([1.2 * sheet.unit, top + NOTE / 2 * sheet.unit])
+    words = next((words for words, of in notes.items() if any(first <= time <= last for first, last in of)), None)
+    if words:
+        place = np.array([1.2, NOTE / 2]) * sheet.unit + [0, top]
         sheet.plate(place, [words], INK, (0, 0.5), ground=(1.0, 0.95, 0.72))
 
 
 # The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
 
 LONGEST = 1.6  # longest arrow of a force; that of the weight is 1. Only the blow of a landing would be longer
-_CLEAR = 0.4  # least distance of a force's letter from the foot of the can: no letter is to cover it
-_FAINT = 0.05  # least length of an arrow that is drawn
+_CLEAR, _FAINT = 0.4, 0.05  # least distance of a force's letter from the foot, and least arrow that is drawn
 
 
 class Marks:
@@ -159,7 +159,7 @@ class Marks:
         """
         self._motion, self._look, self._plane, self._fine, self._positions = trajectory, look, plane, fine, positions
         self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
-        if "normal" in look.marks:
+        if {"normal", "friction"} & {*look.marks}:
             forces = strip.forces(trajectory)
             largest = max(np.percentile(np.hypot(*forces), 90), _FAINT)  # a larger one is rare
             self._forces = min(1.0, LONGEST / largest) * forces  # lengths of their arrows

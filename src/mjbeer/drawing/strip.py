@@ -70,7 +70,7 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
             rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
             lines.append(Line("theory", theory.time[rolls], values(theory)[rolls]))
         if name == "normal" and trajectory.rolling == "contact":
-            title = f"N [weights], mean over {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms"
+            title = f"N [weights], {1e3 * np.ptp(trajectory.time) / _INTERVALS:.2g} ms means"
         if (peak := lines[0].values.max()) > limits.get("high", math.inf):
             title += f", up to {peak:.0f}"
         drawn.append(Chart(title, lines, **limits))

@@ -115,7 +115,7 @@ RACES = {
         "Water, oil, honey or ice: which can wins, and which is last?",
         *(of_liquids, LENGTH, 2.72, 1 / 3, told_of_liquids),
         still=2.2,
-        facts="all cans ¾ full; here each liquid is one lump, and stays at the bottom",
+        facts="all cans ¾ full, each liquid one lump",
     ),
 }
 """The films that the page shows first, by the names of their files."""
