@@ -130,11 +130,6 @@ def fits(name: str, files: str) -> bool:
 # What is missing
 
 
-def test_no_mjcf_at_all(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(TemplateError, match=r"no MJCF in .*package; reinstall mjbeer"):
-        setting._installed_folder(tmp_path / "checkout" / "src" / "package" / "model" / "setting.py")
-
-
 @pytest.mark.parametrize("file", ["mechanics/frozen_reduced.xml", "looks/board.xml"])
 @pytest.mark.parametrize("content", [None, "", "<mujoco>", "<mujoco><worldbody></mujoco>"])
 def test_a_file_that_is_missing_or_not_whole_is_named(copy: pathlib.Path, file: str, content: str | None) -> None:
