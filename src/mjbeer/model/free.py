@@ -179,10 +179,8 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
         )
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
-    flags = {"contact": "touches nothing", "constraint": "touches nothing", "gravity": "does not slosh"}
-    for flag, told in (flags | ({"damper": "has no damping"} if decay > 0 else {})).items():
-        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag.upper()}"]):
-            reasons.append(f"with the flag {flag} disabled it {told}")
+    if decay > 0 and option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_DAMPER):
+        reasons.append("with the flag damper disabled it has no damping")
     return reasons
 
 
