@@ -94,7 +94,6 @@ def test_a_can_may_be_fixed_to_a_body() -> None:
         (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_DAMPER)}, "damper disabled it has no damping"),
         (standing(), {"timestep": 0.05}, r"the timestep of 0\.05 s is coarse: the fastest mode turns by 1\.17 rad"),
         (standing(), {"gravity": [0, 0, -1.62]}, r"gravity is 1\.62 m/s\^2, and the can is made for 9\.81"),
-        (standing(), {"disableflags": int(mujoco.mjtDisableBit.mjDSBL_CONTACT)}, "contact disabled it touches nothing"),
         (frozen(can=METAL), {"integrator": mujoco.mjtIntegrator.mjINT_IMPLICITFAST}, "another integrator than RK4"),
     ],
 )

@@ -35,7 +35,6 @@ FILES = {f"mechanics/{name}": scene for name, (scene, _) in MECHANICS.items()} |
 KEYS = [(name, key.attrib["name"]) for name in FILES for key in ET.parse(OWN / f"{name}.xml").iter("key")]
 # The softness of the constraints, and RK4 at the file's timestep: 2e-5 rad at worst, on 89 rad of roll-down.
 PROMISE = 1e-3
-TEN = np.linspace(0, 10, 1001)
 
 
 def load(name: str) -> mujoco.MjModel:
@@ -64,7 +63,7 @@ def roll(model: mujoco.MjModel, key: str, duration: float) -> tuple[np.ndarray, 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "key"), KEYS)
 def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
-    """For 2 s; the hoop until it hops. And the board does not end within ten seconds."""
+    """For 2 s; the hoop until it hops."""
     scene, model = FILES[name], load(name)
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
@@ -76,10 +75,6 @@ def test_keyframes_move_as_theory_says(name: str, key: str) -> None:
     truth = exact(scene, times[before], *start)
     assert np.abs(angles[before] - truth.phi).max() < PROMISE
     assert not any(warning.number for warning in data.warning)
-    if name in SEEN:
-        way, board = exact(scene, TEN, *start).u, model.geom("board")
-        assert board.pos[0] - board.size[0] < way.min()
-        assert way.max() < board.pos[0] + board.size[0]
 
 
 @pytest.mark.parametrize(("key", "duration", "height"), [("hop", 0.43, 1e-6), ("push", 0.3, 0.02)])
@@ -87,16 +82,6 @@ def test_the_hoop_hops(key: str, duration: float, height: float) -> None:
     """By 15 um let go, by a radius of 33 mm pushed; a penetration would be negative."""
     *_, data = roll(load("hoop"), key, duration)
     assert data.joint("lift").qpos[0] > height
-
-
-def test_mujoco_s_defaults_do_not_move_as_theory_says() -> None:
-    """Why the files set solref, solimp and diagexact: without them the roll-down is wrong by radians."""
-    spec = mujoco.MjSpec.from_file(str(OWN / "mechanics" / "frozen_equality.xml"))
-    rolling = spec.equality("rolling")
-    rolling.solref, rolling.solimp = [0.02, 1], [0.9, 0.95, 0.001, 0.5, 2]
-    spec.option.enableflags = spec.option.disableflags = 0
-    times, angles, _ = roll(spec.compile(), "roll_down", 2.0)
-    assert np.abs(angles - exact(frozen(), times, math.pi).phi).max() > 10
 
 
 @pytest.mark.parametrize("name", templates.TEMPLATES)
@@ -128,11 +113,6 @@ def fits(name: str, files: str) -> bool:
 
 
 # What is missing
-
-
-def test_no_mjcf_at_all(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(TemplateError, match=r"no MJCF in .*package; reinstall mjbeer"):
-        setting._installed_folder(tmp_path / "checkout" / "src" / "package" / "model" / "setting.py")
 
 
 @pytest.mark.parametrize("file", ["mechanics/frozen_reduced.xml", "looks/board.xml"])

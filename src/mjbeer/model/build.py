@@ -153,14 +153,9 @@ def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoc
     root = mjcf_file.read(path)
     mjcf_file.write(root, mechanics.parameters, path)
     mjcf_file.remove(root, "keyframe")  # of the file's own scene
-    if visuals:
-        looks.include_looks(root, looks.name(scene), folder)
-    elif check.file_fault(folder, scene.attachment, setting.rolling) is None:
+    if not visuals and check.file_fault(folder, scene.attachment, setting.rolling) is None:
         mjcf_file.remove_unused(root, mechanics.acting, scene.dissipates)
-    spec = mjcf_file.to_spec(root, path)
-    if visuals:
-        looks.fit_to_scene(spec, scene, folder)
-    return spec
+    return looks.to_spec(root, path, scene, visuals)
 
 
 def add_start(spec: mujoco.MjSpec, scene: Scene, phi0: float, phi_dot0: float) -> None:

@@ -1,7 +1,4 @@
-"""What a compiled model does: its accelerations beside those of theory.
-
-A model that is right accelerates as theory says, at some states. One from an edited file may not.
-"""
+"""The accelerations of a compiled model beside those of theory, which those of an edited file may not be."""
 
 import copy
 import functools

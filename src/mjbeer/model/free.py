@@ -1,9 +1,7 @@
 """Cans that are free in space, as bodies of a MuJoCo specification, and how one is attached to another world.
 
-A standing can has pendulums on ball joints for the modes of its slosh, and a body for what does not slosh: two hinges
-diverge in a can that tumbles, and two slides do not follow gravity. A lying can has the paper's lump on a hinge about
-its axis, or frozen. Each is the body "can", with the full inertia of a body in space, and touches everything with one
-cylinder.
+The pendulums of a standing can's slosh are on ball joints: two hinges diverge in a can that tumbles, and two slides do
+not follow gravity.
 """
 
 import functools
@@ -181,10 +179,8 @@ def _spoiling_options(option: mujoco.MjOption, can: Standing | Scene) -> list[st
         )
     if not math.isclose(size, can.gravity, rel_tol=1e-6):
         reasons.append(f"gravity is {size:.6g} m/s^2, and the can is made for {can.gravity:.6g}")
-    flags = {"contact": "touches nothing", "constraint": "touches nothing", "gravity": "does not slosh"}
-    for flag, told in (flags | ({"damper": "has no damping"} if decay > 0 else {})).items():
-        if option.disableflags & int(mujoco.mjtDisableBit.__members__[f"mjDSBL_{flag.upper()}"]):
-            reasons.append(f"with the flag {flag} disabled it {told}")
+    if decay > 0 and option.disableflags & int(mujoco.mjtDisableBit.mjDSBL_DAMPER):
+        reasons.append("with the flag damper disabled it has no damping")
     return reasons
 
 
@@ -244,15 +240,9 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
     if can.modes == 0:
         for parent, each in first:
             parent.remove(each)
-    mjcf_file.write(root, standing_parameters(can), path)
-    if visuals:
-        looks.include_looks(root, "standing", path.parents[1])
-    spec = mjcf_file.to_spec(root, path)
-    if visuals:
-        looks.fit_to_standing(spec, can, path.parents[1])
-    spec.option.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{integrator.upper()}"])
-    spec.option.timestep = setting.timestep
-    return spec
+    options = {("option", "integrator"): integrator, ("option", "timestep"): (setting.timestep,)}
+    mjcf_file.write(root, standing_parameters(can) | options, path)
+    return looks.to_spec(root, path, can, visuals)
 
 
 def _lying_spec(scene: Scene, folder: pathlib.Path, visuals: bool) -> mujoco.MjSpec:
@@ -263,12 +253,7 @@ def _lying_spec(scene: Scene, folder: pathlib.Path, visuals: bool) -> mujoco.MjS
         mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
     values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
     mjcf_file.write(root, values, path)
-    if visuals:
-        looks.include_looks(root, looks.name(scene), path.parents[1])
-    spec = mjcf_file.to_spec(root, path)
-    if visuals:
-        looks.fit_to_scene(spec, scene, path.parents[1])
-    return spec
+    return looks.to_spec(root, path, scene, visuals)
 
 
 def _read(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:

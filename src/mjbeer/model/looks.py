@@ -46,11 +46,27 @@ Mesh = tuple[np.ndarray, np.ndarray]
 look sharp, each has vertices of its own."""
 
 
-def name(scene: Scene) -> str:
-    """Return the name of a scene's looks; a load without a fill is drawn as a ball."""
+def name(scene: Scene | Standing) -> str:
+    """Return the name of a can's looks; a load without a fill is drawn as a ball."""
+    if isinstance(scene, Standing):
+        return "standing"
     if scene.attachment == "sliding":
         return "pendulum" if scene.load.fill is None else "sliding"
     return "hoop" if scene.load.fill is None else "frozen"
+
+
+def to_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing, visuals: bool) -> mujoco.MjSpec:
+    """Return the specification in the tree of the mechanics file at a `path`, with the looks of a can if asked for."""
+    folder = path.parents[1]
+    if visuals:
+        include_looks(root, name(can), folder)
+    spec = mjcf_file.to_spec(root, path)
+    if visuals:
+        if isinstance(can, Standing):
+            fit_to_standing(spec, can, folder)
+        else:
+            fit_to_scene(spec, can, folder)
+    return spec
 
 
 def include_looks(root: ET.Element, what: str, folder: pathlib.Path) -> None:

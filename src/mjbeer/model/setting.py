@@ -1,6 +1,5 @@
 """Settings: how a can is made to roll, and how it is stepped."""
 
-import functools
 import math
 import os
 import pathlib
@@ -8,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, TemplateError
+from mjbeer.exceptions import ParameterError
 from mjbeer.theory.scene import Scene
 
 Rolling = Literal["reduced", "equality", "contact"]
@@ -97,16 +96,8 @@ def supported(scene: Scene, rolling: str) -> bool:
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
     if own is None and (own := os.environ.get(VARIABLE)) is None:
-        return _installed_folder(pathlib.Path(__file__))
+        package = pathlib.Path(__file__).parents[1]  # a wheel has it inside, a checkout at its top
+        return packed if (packed := package / "mjcf").is_dir() else package.parents[1] / "mjcf"
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
         raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.format_value(own)}")
     return pathlib.Path(own)
-
-
-@functools.cache
-def _installed_folder(here: pathlib.Path) -> pathlib.Path:
-    """Return mjbeer's own folder: in the package, as a wheel has it, or at the top of a checkout."""
-    for folder in (here.parents[1] / "mjcf", here.parents[3] / "mjcf"):
-        if (folder / "mechanics").is_dir():
-            return folder
-    raise TemplateError(f"no MJCF in {here.parents[1]}; reinstall mjbeer")
