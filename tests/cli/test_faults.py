@@ -63,12 +63,10 @@ def test_a_folder_that_cannot_be_made_is_known_before_the_work(
     studies = "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"
     for work in ("report.page.validate", *studies):
         monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
-    (tmp_path / "file").touch()
-    missing = f"there is no folder {tmp_path / 'misspelt'}; the nearest one that exists is {tmp_path}"
-    for name, reason in {"file": "File exists", "misspelt/new": missing}.items():
-        assert main([command, "--output", str(tmp_path / name)]) == 2
-        assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / name}: {reason}\n"
-    assert os.listdir(tmp_path) == ["file"]
+    assert main([command, "--output", str(tmp_path / "misspelt" / "new")]) == 2
+    told = f"there is no folder {tmp_path / 'misspelt'}; the nearest one that exists is {tmp_path}"
+    assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / 'misspelt' / 'new'}: {told}\n"
+    assert not os.listdir(tmp_path)
 
 
 @linux
