@@ -67,9 +67,8 @@ def numbers(text: str) -> float | np.ndarray:
         if not (read.size and np.isfinite(read).all()):
             raise ValueError
     except ValueError:
-        raise ArgumentTypeError(
-            f"{text!r} is no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
-        ) from None
+        allowed = "no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
+        raise ArgumentTypeError(f"{text!r} is {allowed}") from None
     return read if read.size > 1 else float(read[0])
 
 

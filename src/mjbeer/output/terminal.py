@@ -36,9 +36,9 @@ class Table:
             table.add_row(*row)
         return table
 
-    def markdown(self, title: bool = True) -> str:
-        """Return the table as Markdown; `title` says whether the title is in bold above it."""
-        heading = [f"**{self.title}**", ""] if title else []
+    def markdown(self) -> str:
+        """Return the table as Markdown, with the title in bold above it if there is one."""
+        heading = [f"**{self.title}**", ""] if self.title else []
         rule = "|".join("---" if index in self.left else "---:" for index in range(len(self.columns)))
         rows = [f"| {' | '.join(row)} |" for row in (self.columns, *self.rows)]
         return "\n".join([*heading, rows[0], f"|{rule}|", *rows[1:]]) + "\n"
