@@ -98,9 +98,7 @@ class Option(NamedTuple):
 
 
 _MODEL = (
-    Option(
-        "--rolling", "reduced coordinates (default), joint equality (default in a viewer), or contact", None, ROLLINGS
-    ),
+    Option("--rolling", "reduced coordinates (default), joint equality (default to view), or contact", None, ROLLINGS),
     Option("--integrator", "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance", None, INTEGRATORS + OWN),
     Option("--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep),
     Option("--friction", "coefficient of friction: a contact slips beyond it", Setting.friction),
