@@ -50,7 +50,7 @@ def anew(text: str) -> str:
 
 def table(columns: tuple[str, ...], lines: Sequence[tuple[str, ...]], left: tuple[int, ...] = (0,)) -> str:
     """Return a table as Markdown."""
-    return Table("", columns, lines, left).markdown(title=False)
+    return Table("", columns, lines, left).markdown()
 
 
 def prose(text: str) -> str:

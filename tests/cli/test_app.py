@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import mjbeer
-from mjbeer import exact, frozen, hoop, pendulum, simulate, sliding
+from mjbeer import frozen, hoop, pendulum, simulate, sliding
 from mjbeer.cli.app import COMMANDS, OF_SCENES, main
 from mjbeer.cli.motions import Summary
 from mjbeer.theory.liquid import liquid_in
@@ -21,8 +21,6 @@ from tests.support.processes import run
 pytestmark = pytest.mark.slow
 
 SCENES = {"sliding": sliding(), "frozen": frozen(), "pendulum": pendulum(), "hoop": hoop()}
-# RK4 at 1 ms over 0.1 s: 2e-6 rad for the light hoop, whose load turns at 45 rad/s at the bottom; 1e-8 for others.
-RK4 = 1e-5
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -37,10 +35,6 @@ def test_simulate_writes_the_trajectory(name: str, tmp_path: pathlib.Path, capsy
     out, err = capsys.readouterr()
     assert out == Summary(run).text()
     assert err == f"wrote {target}\n" + "".join(f"note: {note}\n" for note in Summary(run).notes)
-    time, u, phi = np.loadtxt(target, delimiter=",", skiprows=1, usecols=(0, 1, 2)).T
-    truth = exact(SCENES[name], time, math.radians(57), math.radians(-20))
-    assert np.abs(phi - truth.phi).max() < RK4
-    assert np.abs(u - truth.u).max() < RK4 * SCENES[name].can.radius
 
 
 def test_standard_output_has_the_csv_or_the_json_alone(

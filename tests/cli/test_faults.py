@@ -14,7 +14,7 @@ from tests.support.processes import run
 pytestmark = pytest.mark.slow
 
 FROZEN = ("frozen", "--duration", "0.5")
-VIDEO = (*FROZEN, "--width", "320", "--height", "180")
+FOLDERS = ("report", "benchmark", "stability", "paper")
 linux = pytest.mark.skipif(sys.platform != "linux", reason="/dev/full is Linux's")
 
 
@@ -40,35 +40,20 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: pathlib.Path) -> None:
     assert os.listdir(tmp_path) == ["motion.csv"]
 
 
-@pytest.mark.parametrize("words", [("simulate", *FROZEN), ("export", "frozen"), ("render", *VIDEO)])
+@pytest.mark.parametrize("words", ["simulate frozen", "export frozen", "render frozen", *FOLDERS])
 def test_what_cannot_be_written_is_known_before_the_work(
-    words: tuple[str, ...],
-    tmp_path: pathlib.Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    words: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if words[0] == "simulate":
-        monkeypatch.setattr("mjbeer.cli.motions.trajectory_of", lambda _: pytest.fail("it was simulated"))
-    monkeypatch.setattr("mjbeer.drawing.video.encode", lambda *_, **__: pytest.fail("it was drawn"))
-    target = tmp_path / f"folder{ {'simulate': '.csv', 'export': '.xml', 'render': '.mp4'}[words[0]] }"
-    target.mkdir()
-    assert main([*words, "--output", str(target)]) == 2
-    assert capsys.readouterr().err == f"mjbeer: cannot write {target}: it is a folder\n"
-
-
-@pytest.mark.parametrize("command", ["report", "benchmark", "stability", "paper"])
-def test_a_folder_that_cannot_be_made_is_known_before_the_work(
-    command: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    studies = "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"
-    for work in ("report.page.validate", *studies):
-        monkeypatch.setattr(f"mjbeer.{work}", lambda *_: pytest.fail("the work was begun"))
-    (tmp_path / "file").touch()
-    missing = f"there is no folder {tmp_path / 'misspelt'}; the nearest one that exists is {tmp_path}"
-    for name, reason in {"file": "File exists", "misspelt/new": missing}.items():
-        assert main([command, "--output", str(tmp_path / name)]) == 2
-        assert capsys.readouterr().err == f"mjbeer: cannot write {tmp_path / name}: {reason}\n"
-    assert os.listdir(tmp_path) == ["file"]
+    work = ["report.page.validate", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"]
+    work.append("drawing.video.encode" if words == "render frozen" else "cli.motions.trajectory_of")
+    for each in work:
+        monkeypatch.setattr(f"mjbeer.{each}", lambda *_, **__: pytest.fail("the work was begun"))
+    ending = {"export frozen": ".xml", "render frozen": ".mp4"}.get(words, "")
+    target, folder = tmp_path / "misspelt" / f"new{ending}", tmp_path / "misspelt"
+    assert main([*words.split(), "--output", str(target)]) == 2
+    told = f"there is no folder {folder}; the nearest one that exists is {tmp_path}"
+    assert capsys.readouterr().err == f"mjbeer: cannot write {target}: {told}\n"
+    assert not os.listdir(tmp_path)
 
 
 @linux

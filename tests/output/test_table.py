@@ -3,6 +3,7 @@
 import io
 import json
 import math
+import sys
 from importlib.metadata import version
 from typing import Any
 
@@ -60,9 +61,9 @@ def test_a_program_reads_tabs_and_an_eye_lines(
     terminal.show(one, other)
     tabs = "name\tvalue\nphi\t1.5\n"
     assert capsys.readouterr().out == f"{tabs}# One\n{tabs}\n# Other\nname\nF\n"
-    monkeypatch.setattr(terminal, "is_read_by_eye", lambda: True)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
     terminal.show(one)
-    assert "│ phi  │   1.5 │" in capsys.readouterr().out
+    assert "│ phi  │ " in capsys.readouterr().out
 
 
 def test_json_has_versions_checks_and_a_verdict_that_one_decides() -> None:
@@ -75,8 +76,7 @@ def test_json_has_versions_checks_and_a_verdict_that_one_decides() -> None:
         assert judged([PASSED], [wrong])["passed"] is False
     content = judged([PASSED, UNKNOWN], [RIGHT])
     assert content["passed"] is False
-    for each in ("mjbeer", "mujoco", "numpy", "scipy", "numba"):
-        assert content["versions"][each] == version(each)
+    assert content["versions"]["mujoco"] == version("mujoco")
     assert [(each["name"], each["error"], each["passed"]) for each in content["checks"]] == [
         ("phi over 2 s", 1.5e-9, True),
         ("lift-off", None, False),

@@ -67,9 +67,8 @@ def numbers(text: str) -> float | np.ndarray:
         if not (read.size and np.isfinite(read).all()):
             raise ValueError
     except ValueError:
-        raise ArgumentTypeError(
-            f"{text!r} is no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
-        ) from None
+        allowed = "no number, no list as 1,2,5, and no range as 1:20:39, which is 39 numbers from 1 to 20"
+        raise ArgumentTypeError(f"{text!r} is {allowed}") from None
     return read if read.size > 1 else float(read[0])
 
 
@@ -99,7 +98,7 @@ class Option(NamedTuple):
 
 
 _MODEL = (
-    Option("--rolling", "what makes it roll; by default reduced coordinates, equality in a viewer", None, ROLLINGS),
+    Option("--rolling", "reduced coordinates (default), joint equality (default to view), or contact", None, ROLLINGS),
     Option("--integrator", "MuJoCo's or mjbeer's; by default RK4, or what keeps a tolerance", None, INTEGRATORS + OWN),
     Option("--timestep", "timestep; with a tolerance, interval between samples [s]", Setting.timestep),
     Option("--friction", "coefficient of friction: a contact slips beyond it", Setting.friction),

@@ -7,8 +7,6 @@ import tempfile
 import warnings
 from argparse import Namespace
 from contextlib import nullcontext
-from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -28,19 +26,14 @@ KeyFigure = tuple[str, Any, str, str]
 """A name, a value, its unit, and how text shows it: as a format, or in words where it is none."""
 
 
-@dataclass(frozen=True, eq=False)
 class Summary:
-    """The key figures of a trajectory, and until when a can would roll with a coefficient of friction."""
+    """The key figures of a trajectory, and until when [s] a can would roll with a coefficient of friction."""
 
-    trajectory: Trajectory
-    friction: float = FRICTION
-
-    @cached_property
-    def rolls_until(self) -> float:
-        """Until when [s] rolling is possible with that friction; infinity is to the end."""
+    def __init__(self, trajectory: Trajectory, friction: float = FRICTION) -> None:
+        self.trajectory, self.friction = trajectory, friction
         # Where rolling needs no more than there is, this saves the run that looks for the first time at which it does.
-        enough = self.trajectory.record.needed_friction <= self.friction
-        return math.inf if enough else self.trajectory.rolls_until(self.friction)
+        enough = trajectory.record.needed_friction <= friction
+        self.rolls_until = math.inf if enough else trajectory.rolls_until(friction)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -48,9 +41,9 @@ class Summary:
 
         In contact the can simply slips, and the run's own warnings say so.
         """
-        until = self.rolls_until
-        slips = f"a real can would slip from t = {until:.6g} s with a friction coefficient of {self.friction:g}"
-        return () if self.trajectory.rolling == "contact" or math.isinf(until) else (slips,)
+        slips = f"from t = {self.rolls_until:.6g} s with a friction coefficient of {self.friction:g}"
+        silent = self.trajectory.rolling == "contact" or math.isinf(self.rolls_until)
+        return () if silent else (f"a real can would slip {slips}",)
 
     @property
     def key_figures(self) -> tuple[KeyFigure, ...]:

@@ -51,7 +51,7 @@ def _announced() -> Generator[None]:
     def say() -> None:
         from mjbeer.output import terminal  # which takes a tenth of a second to import
 
-        if begun.buffer and terminal.is_seen():
+        if begun.buffer and (terminal.STDERR.is_terminal or terminal.STDERR.is_jupyter):
             terminal.say("mjbeer: compiling this integrator for this machine, once: up to 4 s")
 
     timer = threading.Timer(1.0, say)

@@ -7,12 +7,9 @@ import signal
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mjbeer.exceptions import OutputError
-
-if TYPE_CHECKING:
-    from concurrent.futures import ProcessPoolExecutor
 
 
 @contextmanager
@@ -101,7 +98,7 @@ def _failure(path: str | os.PathLike[str], error: OSError) -> OutputError:
 
 
 @contextmanager
-def pool(most: int) -> Generator["ProcessPoolExecutor"]:
+def pool(most: int) -> Generator[Any]:
     """Yield an executor with a process for each core, but not more than `most`; they start when work is submitted.
 
     At the end of the block, or when it is interrupted, the processes are ended.
@@ -130,4 +127,9 @@ def _follow_parent() -> None:
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent: Any = multiprocessing.parent_process()
-    threading.Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
+
+    def end() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=end, daemon=True).start()

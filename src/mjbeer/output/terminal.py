@@ -36,9 +36,9 @@ class Table:
             table.add_row(*row)
         return table
 
-    def markdown(self, title: bool = True) -> str:
-        """Return the table as Markdown; `title` says whether the title is in bold above it."""
-        heading = [f"**{self.title}**", ""] if title else []
+    def markdown(self) -> str:
+        """Return the table as Markdown, with the title in bold above it if there is one."""
+        heading = [f"**{self.title}**", ""] if self.title else []
         rule = "|".join("---" if index in self.left else "---:" for index in range(len(self.columns)))
         rows = [f"| {' | '.join(row)} |" for row in (self.columns, *self.rows)]
         return "\n".join([*heading, rows[0], f"|{rule}|", *rows[1:]]) + "\n"
@@ -49,23 +49,13 @@ class Table:
         return "".join("\t".join(row) + "\n" for row in (self.columns, *rows))
 
 
-def is_read_by_eye() -> bool:
-    """Return whether standard output is a terminal, not a file or a pipe to another program."""
-    return sys.stdout.isatty()
-
-
-def is_seen() -> bool:
-    """Return whether somebody may see at once what is written to standard error: on a terminal, or in a notebook."""
-    return STDERR.is_terminal or STDERR.is_jupyter
-
-
 def show(*tables: Table) -> None:
     """Print tables to standard output; where a program reads it, as lines with tabs between the columns.
 
     Several tables then have an empty line between them, and each its title above it, after a #. The errors are those
     of `printing`.
     """
-    if is_read_by_eye():
+    if sys.stdout.isatty():
         with printing():
             STDOUT.print(*tables)
     else:
