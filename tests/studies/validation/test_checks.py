@@ -69,8 +69,3 @@ def test_a_wrong_model_is_found_out(
     motions._steady.cache_clear()
     assert not next(check for name, check in CHECKS.items() if name.startswith(quantity)).result().passed
     motions._steady.cache_clear()
-
-
-def test_energy_that_obeys_the_other_law_is_found_out() -> None:
-    """It drifts in proportion to the number of swings in place of staying within bounds."""
-    assert motions._drift("RK4", 10) > 0.05

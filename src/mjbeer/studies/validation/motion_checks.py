@@ -1,4 +1,4 @@
-"""Checks of motions against exact theory, damped ones too, of orders, and of drift."""
+"""Checks of motions against exact theory, damped ones too, and of the integrators' orders."""
 
 import math
 from collections.abc import Iterator
@@ -7,9 +7,8 @@ from functools import cache, partial
 import numpy as np
 
 from mjbeer.checks import Check, observed_order
-from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, Setting, supported
+from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, supported
 from mjbeer.paper.frozen import equilibrium_53
-from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.exact import phi_error
@@ -106,15 +105,6 @@ def orders() -> Iterator[Check]:
         yield Check("orders", f"observed order less {expected}", measure, by, margin, "", "higher orders' terms")
 
 
-def drifts() -> Iterator[Check]:
-    """Yield the checks of energy over very many swings."""
-    quantity = "growth of the energy's largest deviation within a swing, over 1000 swings"
-    reason = "sampling phase: a period is not quite 32 steps; the method is symplectic"
-    for integrator in ("Euler", "implicit", "implicitfast", "discrete"):
-        by = f"can too heavy to move, {integrator}, T/32"
-        yield Check("drift", quantity, partial(_drift, integrator), by, 0.05, "relative", reason)
-
-
 def _period_error(scene: Scene, amplitude: float, integrator: Integrator, timestep: float) -> float:
     run = simulate(scene, 4, amplitude, integrator=integrator, timestep=timestep)
     return 2 * math.pi / run.frequency() / scene.period(amplitude) - 1
@@ -144,21 +134,6 @@ def _speed_error(scene: Scene, rolling: Rolling) -> float:
 
 def _tilt_error(scene: Scene, rolling: Rolling) -> float:
     return _steady(scene, rolling)[1] - scene.terminal_tilt()
-
-
-def _drift(integrator: Integrator, steps: int = 32, swings: int = 1000) -> float:
-    """Return the growth of the energy's largest deviation in a later swing of 1 rad over that in the first one."""
-    scene = sliding(0.0, can=Can(mass=1e3, inertia=1e4))
-    period, window = scene.period(1.0), np.arange(steps)
-    counts = np.unique(np.rint(np.geomspace(1, swings, 1 + round(8 * math.log10(swings)))).astype(int))
-    samples = np.unique(np.concatenate([window, *(steps * count + window for count in counts)]))
-    simulator = Simulator(scene, Setting(integrator=integrator, timestep=period / steps))
-    times = period / steps * samples
-    start = simulator.initial_state(scene.equilibrium() + 1.0, 0.0)
-    motion, form = simulator.coordinates(simulator.solve(start, times).states, times), scene.oscillator
-    energy = form.inertia(motion.phi) * motion.phi_dot**2 / 2 - form.drop(motion.phi, float(motion.phi[0]))
-    width = [np.abs(energy[place : place + steps]).max() for place in np.searchsorted(samples, steps * counts)]
-    return float(max(width) / width[0] - 1)
 
 
 def _order_error(scene: Scene, integrator: Integrator) -> float:

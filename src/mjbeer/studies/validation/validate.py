@@ -58,7 +58,7 @@ class Validation:
 
 def checks() -> list[Check]:
     """Return all checks of the validation, in the order of its table."""
-    motions = motion_checks.checks, motion_checks.damped, motion_checks.orders, motion_checks.drifts
+    motions = motion_checks.checks, motion_checks.damped, motion_checks.orders
     return [check for chapter in (*motions, standing_checks.checks, track_checks.checks) for check in chapter()]
 
 
