@@ -98,7 +98,7 @@ def test_errors_of_short_steps() -> None:
 @pytest.mark.parametrize("scene", [frozen(), METAL, pendulum()])
 def test_a_usual_joint_equality_has_a_share_of_its_force(scene: Scene) -> None:
     """MuJoCo takes the diagonal of M^-1 for J M^-1 J^T with J = (1, -a), without regard to metres and radians."""
-    model, row = usual_model("equality, slide first", scene), np.array([1.0, -scene.can.radius])
+    model, row = usual_model("equality, defaults", scene), np.array([1.0, -scene.can.radius])
     data, mass = mujoco.MjData(model), np.zeros((model.nv, model.nv))
     mujoco.mj_forward(model, data)
     mujoco.mj_fullM(model, data, mass)

@@ -60,13 +60,8 @@ CHOSEN = "mjbeer"
 """The method of runs to a tolerance, which choose their integrator and its steps."""
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
 """The errors [rad] for which tables and plots have the fastest setting."""
-USUAL: dict[str, Rolling] = {
-    "equality, slide first": "equality",
-    "equality, hinge first": "equality",
-    "contact, defaults": "contact",
-}
-"""Models as people usually write them, by their way of rolling. The order of the two joints in an equality matters:
-MuJoCo's default diagonal softens the two by different factors."""
+USUAL: dict[str, Rolling] = {"equality, defaults": "equality", "contact, defaults": "contact"}
+"""Models as people usually write them, by their way of rolling."""
 
 
 @dataclass(frozen=True, order=True)

@@ -76,9 +76,6 @@ def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
     spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
     for constraint in (*spec.equalities, *spec.pairs):
         constraint.solref, constraint.solimp = (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2)
-    if name == "equality, hinge first":
-        for equality in spec.equalities:
-            equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
     return spec.compile()
 
 
