@@ -1,8 +1,8 @@
 """The benchmark on short ladders: points, failures, files. Nothing is asserted of times."""
 
-import itertools
 import math
 import pathlib
+from collections import Counter
 from collections.abc import Mapping
 
 import numpy as np
@@ -52,7 +52,7 @@ def on(found: Benchmark, *curve: str) -> list[Point]:
 
 def test_every_point_is_whole(measured: Benchmark) -> None:
     """Evaluations are those of the method: RK4 has four a step."""
-    assert {each.curve: len(on(measured, *vars(each.curve).values())) for each in measured.points} == {
+    assert Counter(each.curve for each in measured.points) == {
         curve: len(values) for curve, values in LADDERS.items()
     }
     for point in measured.points:
@@ -100,10 +100,8 @@ def test_ladders_halve_from_16_ms_to_31_us_and_meet_every_sample() -> None:
         found = ladders(case.scene)
         assert {each.model for each in found} >= {"reduced", *other_tools.OTHER_TOOLS}
         assert ("equality" in {each.model for each in found}) == (name != "sliding")
-        steps = found[Curve("reduced", "RK4")]
-        assert (steps[0], steps[-1]) == (16e-3, 16e-3 / 2**9)
-        assert all(a == 2 * b for a, b in itertools.pairwise(steps))
-        assert all(INTERVAL % each == 0 for each in steps)
+        assert found[Curve("reduced", "RK4")] == tuple(16e-3 / 2**k for k in range(10))
+        assert all(INTERVAL % each == 0 for each in found[Curve("reduced", "RK4")])
 
 
 def test_the_command_writes_everything(
