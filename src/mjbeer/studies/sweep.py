@@ -243,8 +243,8 @@ def _numberless(text: str) -> str:
 
 def _label(function: Any) -> str:
     """Return the name of a function with that of its module, or what it is."""
-    names = getattr(function, "__module__", None), getattr(function, "__qualname__", None)
-    return ".".join(map(str, names)) if None not in names else _shown(function)
+    named = hasattr(function, "__qualname__")
+    return f"{function.__module__}.{function.__qualname__}" if named else _shown(function)
 
 
 def _save(found: "xarray.Dataset", path: pathlib.Path) -> None:

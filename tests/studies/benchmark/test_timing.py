@@ -11,7 +11,7 @@ import pytest
 from mjbeer.cli.app import main
 from mjbeer.exceptions import DivergenceError
 from mjbeer.studies.benchmark import other_tools, timing
-from mjbeer.studies.benchmark.points import CASES, INTERVAL, Benchmark, Curve, Point
+from mjbeer.studies.benchmark.points import CASES, INTERVAL, TIMES, Benchmark, Curve, Point
 from mjbeer.studies.benchmark.timing import conduct, ladders, measure
 
 pytestmark = pytest.mark.slow
@@ -63,10 +63,10 @@ def test_every_point_is_whole(measured: Benchmark) -> None:
         assert point.setup is not None
         known = point.parameter == "timestep" or point.model.startswith("SciPy")
         assert (point.evaluations is not None) == known
-    steps = [round(CASES["frozen"].times[-1] / each) for each in STEPS]
+    steps = [round(TIMES[-1] / each) for each in STEPS]
     assert [each.evaluations for each in on(measured, "reduced", "RK4")] == [4 * count for count in steps]
     few, *_, many = (each.evaluations or 0 for each in on(measured, "reduced", "DOP853"))
-    assert 12 * CASES["frozen"].times[-1] / 64e-3 * 0.9 < few < many
+    assert 12 * TIMES[-1] / 64e-3 * 0.9 < few < many
 
 
 def test_what_is_written_is_read(measured: Benchmark, tmp_path: pathlib.Path) -> None:
@@ -86,8 +86,8 @@ def test_a_setting_that_fails_is_a_point_with_a_reason(monkeypatch: pytest.Monke
 
 
 def test_a_tool_that_does_not_say_that_it_failed_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    case, lost = CASES["frozen"], np.where(CASES["frozen"].times > 1, np.nan, 0)
-    for result in ((lost, 0 * case.times, 1), (0 * case.times, lost, 1)):
+    case, lost = CASES["frozen"], np.where(TIMES > 1, np.nan, 0)
+    for result in ((lost, 0 * TIMES, 1), (0 * TIMES, lost, 1)):
         careless = other_tools.OtherTool((1e-3,), lambda *_, result=result: lambda: result)
         monkeypatch.setitem(other_tools.OTHER_TOOLS, "heyoka", careless)
         with pytest.raises(DivergenceError, match="heyoka: the motion did not stay finite"):

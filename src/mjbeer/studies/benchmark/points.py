@@ -5,7 +5,7 @@ import math
 import pathlib
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,13 +20,14 @@ from mjbeer.theory.trajectory import Trajectory
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
 """The benchmark that comes with mjbeer: `mjbeer benchmark` wrote it."""
-INTERVAL, _SAMPLES = 32e-3, 65
-"""Time between two samples [s], and their number with both ends. It is a power of two times every timestep tried with
-MuJoCo's integrators, so that all runs have the same samples without interpolation."""
+INTERVAL = 32e-3
+"""Time between two samples [s]. It is a power of two times every timestep tried with MuJoCo's integrators, so that all
+runs have the same samples without interpolation."""
+TIMES = INTERVAL * np.arange(65)
+"""The times of the samples [s]."""
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(NamedTuple):
     """A scene and the start of its motion, at rest."""
 
     name: str
@@ -36,14 +37,9 @@ class Case:
     story: str
     """The case in a few words, for titles."""
 
-    @property
-    def times(self) -> np.ndarray:
-        """The times of the samples [s]."""
-        return INTERVAL * np.arange(_SAMPLES)
-
     def truth(self) -> Trajectory:
         """Return the exact motion at the times of the samples."""
-        return exact(self.scene, self.times, self.phi0)
+        return exact(self.scene, TIMES, self.phi0)
 
 
 _ALL = (
@@ -64,8 +60,7 @@ USUAL: dict[str, Rolling] = {"equality, defaults": "equality", "contact, default
 """Models as people usually write them, by their way of rolling."""
 
 
-@dataclass(frozen=True, order=True)
-class Curve:
+class Curve(NamedTuple):
     """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
 
     model: str
