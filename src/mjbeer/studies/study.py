@@ -17,7 +17,7 @@ from typing import Any
 from rich.console import Console
 
 from mjbeer.checks import Check, Result, json_values, line
-from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 from mjbeer.output.terminal import Table, progress_bar
 
@@ -41,15 +41,15 @@ class Study:
 
     @classmethod
     def load(cls, path: pathlib.Path, command: str) -> "Study":
-        """Return the study in a file that `run` wrote; a last line that was torn by an interruption is dropped.
+        """Return the study in a file that `run` wrote.
 
         Raises:
           ParameterError: if the file is missing, or is no study of that command.
         """
         try:
-            head, *lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+            head, *lines = path.read_text(encoding="utf-8").splitlines()
             study = cls(**json.loads(head))
-            study.results = [Result(**json.loads(each)) for each in lines if each.endswith("\n")]
+            study.results = [Result(**json.loads(each)) for each in lines]
             if study.command != command:
                 raise ValueError(f"it is of `{study.command}`")
         except (OSError, ValueError, TypeError) as error:
@@ -70,14 +70,18 @@ class Study:
         """Command, settings and machine."""
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
+    def save(self, path: pathlib.Path) -> None:
+        """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
+        files.write(path, "".join(map(line, [self.about, *(result.as_json() for result in self.results)])))
+
 
 def run(
     checks: Sequence[Check], console: Console | None, path: pathlib.Path, command: str, settings: dict[str, Any]
 ) -> Study:
     """Measure checks on all cores and return them as a study; `console` shows a progress bar.
 
-    Every result is appended to the file at `path` as soon as it is there, and a study of the same settings on the same
-    machine that is in it is gone on with. Functions that measure must be ones that can be pickled.
+    Every result is in the file at `path` as soon as it is there, and a study of the same settings on the same machine
+    that is in it is gone on with. Functions that measure must be ones that can be pickled.
 
     Raises:
       OSError: if the system ends one of the processes.
@@ -91,17 +95,14 @@ def run(
             study = stored
             if console is not None:
                 console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
-    files.write(path, "".join(map(line, [study.about, *(result.as_json() for result in study.results)])))
+    study.save(path)
     done = {(result.group, result.name): result for result in study.results}
     missing = [check for check in checks if (check.group, check.name) not in done]
     with progress_bar(console, len(missing)) as begin, closing(measured(missing, begin)) as results:
         for result in results:
             done[result.group, result.name] = result
-            try:
-                with path.open("a", encoding="utf-8") as file:
-                    file.write(line(result.as_json()))
-            except OSError as error:
-                raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+            study.results.append(result)
+            study.save(path)
     study.results = [done[check.group, check.name] for check in checks]
     return study
 
