@@ -19,12 +19,10 @@ from rich.console import Console
 from mjbeer.checks import Check, Result, json_values, line
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
-from mjbeer.output.terminal import Table, progress_bar
+from mjbeer.output.terminal import progress_bar
 
-PASSED = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
-"""The verdict on a check in a terminal."""
-FAILED = " **FAIL**"
-"""Marks a check that failed in a document."""
+FAILED = {True: "", False: " **FAIL**"}
+"""Marks what did not pass in a table."""
 _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
@@ -149,15 +147,3 @@ def document(about: dict[str, Any], name: str, rows: Iterable[dict[str, Any]]) -
     lines = (json.dumps(json_values(row), allow_nan=False) for row in rows)
     rounded = (json.loads(line, parse_float=lambda digits: float(f"{float(digits):.6g}")) for line in lines)
     return json.dumps(about)[:-1] + f', "{name}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"
-
-
-def table(title: str, results: Sequence[Result], document: bool = False) -> Table:
-    """Return a table of results; the last column is the verdict or, for a `document`, what dominates the error."""
-    rows = []
-    for result in results:
-        failed = FAILED if document and not result.passed else ""
-        last = result.reason if document else PASSED[result.passed]
-        error = "-" if result.error is None else f"{result.error:.1e}"
-        rows.append((result.name, result.by, error + failed, f"{result.bound:.1e} {result.unit}".strip(), last))
-    last = "what dominates the error" if document else "verdict"
-    return Table(title, ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))

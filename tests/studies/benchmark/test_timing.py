@@ -52,9 +52,7 @@ def on(found: Benchmark, *curve: str) -> list[Point]:
 
 def test_every_point_is_whole(measured: Benchmark) -> None:
     """Evaluations are those of the method: RK4 has four a step."""
-    assert Counter(each.curve for each in measured.points) == {
-        curve: len(values) for curve, values in LADDERS.items()
-    }
+    assert Counter(each.curve for each in measured.points) == {curve: len(values) for curve, values in LADDERS.items()}
     for point in measured.points:
         assert point.failure is None, point
         assert point.error < math.inf

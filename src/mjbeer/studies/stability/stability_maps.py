@@ -32,7 +32,7 @@ from mjbeer.output.terminal import Table
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
-from mjbeer.studies.study import PASSED, Study, document
+from mjbeer.studies.study import FAILED, Study, document
 from mjbeer.theory.can import Can
 from mjbeer.theory.scenes import frozen, sliding
 
@@ -250,8 +250,8 @@ def table(results: Sequence[Result]) -> Table:
     for result in results:
         cells, error = "".join(result.values["measured"]), "-" if result.error is None else f"{result.error:.1%}"
         counts = (str(cells.count(str(outcome))) for outcome in range(len(SHADES)))
-        lines.append((result.name, *counts, f"{result.values['same']:.1%}", error, PASSED[result.passed]))
-    return Table("Maps of timestep", ("map", *SHADES, "cells as predicted", "border off by", "verdict"), lines)
+        lines.append((result.name, *counts, f"{result.values['same']:.1%}", error + FAILED[result.passed]))
+    return Table("Maps of timestep", ("map", *SHADES, "cells as predicted", "border off by"), lines)
 
 
 def to_json(study: Study, date: datetime.date) -> str:
