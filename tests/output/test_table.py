@@ -85,7 +85,7 @@ def test_json_has_versions_checks_and_a_verdict_that_one_decides() -> None:
 
 
 def test_a_document_has_the_verdict_of_the_audit_and_what_failed() -> None:
-    checks, audit = Validation([PASSED, FAILED], [RIGHT, misprint(0.0589, 4e-10)]).tables(document=True)
+    checks, audit = Validation([PASSED, FAILED], [RIGHT, misprint(0.0589, 4e-10)]).tables()
     assert checks.rows[1][2].endswith(" **FAIL**")
     assert [row[2] for row in audit.rows] == [CONFIRMED, CORRECTED]
     assert audit.rows[1][4:6] == ("0.059", "4.0e-10")

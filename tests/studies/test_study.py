@@ -57,15 +57,13 @@ def counting(done: list[str], names: str = "abc") -> list[Check]:
     return [Check("g", name, partial(measure, name), "by", 1.0, "rad", "why") for name in names]
 
 
-@pytest.mark.parametrize("torn", ["", '{"group": "g", "na'])
-def test_an_interrupted_study_goes_on(torn: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_study_goes_on(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
     done: list[str] = []
     study, path = counting(done), tmp_path / "study.jsonl"
     with pytest.raises(KeyboardInterrupt):
         studies.run(study, None, path, "mjbeer test", {"quick": True})
     assert [result.name for result in Study.load(path, "mjbeer test").results] == ["a"]
-    path.write_text(path.read_text() + torn)
     found = studies.run(study, None, path, "mjbeer test", {"quick": True})
     assert done == ["a", "b", "b", "c"]
     assert Study.load(path, "mjbeer test") == found
@@ -91,7 +89,7 @@ def test_a_result_that_cannot_be_kept_is_an_error(tmp_path: pathlib.Path) -> Non
         path.mkdir()
         return 0.0
 
-    with pytest.raises(OutputError, match=r"cannot write .*study\.jsonl: Is a directory"):
+    with pytest.raises(OutputError, match=r"cannot write .*study\.jsonl"):
         studies.run([Check("g", "a", replace_by_folder)], None, path, "mjbeer test", {})
 
 

@@ -126,7 +126,7 @@ def page(
         stories=stories.STORIES,
         plots=plots,
         validation=validation,
-        tables=validation.tables(document=True),
+        tables=validation.tables(),
         machine=machine(),
         quick=quick,
     )

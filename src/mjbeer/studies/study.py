@@ -17,14 +17,12 @@ from typing import Any
 from rich.console import Console
 
 from mjbeer.checks import Check, Result, json_values, line
-from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
-from mjbeer.output.terminal import Table, progress_bar
+from mjbeer.output.terminal import progress_bar
 
-PASSED = {True: "[green]pass[/]", False: "[bold red]FAIL[/]"}
-"""The verdict on a check in a terminal."""
-FAILED = " **FAIL**"
-"""Marks a check that failed in a document."""
+FAILED = {True: "", False: " **FAIL**"}
+"""Marks what did not pass in a table."""
 _PACKAGES = ("mjbeer", "mujoco", "numpy", "scipy", "numba", "heyoka")
 
 
@@ -41,15 +39,15 @@ class Study:
 
     @classmethod
     def load(cls, path: pathlib.Path, command: str) -> "Study":
-        """Return the study in a file that `run` wrote; a last line that was torn by an interruption is dropped.
+        """Return the study in a file that `run` wrote.
 
         Raises:
           ParameterError: if the file is missing, or is no study of that command.
         """
         try:
-            head, *lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+            head, *lines = path.read_text(encoding="utf-8").splitlines()
             study = cls(**json.loads(head))
-            study.results = [Result(**json.loads(each)) for each in lines if each.endswith("\n")]
+            study.results = [Result(**json.loads(each)) for each in lines]
             if study.command != command:
                 raise ValueError(f"it is of `{study.command}`")
         except (OSError, ValueError, TypeError) as error:
@@ -70,14 +68,18 @@ class Study:
         """Command, settings and machine."""
         return {"command": self.command, "settings": self.settings, "machine": self.machine}
 
+    def save(self, path: pathlib.Path) -> None:
+        """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
+        files.write(path, "".join(map(line, [self.about, *(result.as_json() for result in self.results)])))
+
 
 def run(
     checks: Sequence[Check], console: Console | None, path: pathlib.Path, command: str, settings: dict[str, Any]
 ) -> Study:
     """Measure checks on all cores and return them as a study; `console` shows a progress bar.
 
-    Every result is appended to the file at `path` as soon as it is there, and a study of the same settings on the same
-    machine that is in it is gone on with. Functions that measure must be ones that can be pickled.
+    Every result is in the file at `path` as soon as it is there, and a study of the same settings on the same machine
+    that is in it is gone on with. Functions that measure must be ones that can be pickled.
 
     Raises:
       OSError: if the system ends one of the processes.
@@ -91,17 +93,14 @@ def run(
             study = stored
             if console is not None:
                 console.print(f"going on from {path}", highlight=False, markup=False, soft_wrap=True)
-    files.write(path, "".join(map(line, [study.about, *(result.as_json() for result in study.results)])))
+    study.save(path)
     done = {(result.group, result.name): result for result in study.results}
     missing = [check for check in checks if (check.group, check.name) not in done]
     with progress_bar(console, len(missing)) as begin, closing(measured(missing, begin)) as results:
         for result in results:
             done[result.group, result.name] = result
-            try:
-                with path.open("a", encoding="utf-8") as file:
-                    file.write(line(result.as_json()))
-            except OSError as error:
-                raise OutputError(f"cannot write {path}: {error.strerror or error}") from error
+            study.results.append(result)
+            study.save(path)
     study.results = [done[check.group, check.name] for check in checks]
     return study
 
@@ -148,15 +147,3 @@ def document(about: dict[str, Any], name: str, rows: Iterable[dict[str, Any]]) -
     lines = (json.dumps(json_values(row), allow_nan=False) for row in rows)
     rounded = (json.loads(line, parse_float=lambda digits: float(f"{float(digits):.6g}")) for line in lines)
     return json.dumps(about)[:-1] + f', "{name}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"
-
-
-def table(title: str, results: Sequence[Result], document: bool = False) -> Table:
-    """Return a table of results; the last column is the verdict or, for a `document`, what dominates the error."""
-    rows = []
-    for result in results:
-        failed = FAILED if document and not result.passed else ""
-        last = result.reason if document else PASSED[result.passed]
-        error = "-" if result.error is None else f"{result.error:.1e}"
-        rows.append((result.name, result.by, error + failed, f"{result.bound:.1e} {result.unit}".strip(), last))
-    last = "what dominates the error" if document else "verdict"
-    return Table(title, ("check", "by", "error", "at most", last), rows, left=(0, 1, 4))

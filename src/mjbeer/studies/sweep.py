@@ -116,8 +116,8 @@ def _arranged(parameters: Mapping[str, Any]) -> tuple[dict[str, np.ndarray], dic
     """Return the parameters that are lists or arrays, and the others."""
     listed = list, tuple, range
     several = [name for name, value in parameters.items() if isinstance(value, listed) or getattr(value, "ndim", 0) > 0]
-    axes = {name: require.samples(name, value) for name, value in parameters.items() if name in several}
-    fixed = {name: value for name, value in parameters.items() if name not in several}
+    axes = {name: require.samples(name, parameters[name]) for name in several}
+    fixed = {name: value for name, value in parameters.items() if name not in axes}
     fixed |= {name: require.number(name, fixed[name]) for name in ("phi0", "phi_dot0") if name in fixed}
     if (count := math.prod(_shape(axes))) > _MOST_SCENES:
         raise ParameterError(f"a sweep has at most {_MOST_SCENES:,} scenes, got {count:,}: cut it into several")
@@ -145,20 +145,16 @@ def _named(axes: Axes, scene: int) -> str:
 
 def _asked(quantity: Asked | Sequence[Asked], axes: Axes) -> dict[str, Callable[[Run], Any]]:
     """Return what measures the quantities that are asked for besides those of every sweep, by their names."""
-    there, found = [*ALWAYS, "period", "trusted", "status"], list[tuple[str, Callable[[Run], Any]]]()
+    names, found = [*ALWAYS, "period", "trusted", "status", *axes], dict[str, Callable[[Run], Any]]()
     for each in quantity if isinstance(quantity, (list, tuple)) else (quantity,):
-        if isinstance(each, str):
-            found += [("period", PERIOD[0])] * (require.choice("quantity", each, there) == "period")
-        elif callable(each):
-            found.append((getattr(each, "__name__", type(each).__name__), each))
-        else:
-            raise ParameterError(
-                f"quantity must be a name or a function of a trajectory, got {require.format_value(each)}"
-            )
-    names = [*there, *axes, *(name for name, measure in found if measure is not PERIOD[0])]
+        if callable(each):
+            names.append(getattr(each, "__name__", type(each).__name__))
+            found[names[-1]] = each
+        elif require.choice("quantity", each, names) == "period":
+            found["period"] = PERIOD[0]
     if clash := [name for name in names if names.count(name) > 1]:
         raise ParameterError(f"there are two quantities or parameters of the name {clash[0]!r}: give one another name")
-    return dict(found)
+    return found
 
 
 def _times(duration: float, setting: Setting, every_step: bool) -> np.ndarray:
@@ -218,9 +214,8 @@ def _empty(work: Work, axes: Axes) -> "xarray.Dataset":
     variables["trusted"] = dims, np.zeros(shape, np.bool_), {"long_name": "whether the run is trusted"}
     meaning = "; ".join(f"{number}: {text}" for number, text in STATUSES.items())
     variables["status"] = dims, np.full(shape, NOT_YET, np.int8), {"long_name": meaning}
-    coordinates = {
-        name: (name, values, {"units": _UNITS[name]} if name in _UNITS else {}) for name, values in axes.items()
-    }
+    units = {name: {"units": unit} for name, unit in _UNITS.items()}
+    coordinates = {name: (name, values, units.get(name, {})) for name, values in axes.items()}
     given = {"make": _label(work.make), "duration": float(work.times[-1])}
     setting = {name: value for name, value in vars(work.setting).items() if name != "folder"}
     given |= {name: "none" if value is None else value for name, value in setting.items()}
@@ -243,8 +238,8 @@ def _numberless(text: str) -> str:
 
 def _label(function: Any) -> str:
     """Return the name of a function with that of its module, or what it is."""
-    names = getattr(function, "__module__", None), getattr(function, "__qualname__", None)
-    return ".".join(map(str, names)) if None not in names else _shown(function)
+    named = hasattr(function, "__qualname__")
+    return f"{function.__module__}.{function.__qualname__}" if named else _shown(function)
 
 
 def _save(found: "xarray.Dataset", path: pathlib.Path) -> None:

@@ -58,12 +58,6 @@ def test_energy_is_kept_over_a_hundred_swings() -> None:
     assert np.abs(total - total[0]).max() / depth < 2e-14
 
 
-def test_a_balanced_load_turns_evenly() -> None:
-    scene = Scene(Can(0.033, 0.1), Load(0.1, 0.0, 1e-5), 0.0, "frozen")
-    found = series(scene, np.array([0.0, 1.0, 1e3]), 1.0, 2.0)
-    assert found.phi.tolist() == [1.0, 3.0, 2001.0]
-
-
 def test_without_gravity_and_rate_nothing_moves() -> None:
     found = series(sliding(gravity=0.0), np.array([0.0, 1e6]), 1.0)
     assert found.phi.tolist() == [1.0, 1.0]

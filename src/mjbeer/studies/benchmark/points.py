@@ -5,7 +5,7 @@ import math
 import pathlib
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,13 +20,14 @@ from mjbeer.theory.trajectory import Trajectory
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")
 """The benchmark that comes with mjbeer: `mjbeer benchmark` wrote it."""
-INTERVAL, _SAMPLES = 32e-3, 65
-"""Time between two samples [s], and their number with both ends. It is a power of two times every timestep tried with
-MuJoCo's integrators, so that all runs have the same samples without interpolation."""
+INTERVAL = 32e-3
+"""Time between two samples [s]. It is a power of two times every timestep tried with MuJoCo's integrators, so that all
+runs have the same samples without interpolation."""
+TIMES = INTERVAL * np.arange(65)
+"""The times of the samples [s]."""
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(NamedTuple):
     """A scene and the start of its motion, at rest."""
 
     name: str
@@ -36,14 +37,9 @@ class Case:
     story: str
     """The case in a few words, for titles."""
 
-    @property
-    def times(self) -> np.ndarray:
-        """The times of the samples [s]."""
-        return INTERVAL * np.arange(_SAMPLES)
-
     def truth(self) -> Trajectory:
         """Return the exact motion at the times of the samples."""
-        return exact(self.scene, self.times, self.phi0)
+        return exact(self.scene, TIMES, self.phi0)
 
 
 _ALL = (
@@ -60,17 +56,11 @@ CHOSEN = "mjbeer"
 """The method of runs to a tolerance, which choose their integrator and its steps."""
 LEVELS = tuple(10.0**-k for k in range(2, 13, 2))
 """The errors [rad] for which tables and plots have the fastest setting."""
-USUAL: dict[str, Rolling] = {
-    "equality, slide first": "equality",
-    "equality, hinge first": "equality",
-    "contact, defaults": "contact",
-}
-"""Models as people usually write them, by their way of rolling. The order of the two joints in an equality matters:
-MuJoCo's default diagonal softens the two by different factors."""
+USUAL: dict[str, Rolling] = {"equality, defaults": "equality", "contact, defaults": "contact"}
+"""Models as people usually write them, by their way of rolling."""
 
 
-@dataclass(frozen=True, order=True)
-class Curve:
+class Curve(NamedTuple):
     """A way of rolling and a method, run at a ladder of timesteps or tolerances: one line of the diagram."""
 
     model: str

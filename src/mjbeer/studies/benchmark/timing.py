@@ -22,9 +22,9 @@ from mjbeer.output.terminal import progress_bar
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.simulation.run import Simulator
 from mjbeer.simulation.tolerance import even_at_most
-from mjbeer.studies.benchmark import other_tools
+from mjbeer.studies.benchmark import other_tools, points
 from mjbeer.studies.benchmark.other_tools import OTHER_TOOLS, Samples
-from mjbeer.studies.benchmark.points import CASES, CHOSEN, TIMESTEP, TOLERANCE, USUAL, Benchmark, Case, Curve, Point
+from mjbeer.studies.benchmark.points import CASES, Benchmark, Case, Curve, Point
 from mjbeer.studies.study import machine
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
@@ -71,14 +71,11 @@ def conduct(names: Sequence[str], quick: bool, console: Console | None) -> Bench
 
 def usual_model(name: str, scene: Scene) -> mujoco.MjModel:
     """Return a model as people usually write it, with MuJoCo's defaults wherever there are any."""
-    spec, stock = specify(scene, USUAL[name], integrator="Euler", timestep=2e-3), mujoco.MjSpec().option
+    spec, stock = specify(scene, points.USUAL[name], integrator="Euler", timestep=2e-3), mujoco.MjSpec().option
     spec.option.enableflags, spec.option.impratio, spec.option.cone = stock.enableflags, stock.impratio, stock.cone
     spec.option.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_REFSAFE)
     for constraint in (*spec.equalities, *spec.pairs):
         constraint.solref, constraint.solimp = (0.02, 1), (0.9, 0.95, 0.001, 0.5, 2)
-    if name == "equality, hinge first":
-        for equality in spec.equalities:
-            equality.name1, equality.name2, equality.data[1] = equality.name2, equality.name1, 1 / scene.can.radius
     return spec.compile()
 
 
@@ -92,17 +89,18 @@ def ladders(scene: Scene, quick: bool = False, missing: Container[str] = ()) -> 
     """
     every = 2 if quick else 1
     steps = tuple(16e-3 / 2**k for k in range(6 if quick else 10))
+    tolerances = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
     large = tuple(128e-3 / 2 ** (k / 2) for k in range(0, 15, every))
     found: dict[Curve, tuple[float, ...]] = {}
     for rolling in (rolling for rolling in ROLLINGS if supported(scene, rolling)):
         found |= {Curve(rolling, integrator): steps for integrator in INTEGRATORS}
         found[Curve(rolling, DOP853)] = large
         if rolling != "contact":  # which is too soft for a tolerance
-            found[Curve(rolling, CHOSEN, TOLERANCE)] = tuple(10.0**-k for k in range(3, 13, 3 if quick else 1))
+            found[Curve(rolling, points.CHOSEN, points.TOLERANCE)] = tolerances
     found[Curve("reduced", GAUSS_JACKSON)] = tuple(32e-3 / 2 ** (k / 4) for k in range(0, 29, every))
-    found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in USUAL.items() if supported(scene, rolling)}
+    found |= {Curve(name, "Euler"): (2e-3,) for name, rolling in points.USUAL.items() if supported(scene, rolling)}
     others = {name: tool for name, tool in OTHER_TOOLS.items() if name not in missing}
-    return found | {Curve(name, "", TOLERANCE): tool.tolerances[::every] for name, tool in others.items()}
+    return found | {Curve(name, "", points.TOLERANCE): tool.tolerances[::every] for name, tool in others.items()}
 
 
 def measure(case: Case, point: Point, truth: Trajectory) -> Callable[[], Any]:
@@ -129,18 +127,18 @@ def _set_up(case: Case, point: Point) -> tuple[Callable[[], Any], Callable[[Any]
 
     The point is another tool, a model as people usually write it, or a setting of mjbeer.
     """
-    scene, times, value = case.scene, case.times, point.value
+    scene, times, value = case.scene, points.TIMES, point.value
     if point.model in OTHER_TOOLS:
         return OTHER_TOOLS[point.model].set_up(scene, case.phi0, 0.0, times, value), lambda found: found
     own: Dop853 | GaussJackson | None = None
-    if point.model in USUAL:
+    if point.model in points.USUAL:
         model = usual_model(point.model, scene)
         begin = initial_state(model, scene, case.phi0, 0.0)
         steps = np.rint(times / value).astype(np.int64)
         solve = partial(states_after, model, mujoco.MjData(model), begin, steps)
     else:
         given: dict[str, Any] = {"tolerance": value}
-        if point.parameter == TIMESTEP:
+        if point.parameter == points.TIMESTEP:
             given = {"integrator": point.method, "timestep": value}
         simulator = Simulator(scene, replace(Setting(), rolling=point.model, **given))
         model, begin = simulator.model, simulator.initial_state(case.phi0, 0.0)

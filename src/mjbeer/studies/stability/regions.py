@@ -38,17 +38,16 @@ class Even(NamedTuple):
     high: float
 
 
-class Signed(NamedTuple):
-    """A quantity to either side of 0."""
-
-    of: Any
-
-
 class Beside(NamedTuple):
     """A number less a quantity."""
 
     number: float
     by: Any
+
+
+def signed(quantity: Any) -> list[Any]:
+    """Return a quantity to either side of 0."""
+    return [quantity, Beside(0, quantity)]
 
 
 class Pick:
@@ -62,8 +61,6 @@ class Pick:
         match quantity:
             case Even(low, high):
                 return float(self._generator.uniform(low, high))
-            case Signed(of):
-                return self.one(1, -1) * self(of)
             case Beside(number, by):
                 return number - self(by)
             case (low, high) if isinstance(quantity, tuple):
@@ -136,7 +133,7 @@ def _fills(pick: Pick) -> Scene:
 
 
 def _steep(pick: Pick) -> Scene:
-    incline = math.radians(pick(Signed([Even(30, 89.9), Beside(90, (1e-6, 1))])))
+    incline = math.radians(pick(signed([Even(30, 89.9), Beside(90, (1e-6, 1))])))
     return replace(_ordinary(pick), incline=incline)
 
 
@@ -180,8 +177,8 @@ def _clock(scene: Scene) -> float:
 
 _STARTS: dict[str, tuple[Any, Any]] = {
     "by hand": ([0.0, 1.0, math.pi, Even(-math.pi, math.pi), (1e-9, 1)], [0.0, 0.0, Even(-3, 3)]),
-    "spun": (Even(-4, 4), Signed([(2, 500), (2, 500), (1e2, 1e6)])),
-    "far": (Signed((1e2, 1e4)), [0.0, Even(-3, 3), Signed((1e1, 1e5))]),
+    "spun": (Even(-4, 4), signed([(2, 500), (2, 500), (1e2, 1e6)])),
+    "far": (signed((1e2, 1e4)), [0.0, Even(-3, 3), signed((1e1, 1e5))]),
     "let go": (Even(-2.5, 2.5), 0.0),
 }
 """phi [rad], and phi_dot over the clock's rate; a start beside the separatrix is no row."""
@@ -196,7 +193,7 @@ def _start(pick: Pick, scene: Scene, name: str) -> tuple[float, float]:
     if name != "separatrix":
         phi0, rate = (pick(quantity) for quantity in _STARTS[name])
         return phi0, rate / _clock(scene)
-    beside = pick(Signed((1e-15, 0.1)))
+    beside = pick(signed((1e-15, 0.1)))
     if pick.one(True, False):
         return pick.one(low, high) + beside, 0.0
     phi0, form = pick(Even(low, high)), scene.oscillator
@@ -204,7 +201,7 @@ def _start(pick: Pick, scene: Scene, name: str) -> tuple[float, float]:
     return phi0, pick.one(1, -1) * rate * (1 + beside)
 
 
-_MANY_STEPS, _NEARLY = (20, 3000), [1.0, Beside(1, Signed((1e-12, 0.1)))]
+_MANY_STEPS, _NEARLY = (20, 3000), [1.0, Beside(1, signed((1e-12, 0.1)))]
 _WHOLE = [math.pi * part * times for part in (0.5, 1.0, 2.0, 4.0, 8.0, 16.0) for times in (1, 1, 1, 2, 3)]
 _PACES: dict[str, tuple[str, Any, Any]] = {
     "usual": ("clock", (1e-3, 0.3), _MANY_STEPS),

@@ -126,24 +126,20 @@ def bound(counts: dict[str, int]) -> float | None:
 def search_tables(found: dict[str, Any], results: Sequence[Result] = ()) -> list[Table]:
     """Return the tables of a search from its totals: known cases, random ones, and the silent runs of `results`."""
     columns, last = (*VERDICTS, *JUDGES, NEEDLESS, ABOVE, TWICE), "share of silent runs below, at 95 %"
-    shares = ["-" if (share := bound(counts)) is None else f"{share:.1g}" for counts in found["kinds"].values()]
-    kinds = [(*row, share) for row, share in zip(_rows(found["kinds"], columns), shares, strict=True)]
+    kinds = []
+    for name, counts in found["kinds"].items():
+        runs, share = sum(counts.get(verdict, 0) for verdict in VERDICTS), bound(counts)
+        cells = (str(counts.get(column, 0)) for column in columns)
+        kinds.append((name, str(runs), *cells, "-" if share is None else f"{share:.1g}"))
     silent = [run for of in results for run in of.values.get("silent", ())]
     wrong = [(str(run["number"]), run["region"], f"{run['error']:.1e}", run["trial"]) for run in silent]
+    known = ("all", str(sum(found["known"].values())), *(str(found["known"].get(verdict, 0)) for verdict in VERDICTS))
     made = [
-        Table("Known cases", ("cases", "runs", *VERDICTS), _rows({"all": found["known"]}, VERDICTS)),
+        Table("Known cases", ("cases", "runs", *VERDICTS), [known]),
         Table("Random runs, by model and by what judged them", ("model", "runs", *columns, last), kinds),
         Table("Silent runs, which must not be", ("number", "region", "error [rad]", "trial"), wrong, left=(0, 1, 3)),
     ]
     return [table for table in made if table.rows]
-
-
-def _rows(counted: dict[str, dict[str, int]], columns: Sequence[str]) -> list[tuple[str, ...]]:
-    """Return a row for each name: the number of its runs, and counts."""
-    return [
-        (name, str(sum(of.get(verdict, 0) for verdict in VERDICTS)), *(str(of.get(column, 0)) for column in columns))
-        for name, of in counted.items()
-    ]
 
 
 def _table_of_cases(results: Sequence[Result]) -> Table:

@@ -6,17 +6,13 @@ M = m + m_can + I_can/a^2, and g_s and g_c for gravity along and across the incl
     T = 1/2 (M - m) u'^2 + 1/2 m ((u' - b cos(phi) phi')^2 + (b sin(phi) phi')^2) + 1/2 I phi'^2,
     V = -(m + m_can) g_s u - m b (g_c cos(phi) - g_s sin(phi)).
 
-A sliding load has both coordinates free. Lagrange's equations are, the first integrated at once,
-
-    (M u - m b sin(phi))'' = (m + m_can) g_s,
-    (I + m b^2) phi'' = m b (cos(phi) u'' - g_c sin(phi) - g_s cos(phi)).
-
-With u'' eliminated the second one has nothing left that cancels:
+A sliding load has both coordinates free: (M u - m b sin(phi))'' = (m + m_can) g_s, and with u'' eliminated, so that
+nothing is left that cancels,
 
     (M I + m b^2 (M - m) + (m b sin(phi))^2) phi''
       = -m b (M g_c sin(phi) + I_can/a^2 g_s cos(phi)) - (m b)^2 sin(phi) cos(phi) phi'^2.
 
-A frozen load has u = a phi. With h = phi/2, Lagrange's equation is
+A frozen load has u = a phi, and with h = phi/2
 
     (I + I_can + m_can a^2 + m (a - b)^2 + 4 m a b sin(h)^2) phi''
       = g_s (m_can a + m (a - b)) + 2 m b g_s sin(h)^2 - 2 m b (g_c + a phi'^2) sin(h) cos(h).

@@ -8,12 +8,8 @@ from rich.console import Console
 from mjbeer import paper
 from mjbeer.checks import Check, Result, json_values
 from mjbeer.output.terminal import Table, progress_bar
-from mjbeer.paper.claim import CONFIRMED, CORRECTED, LIMIT
-from mjbeer.studies.study import FAILED, PASSED, machine, table
+from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
-
-_WORDS = {CONFIRMED: "confirmed", CORRECTED: "corrected", LIMIT: "limit"}
-"""The verdicts of the audit, short enough for a terminal."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +38,14 @@ class Validation:
         total = len(self.results), len(self.audit)
         return f"{checks} of {total[0]} checks and {claims} of {total[1]} claims of the paper passed"
 
-    def tables(self, document: bool = False) -> list[Table]:
-        """Return the tables of the checks and of the audit, for a terminal or a document."""
-        return [table("Validation against exact theory", self.results, document), audit(self.audit, document)]
+    def tables(self) -> list[Table]:
+        """Return the tables of the checks and of the audit."""
+        rows = []
+        for each in self.results:
+            error, bound = _error(each) + FAILED[each.passed], f"{each.bound:.1e} {each.unit}".strip()
+            rows.append((each.name, each.by, error, bound, each.reason))
+        columns = "check", "by", "error", "at most", "what dominates the error"
+        return [Table("Validation against exact theory", columns, rows, left=(0, 1, 4)), audit(self.audit)]
 
     def json(self) -> str:
         """Return the results as JSON, with the versions of the packages that were used."""
@@ -58,7 +59,7 @@ class Validation:
 
 def checks() -> list[Check]:
     """Return all checks of the validation, in the order of its table."""
-    motions = motion_checks.checks, motion_checks.damped, motion_checks.orders, motion_checks.drifts
+    motions = motion_checks.checks, motion_checks.damped, motion_checks.orders
     return [check for chapter in (*motions, standing_checks.checks, track_checks.checks) for check in chapter()]
 
 
@@ -76,20 +77,18 @@ def validate(console: Console | None) -> Validation:
     return Validation(results, audited)
 
 
-def audit(results: list[Result], document: bool = False) -> Table:
-    """Return the table of the audit; a `document` also has the witnesses, and what dominates each error."""
+def audit(results: list[Result]) -> Table:
+    """Return the table of the audit, with the verdicts, the witnesses, and what dominates each error."""
     lines = []
-    for result in results:
-        printed, right = result.values.get("printed"), f"{result.error:.1e}"
+    for each in results:
+        printed, right = each.values.get("printed"), _error(each)
         errors = (right, "") if printed is None else (f"{printed:.2g}", right)
-        bound, verdict = f"{result.bound:.1e}", result.values["verdict"]
-        if document:
-            line = verdict, result.by, *errors, bound + ("" if result.passed else FAILED), result.reason
-        else:
-            line = _WORDS[verdict], *errors, bound, PASSED[result.passed]
-        lines.append((result.group, result.name, *line))
-    title, columns = "The paper, equation by equation", ("equation", "quantity", "verdict")
-    if document:
-        columns += ("witness", "error, printed", "error, right", "at most", "what dominates")
-        return Table(title, columns, lines, left=(0, 1, 2, 3, 7))
-    return Table(title, (*columns, "printed", "right", "at most", "claim"), lines, left=(0, 1, 2, 6))
+        bound = f"{each.bound:.1e}" + FAILED[each.passed]
+        lines.append((each.group, each.name, each.values["verdict"], each.by, *errors, bound, each.reason))
+    columns = "equation", "quantity", "verdict", "witness", "error, printed", "error, right"
+    title = "The paper, equation by equation"
+    return Table(title, (*columns, "at most", "what dominates"), lines, left=(0, 1, 2, 3, 7))
+
+
+def _error(result: Result) -> str:
+    return "-" if result.error is None else f"{result.error:.1e}"
