@@ -18,8 +18,14 @@ from tests.support.scenes import METAL
 @pytest.mark.parametrize("friction", [math.inf, 1e-3])
 @pytest.mark.parametrize("scene", [sliding(0.3, can=METAL), frozen(0.1), frozen(-0.3, can=METAL), pendulum()])
 def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
-    """In pieces, to rounding; what is a drift is rounding itself, of energies of a size of 1."""
-    model, recorders = build(scene), (SmoothRecorder(scene, friction), Recorder(build(scene), scene, friction))
+    """In pieces, to rounding; what is a drift is rounding itself, of energies of a size of 1.
+
+    Forces are looked for between the steps, too, which last a hundredth of a radian.
+    """
+    model, recorders = (
+        build(scene),
+        (SmoothRecorder(build(scene), scene, friction), Recorder(build(scene), scene, friction)),
+    )
 
     times = np.arange(0, 1.5, 1e-3)
     states = GaussJackson(model).run(initial_state(model, scene, 2.5, 3.0), times, 1e-3, even_at_most(scene))
@@ -32,7 +38,8 @@ def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
     assert ours["rolling_ends_at"] == pytest.approx(theirs.pop("rolling_ends_at"), abs=1e-5)
     for name in theirs.keys() & set(_NAMES):
         rounding = 1e-14 * scale if name.startswith("_") or name in ("axis_drift", "lowest_normal") else 0.0
-        assert ours[name] == pytest.approx(theirs[name], rel=1e-11, abs=rounding), name
+        between = 1e-3 if name in ("lowest_normal", "needed_friction") else 1e-11
+        assert ours[name] == pytest.approx(theirs[name], rel=between, abs=rounding), name
     assert ours["rolling_ends_at"] < 1.5 or math.isinf(friction)
 
 

@@ -23,18 +23,17 @@ from mjbeer.integrators.dynamics import (
     inline,
     inner,
     run_blocks,
+    small,
 )
-from mjbeer.model.mujoco_library import LARGEST
+from mjbeer.model.mujoco_library import LARGEST, quiet
 
-_ROWS = 16
-"""Number of derivatives that are kept: of twelve stages, of the end of the step, three for the continuous output."""
-_SPACE = 10
-"""Number of rows beside them to work in: for a state, two sums, and seven of the continuous output."""
 # SciPy has these numbers too, but to import scipy.integrate takes longer than all other imports together.
 _TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
-_A, _B, _E3, _E5 = _TABLEAU[:12, :12].copy(), *_TABLEAU[12:15, :13].copy()
-_A_EXTRA, _D = _TABLEAU[15:18].copy(), _TABLEAU[18:].copy()
-_STAGES = len(_A)
+_END = 12
+"""Index of the end of the step among the stages: twelve are before it, and three for the continuous output after."""
+_ERRORS, _OUTPUT, _WORK = 16, 18, 10
+"""Rows of the tableau after those of the stages: of the two error estimates, and of the continuous output; and number
+of states beside them to work in."""
 _CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
 _MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
 _LEAST = 1e-4  # smallest error of the step before that counts
@@ -44,8 +43,6 @@ _BESIDE = 1e-6
 """Share of a step that a corner may be from its ends. A torque with the square of the rate is then 1e-12 off there."""
 _ROUNDING = 32 * float(np.finfo(float).eps)
 """Size of a sum of rates that may be the rounding of its terms, over these."""
-_KEPT = _BLOCK + 1
-"""Largest number of steps of a block that are kept, with the start."""
 
 
 class Dop853:
@@ -63,6 +60,7 @@ class Dop853:
         self.longest = 0.0
         """Longest step of the last run [s]."""
 
+    @quiet()
     def run(
         self,
         start: np.ndarray,
@@ -83,16 +81,33 @@ class Dop853:
         Raises:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
         """
-        state, samples = start.copy(), np.empty((len(times), self._size))
-        stages = np.zeros((_ROWS + _SPACE, self._size))
-        scale = np.ones(self._size) if scale is None else scale
-        rows, place, found = _KEPT if observer else 0, (0.0, timestep or 0.0, 0, 0, 1.0), np.zeros(1)
-        kept = np.empty(rows), np.empty((rows, self._size))
-        control = timestep is not None, tolerance, scale, longest, self._corners, found
-        fixed = *self._dynamics.kernel, state, stages, times, samples, control, kept
-        self.evaluations = run_blocks("DOP853", _advance, fixed, place, limit, observer)
-        self.longest = float(found[0])
+        scale, slope = np.ones(self._size) if scale is None else scale, self._dynamics.rates(start)
+        step = timestep or min(self._first_step(start, slope, tolerance, scale), longest)  # in this order NaN stays
+        samples, stages, work = (np.zeros((rows, self._size)) for rows in (len(times), _ERRORS, _WORK))
+        stages[0], work[0], sample = slope, start, int(times[0] == 0)
+        samples[:sample] = start
+        size = _BLOCK + 1 if observer else 0
+        kept = np.zeros(size), np.empty((size, self._size))
+        kept[1][:1] = start
+        control = timestep is not None, tolerance, scale, longest, self._corners
+        fixed = *self._dynamics.kernel, _TABLEAU, *work[:3], stages, work[3:], times, samples, control, kept
+        place = 0.0, step, sample, 0, 1.0, 0.0
+        self.evaluations, place = run_blocks("DOP853", _advance, fixed, place, limit, observer)
+        self.longest = place[-1]
         return samples
+
+    def _first_step(self, start: np.ndarray, slope: np.ndarray, tolerance: float, scale: np.ndarray) -> float:
+        """Return the first step [s], by Hairer's algorithm in section II.4.
+
+        Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
+        """
+        weight = tolerance * (scale + np.abs(start)) * math.sqrt(self._size)
+        d0, d1 = math.hypot(*(start / weight)), math.hypot(*(slope / weight))
+        guess = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1
+        d2 = math.hypot(*((self._dynamics.rates(start + guess * slope) - slope) / weight)) / guess
+        if max(d1, d2) <= 1e-15:
+            return max(1e-6, guess * 1e-3)
+        return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
 
 
 def _corners(model: mujoco.MjModel) -> np.ndarray:
@@ -121,79 +136,61 @@ def _combine(weights, count, stages, out):
                 out[i] += weight * stages[j, i]
 
 
+@inline
+def _evaluate(pointers, views, tableau, state, step, stage, stages, out):
+    """Evaluate the derivative at a `stage` of a step from `state`, and leave the state there in `out`."""
+    _combine(tableau[stage], stage, stages, out)
+    for i in range(out.size):
+        out[i] = state[i] + step * out[i]
+    derivative(pointers, views, out, stages[stage])
+
+
 @compiled()
-def _advance(pointers, views, state, stages, times, samples, control, kept, place):
+def _advance(pointers, views, tableau, state, new, work, stages, output, times, samples, control, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
-    `pointers` are addresses of the functions that compute an acceleration, of the model and of its data; `views` are
-    qpos, qvel and acceleration in that data, and the mask of the components of qpos that are needed. `state` is moved
-    on. `stages`, of shape (_ROWS + _SPACE, states), comes with the derivative at `state` in its first row, except in
-    the first block, and ends with space to work in. The rows of `samples` whose `times` [s] the steps pass are filled
-    in.
+    `pointers` and `views` are those of `derivative`. The `tableau` is an argument, as a compiler unrolls all loops over
+    numbers that it knows, and takes seconds for it. `state` is moved on. `stages` come with the derivative there in
+    their first row; `new`, `work` and `output` are space to work in. The rows of `samples` whose `times` [s] the steps
+    pass are filled in.
 
     `control` says whether the step is fixed; otherwise its error is kept below a tolerance times (scale + |state|) in
-    each component, and it lasts no longer than `longest` and ends at `corners`; its last part takes the longest step.
-    `place` is the time, the step, the index of the next sample, the number of steps and the error of the last step.
-    `kept` takes times and states at the start of the run and at the ends of this block's steps: it has room for `_KEPT`
-    of them, or for none.
+    each component, and it lasts no longer than `longest` and ends at `corners`. `place` is the time, the step, the
+    index of the next sample, the number of steps, the error of the last step and the longest step. `kept` takes times
+    and states at the ends of this block's steps, after the start in the first block, or has no room.
     """
-    time, step, sample, steps, before = place
-    fixed, tolerance, scale, longest, corners, found = control
+    small()
+    time, step, sample, steps, before, reached = place
+    fixed, tolerance, scale, longest, corners = control
     kept_times, kept_states = kept
-    count = _A.shape[0]  # for a constant, numba would compile `_combine` once more
-    size = state.size
-    new, work, total, weights, stages = stages[-1], stages[-2], stages[-3], stages[_ROWS:-3], stages[:_ROWS]
-    status, evaluations, row = BLOCK_END, 0, 0
+    status, evaluations, row, error = BLOCK_END, 0, 0, 0.0
     if steps == 0:
-        derivative(pointers, views, state, stages[0])
-        evaluations += 1
-        if not fixed:
-            step = _first_step(pointers, views, state, stages, tolerance, scale, work)
-            step = longest if step > longest else step  # which keeps what is no number
-            evaluations += 1
-        if kept_times.size > 0:
-            kept_times[row] = time
-            copy(state, kept_states[row])
-            row += 1
+        row = min(1, kept_times.size)
     for _ in range(_BLOCK):
-        while sample < times.size and times[sample] <= time:
-            copy(state, samples[sample])
-            sample += 1
         if sample == times.size:
             status = DONE
             break
-        for s in range(1, _STAGES):
-            _combine(_A[s], s, stages, total)
-            for i in range(size):
-                work[i] = state[i] + step * total[i]
-            derivative(pointers, views, work, stages[s])
-        _combine(_B, count, stages, total)
+        for stage in range(1, _END + 1):
+            _evaluate(pointers, views, tableau, state, step, stage, stages, new)
+        evaluations += _END
         finite = True
-        for i in range(size):
-            new[i] = state[i] + step * total[i]
+        for i in range(new.size):
             finite = finite and abs(new[i]) < LARGEST
-        evaluations += _STAGES - 1
         if fixed and not finite:
             status = NOT_FINITE
             break
         if not fixed:
-            error = np.inf
-            if finite:
-                error = _error(state, new, stages, step, tolerance, scale, work, total)
+            error = _error(tableau, state, new, stages, step, tolerance, scale, work, output[0]) if finite else np.inf
             if not error < 1.0:
                 step *= max(_SHRINK, _CAUTION * error ** (-1 / 8)) if finite else _SHRINK
                 if not step > 4e-16 * max(time, 1e-300) or step < 1e-200:
                     status = TOO_SMALL if finite else NOT_FINITE
                     break
                 continue
-        derivative(pointers, views, new, stages[_STAGES])
-        evaluations += 1
-        prepared = False
-        if not fixed and _passes(corners, state, new):
-            _prepare(pointers, views, state, new, stages, step, work, weights)
-            evaluations += 3
-            prepared = True
-            part = _corner(corners, state, new, weights, work)
+        prepared = not fixed and _passes(corners, state, new)
+        if prepared:
+            evaluations += _prepare(pointers, views, tableau, state, new, step, stages, work, output)
+            part = _corner(corners, state, output, work)
             if part < 1.0:
                 step *= part
                 continue
@@ -206,34 +203,34 @@ def _advance(pointers, views, state, stages, times, samples, control, kept, plac
                 copy(new, samples[sample])
             else:
                 if not prepared:
-                    _prepare(pointers, views, state, new, stages, step, work, weights)
-                    evaluations += 3
+                    evaluations += _prepare(pointers, views, tableau, state, new, step, stages, work, output)
                     prepared = True
-                _interpolate(state, weights, part, samples[sample])
+                _interpolate(state, output, part, samples[sample])
             sample += 1
         time = end
         copy(new, state)
-        copy(stages[_STAGES], stages[0])
-        if kept_times.size > 0:
+        copy(stages[_END], stages[0])
+        if row < kept_times.size:
             kept_times[row] = min(time, times[-1])  # a fixed step may go beyond the last sample, which is there by now
             copy(samples[times.size - 1] if time > times[-1] else state, kept_states[row])
             row += 1
-        found[0] = max(found[0], step)
+        reached = max(reached, step)
         if not fixed:
             growth = _CAUTION * max(error, 1e-12) ** (0.75 * _MEMORY - 1 / 8) * before**_MEMORY
             step = min(longest, step * min(_GROW, max(_SHRINK, growth)))
             before = max(error, _LEAST)
             if time < times[-1]:  # a motion at rest would take steps without bound
                 step = min(step, times[-1] - time)
-    return status, (time, step, sample, steps, before), evaluations, row
+    return status, (time, step, sample, steps, before, reached), evaluations, row
 
 
 @inner
 def _passes(corners, state, new):
-    """Return whether one of the sums that the `corners` name changes its sign between two states.
+    """Return whether one of the sums that the `corners` name changes its sign in a step.
 
     A sum that is rounding has no sign.
     """
+    small()
     for row in range(len(corners)):
         first = second = rounding = 0.0
         for i in range(state.size):
@@ -246,17 +243,17 @@ def _passes(corners, state, new):
 
 
 @inner
-def _corner(corners, state, new, weights, work):
+def _corner(corners, state, output, work):
     """Return the share of a step after which the first of the sums changes its sign; 1 if only at one of its ends."""
+    small()
     first = 1.0
     for row in range(len(corners)):
         low, high, sign = 0.0, first, 0.0
         for i in range(state.size):
             sign += corners[row, i] * state[i]
         for _ in range(_HALVINGS):
-            middle = (low + high) / 2
-            _interpolate(state, weights, middle, work)
-            value = 0.0
+            middle, value = (low + high) / 2, 0.0
+            _interpolate(state, output, middle, work)
             for i in range(state.size):
                 value += corners[row, i] * work[i]
             if value * sign > 0:
@@ -269,37 +266,12 @@ def _corner(corners, state, new, weights, work):
 
 
 @inner
-def _first_step(pointers, views, state, stages, tolerance, scale, work):
-    """Return the first step [s], by Hairer's algorithm in section II.4.
-
-    Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
-    """
-    size = state.size
-    d0 = d1 = 0.0
-    for i in range(size):
-        weight = tolerance * (scale[i] + abs(state[i]))
-        d0 += (state[i] / weight) ** 2
-        d1 += (stages[0, i] / weight) ** 2
-    d0, d1 = math.sqrt(d0 / size), math.sqrt(d1 / size)
-    guess = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1
-    for i in range(size):
-        work[i] = state[i] + guess * stages[0, i]
-    derivative(pointers, views, work, stages[1])
-    d2 = 0.0
-    for i in range(size):
-        d2 += ((stages[1, i] - stages[0, i]) / (tolerance * (scale[i] + abs(state[i])))) ** 2
-    d2 = math.sqrt(d2 / size) / guess
-    if max(d1, d2) <= 1e-15:
-        return max(1e-6, guess * 1e-3)
-    return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
-
-
-@inner
-def _error(state, new, stages, step, tolerance, scale, five, three):
+def _error(tableau, state, new, stages, step, tolerance, scale, five, three):
     """Return the estimated error of a step over the tolerated one."""
-    fifth, third, count = 0.0, 0.0, _A.shape[0]
-    _combine(_E5, count, stages, five)
-    _combine(_E3, count, stages, three)
+    small()
+    _combine(tableau[_ERRORS], stages.shape[0], stages, three)
+    _combine(tableau[_ERRORS + 1], stages.shape[0], stages, five)
+    fifth = third = 0.0
     for i in range(state.size):
         weight = tolerance * (scale[i] + max(abs(state[i]), abs(new[i])))
         fifth += (five[i] / weight) ** 2
@@ -309,30 +281,30 @@ def _error(state, new, stages, step, tolerance, scale, five, three):
 
 
 @inner
-def _prepare(pointers, views, state, new, stages, step, work, weights):
-    """Write the coefficients of the continuous output over the last step to `weights`."""
-    for row in range(3):
-        _combine(_A_EXTRA[row], _STAGES + 1 + row, stages, work)
-        for i in range(state.size):
-            work[i] = state[i] + step * work[i]
-        derivative(pointers, views, work, stages[_STAGES + 1 + row])
+def _prepare(pointers, views, tableau, state, new, step, stages, work, output):
+    """Write the coefficients of the continuous output over a step, and return the number of evaluations."""
+    small()
+    for stage in range(_END + 1, _ERRORS):
+        _evaluate(pointers, views, tableau, state, step, stage, stages, work)
     for i in range(state.size):
         change = new[i] - state[i]
-        weights[0, i] = change
-        weights[1, i] = step * stages[0, i] - change
-        weights[2, i] = 2 * change - step * (stages[_STAGES, i] + stages[0, i])
-    for k in range(4):
-        _combine(_D[k], stages.shape[0], stages, weights[3 + k])
+        output[0, i] = change
+        output[1, i] = step * stages[0, i] - change
+        output[2, i] = 2 * change - step * (stages[_END, i] + stages[0, i])
+    for k in range(3, output.shape[0]):
+        _combine(tableau[_OUTPUT - 3 + k], stages.shape[0], stages, output[k])
         for i in range(state.size):
-            weights[3 + k, i] *= step
+            output[k, i] *= step
+    return _ERRORS - _END - 1
 
 
 @inner
-def _interpolate(state, weights, part, out):
+def _interpolate(state, output, part, out):
     """Write the state after the fraction `part` of a step from `state` to `out`."""
+    small()
     for i in range(state.size):
         value = 0.0
         for k in range(6, -1, -1):
-            value += weights[k, i]
+            value += output[k, i]
             value *= part if k % 2 == 0 else 1 - part
         out[i] = state[i] + value

@@ -20,13 +20,13 @@ from numba.extending import intrinsic
 
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Observer
-from mjbeer.model.mujoco_library import address, quiet, untimed
+from mjbeer.model.mujoco_library import address
 
 DONE, BLOCK_END, TOO_SMALL, NOT_FINITE = range(4)
 """The statuses with which a kernel can end."""
-compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False)
+compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False, no_cfunc_wrapper=True)
 """Compiles what allocates nothing, so that arrays need not be counted: that takes a seventh of the time of a run."""
-inner = partial(compiled, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+inner = partial(compiled, no_cpython_wrapper=True)
 """Compiles what compiled code alone may call; an entry for Python takes a seventh of the compiler's time."""
 inline = partial(inner, forceinline=True)
 """Compiles what is called in every step into its callers: a call with so many arguments takes as long as what it
@@ -65,8 +65,10 @@ def _announced() -> Generator[None]:
 
 def run_blocks(
     name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, observer: Observer | None
-) -> int:
-    """Call the compiled `kernel` of a method, a block of steps each, until a run is done; return its evaluations.
+) -> tuple[int, tuple]:
+    """Call the compiled `kernel` of a method, a block of steps each, until a run is done.
+
+    Return its evaluations, and the place where it ended.
 
     It takes `fixed` arguments, the last of which has room for the steps that the `observer` is shown, and a `place`,
     which begins with the time [s]. It returns the status, the new place, and how many evaluations and kept rows there
@@ -76,19 +78,18 @@ def run_blocks(
       DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
     """
     status, total = BLOCK_END, 0
-    with quiet(), untimed():
-        while status == BLOCK_END:
-            if total > limit:
-                raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
-            with nullcontext() if kernel.overloads else _announced():
-                status, place, evaluations, count = kernel(*fixed, place)
-            total += evaluations
-            if observer and count:
-                observer(*(rows[:count] for rows in fixed[-1]))
+    while status == BLOCK_END:
+        if total > limit:
+            raise DivergenceError(f"the {name} run was given up at t = {place[0]:.6g} s after {total} evaluations")
+        with nullcontext() if kernel.overloads else _announced():
+            status, place, evaluations, count = kernel(*fixed, place)
+        total += evaluations
+        if observer and count:
+            observer(fixed[-1][0][:count], fixed[-1][1][:count])
     if status != DONE:
         cause = "its state is no longer finite" if status == NOT_FINITE else "no step is small enough for it"
         raise DivergenceError(f"the {name} run diverged at t = {place[0]:.6g} s: {cause}")
-    return total
+    return total, place
 
 
 @intrinsic
@@ -106,6 +107,17 @@ def call_c(typing_context, function, model, data, flag, result):
         return context.get_dummy_value()
 
     return types.void(types.intp, types.intp, types.intp, types.intp, types.intp), generate
+
+
+@intrinsic
+def small(typing_context):
+    """Have the calling function compiled to little code: all its loops are short, and unrolled they take seconds."""
+
+    def generate(context, builder, signature, arguments):
+        builder.function.attributes.add("optsize")
+        return context.get_dummy_value()
+
+    return types.void(), generate
 
 
 class Dynamics:
@@ -138,6 +150,14 @@ class Dynamics:
         """Compute the actuators' forces of a model that has changed, which a smooth one then takes unchanged."""
         if self._actuated and len(self.kernel[0][0]) > 1:
             mujoco.mj_forward(self._model, self.data)
+
+    def rates(self, state: np.ndarray) -> np.ndarray:
+        """Return the time derivative of a state, by MuJoCo's Python binding: for what is done once a run."""
+        qpos, qvel, qacc, needed = self.kernel[1]
+        qpos[:], qvel[:] = np.split(state, 2)
+        qpos *= needed
+        mujoco.mj_forward(self._model, self.data)
+        return np.concatenate([qvel, qacc])
 
 
 @inline

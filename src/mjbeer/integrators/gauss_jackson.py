@@ -2,18 +2,17 @@
 
 A step predicts phi from the sums and the last accelerations, evaluates MuJoCo's acceleration there, and corrects phi
 with it. A second evaluation there (PECE) makes the method stable at timesteps that are several times as large. It is
-spared where MuJoCo's accelerations, measured before the first step, follow a law: a constant and a swing in phi, at any
-rate. The correction is so small that the slope of the law then has the effect of an evaluation. States are read off two
-steps later, with accelerations on both sides, where the formula errs far less.
+spared by a law, if the caller gives one: a constant and a swing in phi, at any rate. The correction is so small that
+the slope of the law has the effect of an evaluation. States are read off two steps later, with accelerations on both
+sides, where the formula errs far less.
 
 A run begins in the middle of its first steps, the start: the six steps before it and the six after it are those that
 agree with the accelerations in all of them, found by iteration.
 
 Steps are even in a time s with the caller's pace dt/ds, a positive function of phi. Where that is sqrt(J), in which J
 is the inertia that phi has, phi is a pendulum in s, however light the wheel. Of a load in a can that slides along, the
-slide less a share of sin(phi) is integrated in time, in which it hardly needs any steps; the share is measured, too.
-All of these come from the accelerations of MuJoCo: with another pace the steps must be shorter, and the motion is the
-same.
+slide less a share of sin(phi), which is evenly accelerated, is integrated in time. The motion comes from the
+accelerations of MuJoCo alone: with another pace the steps must be shorter, and the motion is the same.
 
 O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy, Implementation of Gauss-Jackson
 integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and The generalized Sundman transformation for
@@ -38,32 +37,36 @@ from mjbeer.integrators.dynamics import (
     inline,
     inner,
     run_blocks,
+    small,
 )
 from mjbeer.integrators.uneven_time import (
     BLOCK,
     COUNT,
+    END_PLACE,
+    END_RATE,
     LAG,
-    SPARE,
+    Line,
     OwnTime,
-    dense_output,
+    count_points,
     dt_ds,
+    duration,
+    find,
+    fit_phi,
     kahan_add,
+    node,
     weighted,
     weights,
+    whole,
 )
-from mjbeer.model.mujoco_library import LARGEST
+from mjbeer.model.mujoco_library import LARGEST, quiet
 
 _MIDDLE = COUNT // 2
 _ITERATIONS = 30
 """Largest number of iterations of the first steps; a timestep that is not too long takes five to eight."""
 _STARTED = 1e-9
 """Largest change of the first accelerations in the last iteration, over the largest of them."""
-_ANGLES, _CHECKS = 5, 3
-"""Number of angles in a turn at which the law is measured at rest, and at which it is checked at a rate."""
-_FITS = 1e-6
-"""Largest difference from the law, over its size, with which it stands for an evaluation of a correction."""
-_SPIN = 1e4
-"""Rate [rad/s] at which the share of the slide is measured: what pulls at it is then the load's centrifugal force."""
+_FARTHEST = 4.0
+"""Angle [rad] by which a load may turn in a step. What turns farther needs shorter steps."""
 _PREDICT_RATE, _PREDICT = weights(1, -1), weights(2, -1)
 _CORRECT_RATE, _CORRECT = weights(1, 0), weights(2, 0)
 _FIRST_RATE, _FIRST_PLACE = (np.stack([weights(power, back) for back in range(COUNT - 1, -1, -1)]) for power in (1, 2))
@@ -94,6 +97,7 @@ class GaussJackson:
         self.evaluations = 0
         """Number of evaluations of the forward dynamics in the last run."""
 
+    @quiet()
     def run(
         self,
         start: np.ndarray,
@@ -113,23 +117,29 @@ class GaussJackson:
         Raises:
           DivergenceError: if the motion stops being finite, or there are `limit` evaluations.
         """
-        size, samples = self.size, np.empty((len(times), 2 * self.size))
-        history, sums = np.empty((2, COUNT + BLOCK)), np.empty((2, 5))
-        rows = BLOCK + SPARE if observer else 0
-        kept = np.empty(rows), np.empty((rows, 2 * size))
-        work = np.empty((2, COUNT + 2)), np.empty((2, 2 * size)), np.empty(3), np.empty(5)
-        fixed = *self._dynamics.kernel, own, forcing, start, sums, history, work, times, samples, kept
-        self.evaluations = run_blocks("GaussJackson", _advance, fixed, (0.0, 0, timestep, 0), limit, observer)
+        size, samples, rows = self.size, np.empty((len(times), 2 * self.size)), BLOCK + COUNT if observer else 0
+        kept, sample = (np.zeros(rows), np.empty((rows, 2 * size))), int(times[0] == 0)
+        samples[:sample] = start
+        kept[1][:1] = start
+        phi, phi_dot = float(start[size - 1]), float(start[-1])
+        pace, slide, speed = dt_ds.py_func(own, phi), 0.0, 0.0
+        if size > 1:
+            slide, speed = start[0] - own.share * math.sin(phi), start[size] - own.share * math.cos(phi) * phi_dot
+        pairs = tuple((float(each), 0.0) for each in (0, 0, 0, slide, speed))
+        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14), np.empty(2 * size), np.empty(2 * size)
+        fixed = *self._dynamics.kernel, own, forcing, timestep, work, times, samples, kept
+        place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), pairs
+        self.evaluations, _ = run_blocks("GaussJackson", _advance, fixed, place, limit, observer)
         return samples
 
 
 @inline
-def _accelerations(pointers, views, own, share, phi, rate, work):
+def _accelerations(pointers, views, own, phi, rate, state, change):
     """Return the second derivative of phi in the method's own time, and that of the slide less its share in time.
 
     The state that is evaluated has the slide at rest at its origin.
     """
-    state, change, last = work[0], work[1], work.shape[1] // 2 - 1
+    last = state.size // 2 - 1
     sin, cos = math.sin(own.turns * phi), math.cos(own.turns * phi)
     square = own.even + own.uneven * sin * sin
     speed = rate / math.sqrt(square)
@@ -138,152 +148,147 @@ def _accelerations(pointers, views, own, share, phi, rate, work):
     derivative(pointers, views, state, change)
     phi_ddot, pulled = change[2 * last + 1], 0.0
     if last > 0:
-        pulled = change[last + 1] - share * (math.cos(phi) * phi_ddot - math.sin(phi) * speed * speed)
+        pulled = change[last + 1] - own.share * (math.cos(phi) * phi_ddot - math.sin(phi) * speed * speed)
     return square * phi_ddot + own.uneven * own.turns * sin * cos * speed * speed, pulled
 
 
 @inner
-def _measure(pointers, views, own, law, work):
-    """Write the law: the coefficients of 1, cos(phi) and sin(phi) in phi'', the share of the slide, and if it fits."""
-    for k in range(5):
-        law[k] = 0.0
-    law[4], square = 1.0, 1.0
-    for k in range(_ANGLES + 2 + _CHECKS):
-        # At a quarter turn the slide is pulled by the square of the rate, and not by a change of it.
-        phi, rate = 2 * math.pi * k / _ANGLES if k < _ANGLES else math.pi / 2, 0.0
-        if k == _ANGLES + 1:
-            rate = _SPIN * dt_ds(own, phi)
-        elif k > _ANGLES + 1:
-            phi, rate = 2 * math.pi * k / _CHECKS + 0.5, math.sqrt(square)
-        gain, pulled = _accelerations(pointers, views, own, 0.0, phi, rate, work)
-        if k < _ANGLES:
-            law[0] += gain / _ANGLES
-            law[1] += 2 * gain * math.cos(phi) / _ANGLES
-            law[2] += 2 * gain * math.sin(phi) / _ANGLES
-        elif k == _ANGLES:
-            law[3] = pulled / _SPIN**2
-            square = abs(law[0]) + abs(law[1]) + abs(law[2])
-            square = square if square > 0 else 1.0
-        elif k == _ANGLES + 1:
-            law[3] -= pulled / _SPIN**2
-        elif not abs(gain - law[0] - law[1] * math.cos(phi) - law[2] * math.sin(phi)) <= _FITS * square:
-            law[4] = 0.0
+def _begin(pointers, views, own, start, step, gains, pulls, state, change):
+    """Find the accelerations of the first `COUNT` steps, and return the evaluations and the two sums of phi.
 
-
-@inner
-def _begin(pointers, views, own, law, phi, rate, step, sums, history, work):
-    """Fill the history of the first `COUNT` steps, and begin the sums of phi; return the evaluations.
-
-    These are 0 if the iteration does not end. The law's accelerations are iterated first; MuJoCo's are then nearly
-    those that agree with one another.
+    There are no evaluations if the iteration does not end. The law's accelerations are iterated first; MuJoCo's are
+    then nearly those that agree with one another.
     """
-    end = history.shape[1] - BLOCK  # `COUNT`, a constant, would compile `weighted` once more
+    small()
+    end = gains.size - BLOCK  # `COUNT`, a constant, would compile `weighted` once more
     by_law, evaluations, before = True, 0, np.inf
+    phi, rate, _ = start
     for k in range(COUNT):
-        history[0, k] = 0.0
+        gains[k] = 0.0
     for _ in range(_ITERATIONS):
-        change = largest = 0.0
+        error = largest = 0.0
         for order in range(COUNT):  # outwards: the start, then a step after it and one before it, by turns
             k = _MIDDLE + ((order + 1) // 2 if order % 2 else -order // 2)
-            angle = phi + step * ((k - _MIDDLE) * rate + step * weighted(_FIRST_PLACE[k], history[0], end))
-            turning = rate + step * weighted(_FIRST_RATE[k], history[0], end)
+            angle = phi + step * ((k - _MIDDLE) * rate + step * weighted(_FIRST_PLACE[k], gains, end))
             if by_law:
-                gain = law[0] + law[1] * math.cos(angle) + law[2] * math.sin(angle)
+                gain = own.law[0] + own.law[1] * math.cos(angle) + own.law[2] * math.sin(angle)
             else:
-                gain, history[1, k] = _accelerations(pointers, views, own, law[3], angle, turning, work)
+                turning = rate + step * weighted(_FIRST_RATE[k], gains, end)
+                gain, pulls[k] = _accelerations(pointers, views, own, angle, turning, state, change)
                 evaluations += 1
-            change, largest = max(change, abs(gain - history[0, k])), max(largest, abs(gain))
-            history[0, k] = gain
-        if not change < np.inf:
+            error, largest = max(error, abs(gain - gains[k])), max(largest, abs(gain))
+            gains[k] = gain
+        if not error < np.inf:
             break
-        if change <= 1e-16 * largest or (change >= before and change <= _STARTED * largest):
+        if error <= 1e-16 * largest or (error >= before and error <= _STARTED * largest):
             if not by_law:
                 break
             by_law = False
-        before = change
-    if by_law or not change <= _STARTED * largest:
-        return 0
-    sums[0, 0] = rate / step - weighted(_MIDDLE_RATE, history[0], end)
+        before = error
+    if by_law or not error <= _STARTED * largest:
+        evaluations = 0
+    first = rate / step - weighted(_MIDDLE_RATE, gains, end)
     # The formulas have the sums up to the last acceleration: first = rate, second = place + (1 + back) first.
-    sums[0, 1] = phi / step**2 - weighted(_MIDDLE_PLACE, history[0], end) + (1 + _MIDDLE) * sums[0, 0]
-    return evaluations
+    return evaluations, first, phi / (step * step) - weighted(_MIDDLE_PLACE, gains, end) + (1 + _MIDDLE) * first
+
+
+@inner
+def _write(own, node, since, slide, speed, pulled, out):
+    """Write the state at a node, `since` [s] after the begin of its step, to `out`.
+
+    There the slide less its share of sin(phi) was `slide` [m] with its `speed` [m/s]; it is `pulled` [m/s^2] evenly.
+    """
+    small()
+    phi, rate, last = node[0], node[1] / node[2], out.size // 2 - 1
+    out[last], out[2 * last + 1] = phi, rate
+    if last > 0:
+        out[0] = slide + since * (speed + since * pulled / 2) + own.share * math.sin(phi)
+        out[1 + last] = speed + since * pulled + own.share * math.cos(phi) * rate
 
 
 @compiled()
-def _advance(pointers, views, own, forcing, start, sums, history, work, times, samples, kept, place):
+def _advance(pointers, views, own, forcing, step, work, times, samples, kept, place):
     """Take up to a block of steps, and return the status, the new place, and the numbers of evaluations and rows kept.
 
-    `history` has a row for the second derivatives of phi, and one for the accelerations of the slide less its share.
-    `sums` has the first and the second sum of the former, and time, place and velocity of the slide less its share at
-    the step that was last read off; and what rounding took from each. They are as the block before left them, and so
-    are the last parts of `work`, that step's node and the law; the others are space to work in.
+    `work` has the last second derivatives of phi, and the accelerations of the slide less its share, and space for the
+    coefficients of phi in a step and for two states. The rows of `samples` whose `times` [s] are passed are filled in,
+    and times and states at the ends of steps are `kept`, after the start, if that has room.
 
-    The rows of `samples` whose `times` [s] are passed are filled in, and times and states are `kept`, if that has room.
-    `place` is the time [s] that is passed, the number of steps, their length in the method's own time, and the next
-    sample.
+    `place` is the time [s] that is passed, how many steps back the last step is read off, the next sample, the node
+    there, and five sums with what rounding took from each: the first and the second sum of the accelerations, and time,
+    place and velocity of the slide less its share at the node.
     """
-    _, steps, step, sample = place
-    points, states, node, law = work
-    size = start.size // 2
-    phi, rate, status, taken, evaluations, back, row = start[size - 1], start[-1], BLOCK_END, 0, 0, LAG, 0
-    if steps == 0:
-        _measure(pointers, views, own, law, states)
-        pace = dt_ds(own, phi)
-        for k in range(5):
-            sums[0, k] = sums[1, k] = 0.0
-        if size > 1:
-            sums[0, 3] = start[0] - law[3] * math.sin(phi)
-            sums[0, 4] = start[size] - law[3] * math.cos(phi) * rate
-        rate *= pace
-        evaluations = _begin(pointers, views, own, law, phi, rate, step, sums, history, states)
+    small()
+    _, back, sample, before, (first, second, clock, slide, speed) = place
+    gains, pulls, curve, state, change = work
+    kept_times, kept_states = kept
+    status, end, evaluations, row = BLOCK_END, COUNT, 0, 0
+    if back == _MIDDLE:
+        evaluations, total, double = _begin(pointers, views, own, before, step, gains, pulls, state, change)
+        first, second, row = (total, 0.0), (double, 0.0), min(1, kept_times.size)
         if evaluations == 0:
-            return NOT_FINITE, place, 0, 0
-        evaluations += _ANGLES + 2 + _CHECKS
-        steps, back, node[0], node[1], node[2] = _MIDDLE, _MIDDLE, phi, rate, pace
-        if times[0] == 0.0:
-            copy(start, samples[0])
-            sample = 1
-        if kept[0].size > 0:
-            kept[0][0] = 0.0
-            copy(start, kept[1][0])
-            row = 1
-    while True:
-        end = COUNT + taken
+            status = NOT_FINITE
+        elif sample == times.size:
+            status = DONE
+    while status == BLOCK_END and end < gains.size:
         if back > LAG:  # the first steps are there already
             back -= 1
         else:
-            phi = step**2 * (sums[0, 1] + weighted(_PREDICT, history[0], end))
-            rate = step * (sums[0, 0] + weighted(_PREDICT_RATE, history[0], end))
-            corrected = phi
+            phi = step * step * (second[0] + weighted(_PREDICT, gains, end))
+            rate = step * (first[0] + weighted(_PREDICT_RATE, gains, end))
+            corrected, end = phi, end + 1
             for correction in range(2):
-                gain, history[1, end] = _accelerations(pointers, views, own, law[3], corrected, rate, states)
-                history[0, end] = gain
+                gain, pulls[end - 1] = _accelerations(pointers, views, own, corrected, rate, state, change)
+                gains[end - 1] = gain
+                evaluations += 1
                 if correction > 0:
-                    evaluations += 1
                     break
-                corrected = step**2 * (sums[0, 1] + weighted(_CORRECT, history[0], end + 1))
-                if law[4] > 0:
-                    history[0, end] += (law[2] * math.cos(phi) - law[1] * math.sin(phi)) * (corrected - phi)
+                corrected = step * step * (second[0] + weighted(_CORRECT, gains, end))
+                if own.lawful:
+                    gain += (own.law[2] * math.cos(phi) - own.law[1] * math.sin(phi)) * (corrected - phi)
                     break
-                rate = step * (sums[0, 0] + gain + weighted(_CORRECT_RATE, history[0], end + 1))
-            history[0, end] += forcing
-            kahan_add(sums, 0, history[0, end])
-            kahan_add(sums, 1, sums[0, 0])
-            steps, taken, end = steps + 1, taken + 1, end + 1
-            if not max(abs(phi), abs(rate), abs(history[0, end - 1])) < np.inf or max(abs(phi), abs(rate)) > LARGEST:
+                rate = step * (first[0] + gain + weighted(_CORRECT_RATE, gains, end))
+            gain += forcing
+            gains[end - 1] = gain
+            first = kahan_add(first, gain)
+            second = kahan_add(second, first[0])
+            if not (abs(gain) < np.inf and abs(phi) < LARGEST and abs(rate) * step < _FARTHEST):
                 status = NOT_FINITE
                 break
-        time = sums[0, 2]
-        sample, row = dense_output(
-            own, law[3], sums, node, history, end, back, step, points, times, sample, samples, kept, row
-        )
-        if not sums[0, 2] < np.inf:
-            status, sums[0, 2] = NOT_FINITE, time
-        elif sample == times.size:
-            status = DONE
-        if status != BLOCK_END or taken == BLOCK or (kept[0].size > 0 and row > kept[0].size - SPARE):
-            break
-    for i in range(2):
-        for k in range(COUNT):
-            history[i, k] = history[i, taken + k]
-    return status, (sums[0, 2], steps, step, sample), evaluations + taken, row
+        line = Line(curve, first[0], second[0], step, back + 1.0)
+        if back == LAG:
+            phi = step * step * (line.second - line.back * line.first + weighted(END_PLACE, gains, end))
+            after = phi, step * (line.first + weighted(END_RATE, gains, end)), dt_ds(own, phi)
+            count = count_points(own, before, after, step)
+            span = whole(own, gains, end, line, count)
+        else:
+            fit_phi(line, gains, end)
+            after = node(own, line, 1.0)
+            count = count_points(own, before, after, step)
+            span = duration(own, line, 1.0, count)
+        # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
+        pulled = (before[2] * pulls[end - 2 - back] + after[2] * pulls[end - 1 - back]) / (before[2] + after[2])
+        if times[sample] <= (clock[0] + span) * (1 + 1e-14):
+            if back == LAG:
+                fit_phi(line, gains, end)
+            while sample < times.size and times[sample] <= (clock[0] + span) * (1 + 1e-14):
+                since = times[sample] - clock[0]
+                at = find(own, line, before, after, span, count, since)
+                _write(own, at, since, slide[0], speed[0], pulled, samples[sample])
+                sample += 1
+            if sample == times.size:
+                status = DONE
+        if row < kept_times.size:
+            kept_times[row] = clock[0] + span
+            _write(own, after, span, slide[0], speed[0], pulled, kept_states[row])
+            if status == DONE:  # the run ends within this step
+                kept_times[row] = times[-1]
+                copy(samples[-1], kept_states[row])
+            row += 1
+        clock = kahan_add(clock, span)
+        slide = kahan_add(slide, span * (speed[0] + span * pulled / 2))
+        speed = kahan_add(speed, span * pulled)
+        before = after
+    for k in range(COUNT):
+        gains[k], pulls[k] = gains[end - COUNT + k], pulls[end - COUNT + k]
+    return status, (clock[0], back, sample, before, (first, second, clock, slide, speed)), evaluations, row

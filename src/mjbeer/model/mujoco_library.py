@@ -13,52 +13,36 @@ import mujoco
 LARGEST = 1e10
 """Largest state that MuJoCo does not call diverged (mjMAXVAL)."""
 _lock = threading.Lock()
-_saved: list[tuple[bool, bool]] = []
-"""The log's settings when the first `quiet` was entered, once for each that is still open."""
+_saved: list[tuple[bool, bool, int | None]] = []
+"""The log's settings and the clock when the first `quiet` was entered, once for each that is still open."""
 
 
 @contextmanager
 def quiet() -> Generator[None]:
-    """Stop MuJoCo from printing warnings and from writing MUJOCO_LOG.TXT; errors are raised as usual.
+    """Stop MuJoCo from printing warnings, from writing MUJOCO_LOG.TXT, and from reading the clock for `mjData.timer`.
 
-    The setting belongs to the process: runs in several threads share it until the last one ends.
+    Errors are raised as usual. The clock takes longer than a step of a model with one or two joints; an MjData that is
+    made in the block installs it again. The settings belong to the process: runs in several threads share them until
+    the last one ends. To change them takes longer than a hundred steps: enter this once a run.
     """
     with _lock:
-        # Reading and writing the settings takes longer than a hundred steps.
-        _saved.append(_saved[0] if _saved else _set_log(console=False, file=False))
+        _saved.append(_saved[0] if _saved else _set(console=False, file=False, clock=None))
     try:
         yield
     finally:
         with _lock:
             before = _saved.pop()
             if not _saved:
-                _set_log(*before)
+                _set(*before)
 
 
-def _set_log(console: bool, file: bool) -> tuple[bool, bool]:
-    """Set where the log goes, and return where it went."""
-    config = mujoco.MjLogConfig.get()
-    before = config.logto_console, config.logto_file
-    config.logto_console, config.logto_file = console, file
+def _set(console: bool, file: bool, clock: int | None) -> tuple[bool, bool, int | None]:
+    """Set where the log goes and the address of the clock, and return what they were."""
+    config, installed = mujoco.MjLogConfig.get(), ctypes.c_void_p.in_dll(library(), "mjcb_time")
+    before = config.logto_console, config.logto_file, installed.value
+    config.logto_console, config.logto_file, installed.value = console, file, clock
     mujoco.MjLogConfig.set(config)
     return before
-
-
-@contextmanager
-def untimed() -> Generator[None]:
-    """Stop MuJoCo from reading the clock for its statistics, `mjData.timer`.
-
-    That takes longer than a step of a model with one or two joints. The Python bindings install the clock whenever an
-    MjData is made, so enter this afterwards. The setting belongs to the process: of runs in two threads one may be
-    timed after all, and is only slower.
-    """
-    clock = ctypes.c_void_p.in_dll(library(), "mjcb_time")
-    before, clock.value = clock.value, None
-    try:
-        yield
-    finally:
-        if before is not None:
-            clock.value = before
 
 
 @functools.cache

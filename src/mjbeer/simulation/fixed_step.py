@@ -12,8 +12,8 @@ from mujoco.rollout import rollout
 from mjbeer.exceptions import DivergenceError
 from mjbeer.integrators import Observer
 from mjbeer.model.joints import to_coordinates
-from mjbeer.model.mujoco_library import LARGEST, quiet, untimed
-from mjbeer.theory.equations import accelerations
+from mjbeer.model.mujoco_library import LARGEST, quiet
+from mjbeer.theory.equations import Coordinates, accelerations
 from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
@@ -60,7 +60,7 @@ def blocks(
     for first in range(0, count, _BLOCK):
         block = rows[:, : min(_BLOCK, count - first)]
         states = block[0, :, 1 : 1 + len(start)]
-        with quiet(), untimed():
+        with quiet():
             if len(models) == 1:
                 state = np.empty((1, rows.shape[2]))
                 mujoco.mj_getState(model, data, state[0], _STATE)
@@ -122,9 +122,13 @@ class Recorder:
             self.record.add(motion)
             return
         self.record.add_conserved(motion)
+        self.add_forces(motion)
+
+    def add_forces(self, motion: Coordinates) -> None:
+        """Add the forces within the next steps."""
         rates = motion.phi_dot, motion.u_dot
         gains = accelerations(self._scene, motion.phi, *rates)[::-1]
-        ends = np.concatenate([self._last, np.stack([times, motion.phi, motion.u, *rates, *gains])], axis=1)
+        ends = np.concatenate([self._last, np.stack([motion.time, motion.phi, motion.u, *rates, *gains])], axis=1)
         self._last = ends[:, -1:]
         self.record.add_forces(*_between(ends[0], *ends[1:].reshape(3, 2, -1)))
 

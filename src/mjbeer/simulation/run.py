@@ -5,7 +5,7 @@ from collections.abc import Generator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from mjbeer.exceptions import DivergenceError
 from mjbeer.model.build import ReusableModel
 from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics, Structure
-from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
 from mjbeer.theory.equations import Coordinates
@@ -112,9 +111,9 @@ class Simulator(ReusableModel):
         """
         scene, setting, model = self.scene, self.setting, self.model
         integrator, timestep, tolerance = setting.integrator, setting.timestep, setting.tolerance
-        recorder: Any = None
-        if tolerance is None and integrator not in OWN:
-            recorder = None if friction is None else Recorder(model, scene, friction)
+        own = integrator in OWN
+        recorder = None if friction is None else Recorder(model, scene, friction, within=own)
+        if tolerance is None and not own:
             parts = (_GOLDEN_SECTION * timestep, (1 - _GOLDEN_SECTION) * timestep) if self._uneven else (timestep,)
             steps = np.rint(times / timestep).astype(np.int64)
             states = states_after(model, self.data, start, steps, parts, recorder)
@@ -133,10 +132,9 @@ class Simulator(ReusableModel):
         if self._uneven:
             timestep *= _GOLDEN_SECTION
         if integrator == DOP853:
-            recorder = None if friction is None else Recorder(model, scene, friction, within=True)
             states = Dop853(model, dynamics).run(start, times, timestep, observer=recorder)
         else:
-            recorder = None if friction is None else SmoothRecorder(scene, friction)
+            recorder = None if friction is None else SmoothRecorder(model, scene, friction)
             states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
         return Solution(states, recorder.record if recorder else None, None, integrator)
 
@@ -282,7 +280,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
         if len(along) > len(times):
             samples = np.searchsorted(along, times)
-    with quiet(), Simulator.from_pool(scene, setting) as simulator:
+    with Simulator.from_pool(scene, setting) as simulator:
         solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
         motion = simulator.coordinates(solution.states, along)
     assert solution.record is not None

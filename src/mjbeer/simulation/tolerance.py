@@ -8,7 +8,7 @@ import numpy as np
 
 from mjbeer.exceptions import DivergenceError, ToleranceError, UnsupportedError
 from mjbeer.integrators.dop853 import Dop853
-from mjbeer.integrators.dynamics import Dynamics, compiled
+from mjbeer.integrators.dynamics import Dynamics
 from mjbeer.integrators.gauss_jackson import GaussJackson
 from mjbeer.integrators.uneven_time import OwnTime, own_time
 from mjbeer.model.joints import joint_addresses
@@ -107,7 +107,7 @@ class ToleranceLoop:
         parts = {"slide": (0.0, 1 / radius), "lift": (0.0, 0.0)}  # phi and u/a are sums of components of the state
         angle = 1.0, 0.0 if "slide" in joints else 1.0
         self._angles = np.array([parts.get(name, angle) for name in joints] + [(0.0, 0.0)] * model.nv)
-        self._light = scene.oscillator.coupling > _LIGHT * scene.oscillator.base
+        self._light = scene.oscillator.coupling + scene.oscillator.chord > _LIGHT * scene.oscillator.base
         self._size = _NUDGE * self._scale
         try:
             self._gauss_jackson = None if self._light else GaussJackson(model, self._dynamics)
@@ -168,7 +168,7 @@ class ToleranceLoop:
             for _ in range(_TRIES):
                 coarse = method.run(start + self._nudge, some_times, timestep, own, None, self._push, self._left / 2)
                 self._left -= method.evaluations
-                recorder = SmoothRecorder(self._scene, friction)
+                recorder = SmoothRecorder(self._model, self._scene, friction)
                 fine = method.run(start, times, timestep / _FINER, own, recorder, 0.0, self._left / 2)
                 self._left -= method.evaluations
                 compare = np.ascontiguousarray(fine[compared])
@@ -279,9 +279,11 @@ def even_at_most(scene: Scene) -> OwnTime:
 
 def _in_units_of(scene: Scene, inertia: float, precision: float) -> OwnTime:
     """Return the time whose pace is sqrt(J / `inertia`)."""
-    shape = scene.oscillator
+    shape, arm = scene.oscillator, scene.load.moment / scene.effective_mass
     uneven, turns = (shape.coupling, 1.0) if shape.coupling > 0 else (shape.chord, 0.5)
-    return own_time(shape.base / inertia, uneven / inertia, turns, precision)
+    swing = shape.depth / inertia
+    law = shape.ramp / inertia, swing * math.sin(shape.bottom), -swing * math.cos(shape.bottom)
+    return own_time(shape.base / inertia, uneven / inertia, turns, precision, arm, law)
 
 
 def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> float:
@@ -318,24 +320,14 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
     return min(_SHARE * pole * allowed**_POWER, duration / 8)
 
 
-@compiled()
-def _distance(angles, coarse, fine, start):
+def _distance(angles: np.ndarray, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
     """Return the largest distance of two runs in phi or u/a [rad], relative to the angle beyond 1 rad.
 
     These are the products of a state and the two columns of `angles`. The distance from what is no number is infinite.
     """
-    distance = 0.0
-    for column in range(angles.shape[1]):
-        turned = 1.0
-        for sample in range(len(fine)):
-            change = apart = 0.0
-            for place in range(len(start)):
-                change += angles[place, column] * (fine[sample, place] - start[place])
-                apart += angles[place, column] * (fine[sample, place] - coarse[sample, place])
-            turned = max(turned, abs(change))
-            if not abs(apart) <= distance * turned:
-                distance = abs(apart) / turned if abs(apart) < np.inf else np.inf
-    return distance
+    turned = np.maximum.accumulate(np.abs((fine - start) @ angles))
+    distance = float((np.abs((fine - coarse) @ angles) / np.maximum(turned, 1.0)).max())
+    return distance if distance < math.inf else math.inf
 
 
 def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
