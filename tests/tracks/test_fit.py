@@ -102,7 +102,7 @@ def test_points_that_were_mistaken_are_left_out() -> None:
         (mjbeer.pendulum(), {"free": ("fill",)}, "fill is sought"),
         (WATER, {"free": ("mass",)}, "free must be one of"),
         (WATER, {"known": {"fill": (0.5, 0.0)}}, "a value and its error"),
-        (WATER, {"known": {"mass": (0.5, 0.1)}}, "known must be one of"),
+        (WATER, {"known": {"mass": (0.5, 0.1)}}, "known are values of incline"),
         (WATER, {"phi0": "flat"}, "phi0, if it is no number, must be one of"),
         (remade(WATER, {"incline": -0.03}), {}, "does not roll down the scene's incline"),
     ],

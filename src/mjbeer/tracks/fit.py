@@ -213,7 +213,9 @@ class _Problem:
         self.span, self.phi0, latest = float(np.ptp(track.time)), phi0, float(track.time[-1])
         names = free if isinstance(free, (tuple, list, set)) else [free]
         sought = {require.choice("free", name, FREE) for name in names}
-        sought |= {require.choice("known", name, _SIZES) for name in require.instance("known", known, dict)}
+        if not set(require.instance("known", known, dict)) <= set(_SIZES):
+            raise ParameterError(f"known are values of {', '.join(_SIZES)}, got {require.format_value(known)}")
+        sought |= set(known)
         if not isinstance(phi0, str):
             require.start(phi0, 0.0)
         elif require.choice("phi0, if it is no number,", phi0, ("level", "free")) == "free":
