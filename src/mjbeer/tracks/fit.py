@@ -47,7 +47,6 @@ _NODES = 0.25  # time between the nodes of a motion's spline over sqrt(a/g): its
 _MIDDLE, _STEP = 1e3, 1e-3  # the solver's variables at the guess, and the differences for their derivatives
 _LEAST_NOISE = 1e-6  # of a track without any [m or rad]
 _FAR = 6.0  # noises from the motion from which on a point is left out
-_WORSE = 1.3  # noise over that of another start with which a start is given up
 _AS_GOOD = 9.0  # sum of squares by which another minimum may be worse to be told: three standard errors
 _SLOW = 16, 8, 4, 2  # slow waves in which what is left is looked for: the slowest sixteenth of all, and so on
 _DOUBTED = 1e-3  # chance that noise leaves what was left from which on the model is said to be wrong
@@ -181,7 +180,7 @@ def fit(
         minima: list[OptimizeResult] = []
         for values in sorted(best.values(), key=itemgetter("left"))[:_STARTS]:
             step("fitting")
-            minima += problem.solve(values, min((each.noise[0, 0] for each in minima), default=math.inf))
+            minima += problem.solve(values)
         if not minima:
             raise MjbeerError(f"no motion of such a scene is like the track, got {scene!r}")
         return problem.result(minima)
@@ -332,8 +331,8 @@ class _Problem:
         suited = {"released": released[at], "place": np.mean(off[at]), "left": np.std(off[at])}
         return values | suited | {"incline": values.get("incline", 0.0) * stretch[at]}
 
-    def solve(self, values: dict[str, float], least: float) -> list[OptimizeResult]:
-        """Return the minimum that is found from a start, or none if there is more noise than in another, `least`."""
+    def solve(self, values: dict[str, float]) -> list[OptimizeResult]:
+        """Return the minimum that is found from a start, or none if there is no such motion."""
         z = np.clip(self.solved(values), *self.within)
         radius, kept = self.scene.can.radius, np.ones(self.data.shape, bool)
         noise = np.array([[values["left"] / (1 if name == "along" else radius)] for name in self.channels])
@@ -341,7 +340,7 @@ class _Problem:
             try:
                 found = least_squares(
                     self.residuals, z, bounds=self.within, ftol=1e-6, xtol=1e-9, diff_step=_STEP / _MIDDLE,
-                    max_nfev=50, args=(noise, kept),
+                    max_nfev=30, args=(noise, kept),
                 )  # fmt: skip
             except ValueError:  # of infinite residuals
                 return []
@@ -350,8 +349,6 @@ class _Problem:
             kept = np.abs(off) <= _FAR * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)
             spare = np.maximum(1.0, kept.sum(axis=1) - len(z) / len(off))
             noise = np.sqrt(_LEAST_NOISE**2 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]
-            if noise[0, 0] > _WORSE * least:
-                return []
         found.squares = 2 * self.data.shape[1] * np.log(noise).sum() + (found.fun[self.data.size :] ** 2).sum()
         return [found]
 
