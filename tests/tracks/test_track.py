@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from mjbeer import Track, read_track
+from mjbeer import read_track
 from mjbeer.exceptions import ParameterError
 
 TIME, PLACE = 17 + np.arange(20) / 60, 0.1 + 0.5 * (np.arange(20) / 60) ** 2
@@ -38,21 +38,17 @@ TABLES = {
 
 
 @pytest.mark.parametrize("text", TABLES.values(), ids=TABLES)
-def test_tables_as_people_have_them(text: str, tmp_path: pathlib.Path) -> None:
-    track = read_track(written(tmp_path, text))
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])  # Excel also writes two bytes a letter
+def test_tables_as_people_have_them(text: str, encoding: str, tmp_path: pathlib.Path) -> None:
+    track = read_track(written(tmp_path, text.lstrip("\ufeff") if encoding == "utf-16" else text, encoding))
     assert track.time == pytest.approx(TIME)
     assert track.along - track.along[0] == pytest.approx(PLACE - PLACE[0], abs=1e-8)
-
-
-def test_excel_also_writes_two_bytes_a_letter(tmp_path: pathlib.Path) -> None:
-    assert read_track(written(tmp_path, TABLES["decimal commas"], "utf-16")).time == pytest.approx(TIME)
 
 
 def test_points_that_were_lost_are_left_out(tmp_path: pathlib.Path) -> None:
     lines = TABLES["spaces"].replace(" ", ";").splitlines()
     lines[5], lines[9] = lines[5].split(";")[0] + ";", ""
-    track = read_track(written(tmp_path, "\n".join(lines)))
-    assert track.time == pytest.approx(np.delete(TIME, [4, 8]))
+    assert read_track(written(tmp_path, "\n".join(lines))).time == pytest.approx(np.delete(TIME, [4, 8]))
 
 
 def test_places_on_a_tilted_board_are_those_along_it(tmp_path: pathlib.Path) -> None:
@@ -62,14 +58,13 @@ def test_places_on_a_tilted_board_are_those_along_it(tmp_path: pathlib.Path) -> 
     assert np.diff(track.along) == pytest.approx(np.diff(PLACE), abs=1e-8)
 
 
-def test_frames_with_a_rate_and_columns_by_name(tmp_path: pathlib.Path) -> None:
+@pytest.mark.parametrize("column", ["B", 3, "3"])
+def test_frames_with_a_rate_and_columns_by_name(column: str | int, tmp_path: pathlib.Path) -> None:
     text = table("frame,A,B,roll (deg)", ",", np.arange(20) + 3, 0 * PLACE, PLACE, np.degrees(PLACE / 0.033))
-    path = written(tmp_path, text)
-    for column in ("B", 3, "3"):
-        track = read_track(path, {"x": column}, rate=60)
-        assert track.time == pytest.approx((np.arange(20) + 3) / 60)
-        assert track.along == pytest.approx(PLACE)
-        assert track.roll == pytest.approx(PLACE / 0.033)
+    track = read_track(written(tmp_path, text), {"x": column}, rate=60)
+    assert track.time == pytest.approx((np.arange(20) + 3) / 60)
+    assert track.along == pytest.approx(PLACE)
+    assert track.roll == pytest.approx(PLACE / 0.033)
 
 
 GOOD = TABLES["spaces"].replace(" ", ",")
@@ -92,15 +87,6 @@ def test_what_cannot_be_read_is_refused(message: str, text: str, tmp_path: pathl
         read_track(written(tmp_path, text))
 
 
-def test_a_missing_file_and_a_column_that_is_not_there_are_refused(tmp_path: pathlib.Path) -> None:
-    with pytest.raises(ParameterError, match="cannot read"):
-        read_track(tmp_path / "none.csv")
+def test_a_column_that_is_not_there_is_refused(tmp_path: pathlib.Path) -> None:
     with pytest.raises(ParameterError, match="no columns may be x"):
         read_track(written(tmp_path, GOOD), {"x": "place"})
-    with pytest.raises(ParameterError, match="columns are those of time"):
-        read_track(written(tmp_path, GOOD), {"place": "x"})
-
-
-def test_arrays_of_different_lengths_are_refused() -> None:
-    with pytest.raises(ParameterError, match="roll must have as many entries"):
-        Track(TIME, PLACE, PLACE[1:])

@@ -1,44 +1,57 @@
 """What was in the can: the scene whose simulated motion is that of a track, with errors that hold."""
 
-import contextlib
+import functools
+import inspect
 import itertools
 import math
 import os
 import warnings
-from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.optimize import OptimizeResult
+from scipy.fft import dct
+from scipy.interpolate import CubicHermiteSpline
+from scipy.optimize import OptimizeResult, least_squares
+from scipy.special import fdtrc
 
 from mjbeer import require
 from mjbeer.drawing.words import in_words
 from mjbeer.exceptions import MjbeerError, ParameterError
 from mjbeer.output import terminal
 from mjbeer.simulation.run import Run
+from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.scene import Scene
-from mjbeer.tracks.problem import FREE, Problem
 from mjbeer.tracks.track import Track
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BEND = 5e-3
-"""How far a lens usually bends the picture of a straight board [m]."""
-LAW_ERROR = 0.1
-"""Relative error of a liquid's damping law itself, beside which that of the fit stands: of W^1.5 and its polynomial."""
-_DOUBTED = 1e-3
-"""Chance that noise leaves what was left from which on the model is said to be wrong."""
-_UNKNOWN = 0.3
-"""Part of a value in a direction that the track does not tell from which on it is named, over its size."""
-_PULLED = 3.0
-"""Distance of a fitted value from the known one that is told, over the error of the latter."""
-_AS_GOOD = 9.0
-"""Sum of squares by which another minimum may be worse to be told: three standard errors."""
-_NOISES = ("along", "m"), ("roll", "rad"), ("phi", "rad")
-_STARTS = 6
-"""Starts that are followed to the end."""
+FREE = "incline", "fill", "damping", "drag"
+"""What a scene has that can be fitted."""
+_SIZES = {
+    "incline": math.radians(1), "fill": 0.1, "damping": 1.0, "drag": 1e-3, "phi0": 0.2, "place": 0.02, "released": 0.1,
+    "bend": 5e-3, "scale": 0.02, "turned": 0.2,
+}  # fmt: skip
+"""What is much of each value. Damping and a sliding load's incline count in their logarithms."""
+_WITHIN = {"incline": (-1.5, 1.5), "fill": (0.01, 0.99), "drag": (0.0, 1.0), "scale": (0.5, 2.0)}
+_TRIED = {"fill": np.linspace(0.05, 0.95, 19), "damping": (0.55, 0.75, 1.3, 1.8), "phi0": np.linspace(-3, 3, 7)}
+"""Values that are tried as starts. Incline, damping and release of a late track look alike, and two fills of ice."""
+_STARTS = 6  # that are followed
+BEND = 5e-3  # how far a lens usually bends the picture of a straight board [m]
+LAW_ERROR = 0.1  # relative error of a liquid's damping law itself: of W^1.5 and its polynomial
+_TOLERANCE = 1e-5  # of the simulated angles [rad]: 0.3 micrometres of the way
+_NODES = 0.25  # time between the nodes of a motion's spline over sqrt(a/g): its error is below 1e-6 radii
+_MIDDLE, _STEP = 1e3, 1e-3  # the solver's variables at the guess, and the differences for their derivatives
+_LEAST_NOISE = 1e-6  # of a track without any [m or rad]
+_FAR = 6.0  # noises from the motion from which on a point is left out
+_AS_GOOD = 9.0  # sum of squares by which another minimum may be worse to be told: three standard errors
+_SLOW = 16, 8, 4, 2  # slow waves in which what is left is looked for: the slowest sixteenth of all, and so on
+_DOUBTED = 1e-3  # chance that noise leaves what was left from which on the model is said to be wrong
+_UNKNOWN = 0.3  # part of a value, over its size, from which on it is named in what the track does not tell
+_PULLED = 3.0  # errors from the known value from which on that is told
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,12 +61,10 @@ class Fit:
     track: Track
     scene: Scene
     """The scene as fitted; the rolling resistance is in its incline, which is less by it."""
-    phi0: float
-    """Angle at which the load was let go [rad]."""
     values: dict[str, float]
-    """The fitted values: of the scene, "damping" as a factor on its own law; "place" and "released", where the can was
-    [m] and when it was let go [s], in the track's own counting; "bend" of its middle [m]; and if the roll was tracked,
-    "scale", by how much the track is too long, and "turned", the roll at first [rad]."""
+    """Those of the scene, "damping" as a factor on its own law; "place" and "released", where the can was [m] and when
+    it was let go [s], as the track counts; "bend" of its middle [m]; with a tracked roll the "scale", by which the
+    track is too long, and the roll at first, "turned" [rad]."""
     errors: dict[str, float]
     """The standard errors of the values, if the model is right."""
     correlation: np.ndarray
@@ -70,24 +81,21 @@ class Fit:
     def lines(self) -> list[str]:
         """Return each value of the scene with its error in words, angles in degrees."""
         told = []
+        words = {"incline": "incline, less rolling resistance", "damping": "damping over its law"}
         for name in (*FREE, "phi0", "scale"):
             if name in self.values:
-                value, error, unit = self.values[name], self.errors[name], ""
-                if name in ("incline", "phi0"):
-                    value, error, unit = math.degrees(value), math.degrees(error), "°"
-                digits = max(0, 1 - math.floor(math.log10(error))) if 0 < error < math.inf else 3
-                words = {"incline": "incline, less rolling resistance", "damping": "damping over its law"}.get(
-                    name, name
-                )
+                scale, unit = (180 / math.pi, "°") if name in ("incline", "phi0") else (1.0, "")
+                value, error = scale * self.values[name], scale * self.errors[name]
+                digits = max(0, 1 - math.floor(math.log10(error)))
                 law = f", and ± {LAW_ERROR * value:.2g} of the law itself" if name == "damping" else ""
-                told.append(f"{words}: {value:.{digits}f}{unit} ± {error:.{digits}f}{unit}{law}")
+                told.append(f"{words.get(name, name)}: {value:.{digits}f}{unit} ± {error:.{digits}f}{unit}{law}")
         return told
 
     @property
     def title(self) -> str:
         """Return what was fitted to what, in a line."""
         noise = ", ".join(
-            f"{1e3 * self.noise[name]:.2g} m{unit} ({name})" for name, unit in _NOISES if name in self.noise
+            f"{1e3 * noise:.2g} {'mm' if name == 'along' else 'mrad'} ({name})" for name, noise in self.noise.items()
         )
         return f"{in_words(self.scene)}; {len(self.track.time)} points with a noise of {noise}"
 
@@ -105,20 +113,19 @@ class Fit:
 
         time, released = self.track.time, self.values["released"]
         figure = plt.figure(figsize=(8, 7.5), layout="constrained")
-        points: dict[str, object] = {"marker": ".", "markersize": 3, "linestyle": "", "color": COLOURS[1]}
+        points: dict[str, Any] = {"marker": ".", "markersize": 3, "linestyle": "", "color": COLOURS[1]}
         with mpl.rc_context(STYLE):
             panels = tuple(figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2)))
             panels[0].plot(time, self.track.along, label="track", **points)
             panels[0].plot(time, self.model["along"], label="model", **SIMULATED)
+            panels[0].legend()
             panels[1].plot(time, 1e3 * (self.track.along - self.model["along"]), **points)
-            panels[2].plot(np.append(time[0], released + self.run.time), np.append(0.0, self.run.u_dot), **SIMULATED)
             panels[1].axhline(0, **REFERENCE)
-            for axes in panels:
-                axes.axvline(released, **REFERENCE)
+            panels[2].plot(np.append(time[0], released + self.run.time), np.append(0.0, self.run.u_dot), **SIMULATED)
             for axes, told in zip(panels, ("along [m]", "track − model [mm]", "speed [m/s]"), strict=True):
+                axes.axvline(released, **REFERENCE)
                 axes.set_ylabel(told)
             panels[2].set(xlabel="time [s]", xlim=(time[0], time[-1]))
-            panels[0].legend()
             figure.suptitle("\n".join(self.lines()), fontsize=STYLE["axes.labelsize"], x=0.02, ha="left")
         return panels
 
@@ -163,153 +170,234 @@ def fit(
       ParameterError: if an argument is not allowed, or the scene has not what is sought.
       MjbeerError: if no motion of such a scene is like the track.
     """
-    require.instance("track", track, Track)
-    require.instance("scene", scene, Scene)
     console = terminal.STDERR if require.boolean("progress", progress) else None
-    with warnings.catch_warnings(action="ignore"):  # they are about guesses, and the fit has those of its own run
-        names, priors = _names(track, scene, free, {} if known is None else known, phi0, bend)
-        problem = Problem(track, scene, names, priors, phi0)
-        guesses = {"incline": scene.incline, "fill": scene.load.fill or 0.5, "drag": scene.drag, "scale": 1.0}
-        guess = {name: guesses.get(name, 0.0) for name in names} | {name: priors[name][0] for name in priors}
-        begins = _begins(scene, guess, priors)
-        with terminal.progress_bar(console, len(begins) + _STARTS) as step:
-            minima = _minima(problem, begins, step)
-        best = min(_squares(each) for each in minima)
-        alike = [each for each in minima if _squares(each) < best + _AS_GOOD]
-        # Of minima that the track does not tell apart, the one that is nearest to the given scene.
-        start, own = np.array([*guess.values()]) / problem.sizes, names.index("place")
-        found = min(alike, key=lambda each: float(np.abs(each.x - start)[:own].sum()))
-        return _fit(problem, found, alike)
-
-
-def _begins(scene: Scene, guess: dict[str, float], known: Mapping[str, object]) -> list[dict[str, float]]:
-    """Return the values from which it is looked for starts."""
-    frozen, tried = scene.attachment == "frozen", {name: [value] for name, value in guess.items()}
-    fine = frozen and "phi0" not in tried  # the swings of ice are to be in phase with the track's
-    if "fill" in tried and "fill" not in known:
-        tried["fill"] += np.linspace(0.05, 0.95, 19 if fine else 6).tolist()
-    if "damping" in tried and "damping" not in known:  # a late track: incline, damping and release look alike
-        tried["damping"] += [-0.6, -0.3, 0.3, 0.6]
-    if "phi0" in tried:
-        tried["phi0"] = np.linspace(-3, 3, 13).tolist()
-    if "incline" in tried and frozen:
-        tried["incline"] = [each * guess["incline"] for each in ((0.7, 0.85, 1.0, 1.2, 1.5) if fine else (0.8, 1.0))]
-    return [dict(zip(tried, each, strict=True)) for each in itertools.product(*tried.values())]
-
-
-def _minima(problem: Problem, begins: list[dict[str, float]], step: Callable[[str], None]) -> list[OptimizeResult]:
-    """Return where least squares end from the best starts."""
-    rough = []
-    for each in begins:
+    problem = _Problem(track, scene, free, {} if known is None else known, phi0, bend)
+    # What is warned of is about guesses; the fitted run has its own.
+    with warnings.catch_warnings(action="ignore"), terminal.progress_bar(console, 1 + _STARTS) as step:
         step("looking for starts")
-        rough.append(problem.begin(each))
-    rough = sorted((each for each in rough if each[0] < math.inf), key=lambda start: start[0])
-    # The best start of each fill, and then others: where the fill is free there are several minima.
-    firsts = {values.get("fill"): (left, values) for left, values in reversed(rough)}
-    chosen = sorted(firsts.values(), key=lambda start: start[0])
-    minima = []
-    for left, values in (chosen + [start for start in rough[:_STARTS] if start not in chosen])[:_STARTS]:
-        step("fitting")
-        with contextlib.suppress(MjbeerError):
-            minima.append(problem.solve(values, left))
-    if not minima:
-        raise MjbeerError(f"no motion of such a scene is like the track, got {problem.scene!r}")
-    return minima
+        rough = sorted(map(problem.suit, problem.tried), key=itemgetter("left"), reverse=True)
+        best = {(values.get("fill"), values.get("damping")): values for values in rough}
+        minima: list[OptimizeResult] = []
+        for values in sorted(best.values(), key=itemgetter("left"))[:_STARTS]:
+            step("fitting")
+            minima += problem.solve(values)
+        if not minima:
+            raise MjbeerError(f"no motion of such a scene is like the track, got {scene!r}")
+        return problem.result(minima)
 
 
-def _names(
-    track: Track,
-    scene: Scene,
-    free: Collection[str],
-    known: Mapping[str, tuple[float, float]],
-    phi0: float | str,
-    bend: float | None,
-) -> tuple[list[str], dict[str, tuple[float, float]]]:
-    """Return the names of what is sought, and what is known of it as the solver counts, after checks."""
-    if not isinstance(free, (str, list, tuple, set)):
-        raise ParameterError(f"free must be names, of {', '.join(FREE)}, got {require.format_value(free)}")
-    free = {require.choice("free", name, FREE) for name in ([free] if isinstance(free, str) else free)}
-    require.instance("known", known, dict)
-    names = [name for name in FREE if name in free or name in known]
-    if not isinstance(phi0, str):
-        require.start(phi0, 0.0)
-    elif require.choice("phi0, if it is no number,", phi0, ("level", "free")) == "free":
-        names.append("phi0")
-    usual = min(BEND, float(np.ptp(track.along)) / 400)
-    bend = usual if bend is None else require.non_negative("bend", bend, "m")
-    names += ["place", "released"] + ["bend"] * (bend > 0)
-    names += ["scale"] * (track.roll is not None or "scale" in known) + ["turned"] * (track.roll is not None)
-    if scene.attachment == "sliding" and scene.incline * float(track.along[-1] - track.along[0]) < 0:
-        raise ParameterError("the can of this track rolls up the scene's incline: turn the sign of one of them")
-    if "damping" in names and not scene.damping_law:
-        raise ParameterError(f"damping is a factor on the scene's own, which has none, got {scene!r}")
-    if "drag" in names and scene.attachment == "frozen":
-        raise ParameterError(f"drag is for sliding loads only, got {scene!r}")
-    if "fill" in names and (scene.made_by is None or scene.load.fill is None):
-        raise ParameterError(f"a fill is sought of what sliding, frozen or liquid makes, got {scene!r}")
-    priors = {"bend": (0.0, bend)} if bend else {}
-    if not set(known) <= set(names):
-        raise ParameterError(f"known must be one of {', '.join(names)}, got {require.format_value(known)}")
-    for name, pair in known.items():
-        if not isinstance(pair, (tuple, list)) or len(pair) != 2:
-            raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
-        value = require.number(f"known {name}", pair[0])
-        error = require.positive(f"error of the known {name}", pair[1])
-        if name == "damping":
-            value, error = math.log(require.positive("known damping", value)), error / value
-        priors[name] = value, error
-    return names, priors
+def remade(scene: Scene, changes: Mapping[str, float]) -> Scene:
+    """Return a scene made anew with other arguments, such as a fill."""
+    if scene.made_by is None:
+        return replace(scene, **dict[str, Any](changes))
+    make, given = scene.made_by
+    return make(**{**given, **changes})
 
 
-def _squares(found: OptimizeResult) -> float:
-    """Return the sum of squares of a minimum, comparable between minima of one track."""
-    return sum(2 * len(kept) * math.log(found.noise[name]) for name, kept in found.kept.items())
+class _Problem:
+    """Least squares over simulated motions: starts, residuals, minima, and what follows from them."""
 
+    def __init__(
+        self,
+        track: Track,
+        scene: Scene,
+        free: Collection[str],
+        known: Mapping[str, tuple[float, float]],
+        phi0: float | str,
+        bend: float | None,
+    ) -> None:
+        self.track, self.scene = require.instance("track", track, Track), require.instance("scene", scene, Scene)
+        self.channels = [name for name in ("along", "roll", "phi") if getattr(track, name) is not None]
+        self.data = np.stack([getattr(track, name) for name in self.channels])
+        self.span, self.phi0, latest = float(np.ptp(track.time)), phi0, float(track.time[-1])
+        names = free if isinstance(free, (tuple, list, set)) else [free]
+        sought = {require.choice("free", name, FREE) for name in names}
+        if not set(require.instance("known", known, dict)) <= set(_SIZES):
+            raise ParameterError(f"known are values of {', '.join(_SIZES)}, got {require.format_value(known)}")
+        sought |= set(known)
+        if not isinstance(phi0, str):
+            require.start(phi0, 0.0)
+        elif require.choice("phi0, if it is no number,", phi0, ("level", "free")) == "free":
+            sought.add("phi0")
+        has = inspect.signature(scene.made_by[0] if scene.made_by else Scene).parameters
+        for name in sought & {*FREE}:
+            if not (scene.damping_law if name == "damping" else name in has):
+                raise ParameterError(f"{name} is sought, which this scene was made without: {scene!r}")
+        slides = scene.attachment == "sliding"
+        if slides and "incline" in sought and scene.incline * (track.along[-1] - track.along[0]) <= 0:
+            raise ParameterError("the can of this track does not roll down the scene's incline: turn the sign of one")
+        bend = min(BEND, float(np.ptp(track.along)) / 400) if bend is None else require.non_negative("bend", bend, "m")
+        sought |= {"place", "released", *["bend"] * (bend > 0), *["scale", "turned"] * (track.roll is not None)}
+        self.names = [name for name in _SIZES if name in sought]
+        self.own = [name for name in (*FREE, "phi0") if name in sought]
+        self.known = {"bend": (0.0, bend)} if bend > 0 else {}
+        for name, pair in known.items():
+            value, *error = require.samples(f"known {name}", pair).tolist()
+            if len(error) != 1 or not error[0] > 0:
+                raise ParameterError(f"known {name} must be a value and its error, got {require.format_value(pair)}")
+            self.known[name] = value, error[0]
+        guess = {"incline": scene.incline, "fill": scene.load.fill, "drag": scene.drag, "damping": 1.0, "scale": 1.0}
+        guess |= {"turned": track.roll[0] if track.roll is not None else 0.0}
+        guess |= {name: value for name, (value, _) in self.known.items()}
+        self.guess = {name: float(guess.get(name) or 0.0) for name in self.names}
+        self.logarithmic = {"damping", *["incline"] * slides} & sought
+        within = _WITHIN | {"released": (latest - 4 * self.span, latest - 0.1 * self.span)}
+        within |= {name: (0.01 * self.guess[name], 100 * self.guess[name]) for name in self.logarithmic}
+        self.within = self.solved({name: within.get(name, (-math.inf, math.inf)) for name in self.names}).T
+        tried = {name: [value, *([] if name in known else _TRIED.get(name, []))] for name, value in self.guess.items()}
+        if "incline" in sought - {*known} and not slides:  # its swings are to be in phase with the track's
+            factors = (0.8, 1.0) if "phi0" in sought else (0.7, 0.85, 1.0, 1.2, 1.5)
+            tried["incline"] = [scene.incline * factor for factor in factors]
+        self.tried = [dict(zip(tried, each, strict=True)) for each in itertools.product(*tried.values())]
+        self.spline = functools.lru_cache(100)(self._spline)
 
-def _fit(problem: Problem, found: OptimizeResult, alike: list[OptimizeResult]) -> Fit:
-    """Return the fit of a minimum, with what there is to be warned of; `alike` are minima as good."""
-    problem.noise, problem.kept = found.noise, found.kept
-    values, names, own = problem.values(found.x), problem.names, problem.names.index("place")
-    run = problem.simulate(values, float(problem.track.time[-1]) - values["released"])
-    _, sizes, ways = np.linalg.svd(found.jac, full_matrices=False)
-    spread = 1 / np.maximum(sizes, 1e-6)
-    covariance = (ways.T * spread**2) @ ways
-    errors = np.sqrt(np.diag(covariance))
-    told = []
-    if (chance := problem.chance(found)) < _DOUBTED:
-        told.append(
-            "the model is wrong, or the track: what is left is as smooth as noise is once in "
-            f"{1 / max(chance, 1e-99):.0e} tracks, and the errors do not hold"
+    def solved(self, values: Mapping[str, Any]) -> np.ndarray:
+        """Return the solver's variables, or pairs of them: `_MIDDLE` is the guess, and 1 more is much."""
+        found = []
+        for name, guess in self.guess.items():
+            value = np.array(values[name])
+            off = np.log(value / guess) * abs(guess) if name in self.logarithmic else value - guess
+            found.append(_MIDDLE + off / _SIZES[name])
+        return np.array(found)
+
+    def values(self, z: np.ndarray) -> dict[str, float]:
+        """Return the values of the solver's variables."""
+        found = {}
+        for name, each in zip(self.names, z.tolist(), strict=True):
+            guess, off = self.guess[name], _SIZES[name] * (each - _MIDDLE)
+            found[name] = guess * math.exp(off / abs(guess)) if name in self.logarithmic else guess + off
+        return found
+
+    def simulate(self, values: Mapping[str, float], duration: float) -> Run:
+        """Return the motion since the can was let go."""
+        scene = remade(self.scene, {name: values[name] for name in ("incline", "fill", "drag") if name in values})
+        if "damping" in values:
+            law, factor = scene.damping_law, values["damping"]
+            linear, quadratic, cubic = (factor * each for each in law.coefficients)
+            scene = replace(scene, damping=replace(law, linear=linear, quadratic=quadratic, cubic=cubic))
+        phi0 = values.get("phi0", -scene.incline if isinstance(self.phi0, str) else self.phi0)
+        step = _NODES * math.sqrt(scene.can.radius / max(scene.gravity, 1.0))
+        nodes = np.linspace(0, duration, min(5000, max(50, math.ceil(duration / step))))
+        return simulate(scene, duration, phi0, tolerance=_TOLERANCE, times=nodes)
+
+    def motion(self, values: Mapping[str, float], since: np.ndarray) -> np.ndarray:
+        """Return distance [m] and phi [rad] at times since the can was let go [s], of shape (2, ...)."""
+        # As long as an eighth of the track's time more or less needs, so that many a release has the same spline.
+        duration = self.span / 8 * max(1, math.ceil(8 * float(since.max()) / self.span))
+        own = tuple((name, values[name]) for name in self.own)
+        return np.moveaxis(self.spline(own, duration)(np.maximum(since, 0.0)), -1, 0)
+
+    def _spline(self, own: tuple[tuple[str, float], ...], duration: float) -> CubicHermiteSpline:
+        run = self.simulate(dict(own), duration)
+        states, rates = np.stack([run.distance, run.phi], axis=1), np.stack([run.u_dot, run.phi_dot], axis=1)
+        return CubicHermiteSpline(run.time, states, rates)
+
+    def model(self, values: Mapping[str, float]) -> np.ndarray:
+        """Return what the track would be without noise, of shape (channels, points)."""
+        distance, phi = self.motion(values, self.track.time - values["released"])
+        along = values["place"] + distance
+        # A parabola that is 1 in the middle. From measured places it would share their noise, and the bend be biased.
+        share = (along - self.track.along.min()) / np.ptp(self.track.along)
+        bent = values.get("bend", 0.0) * 4 * share * (1 - share)
+        roll = values.get("turned", 0.0) + distance / self.scene.can.radius
+        found = {"along": values.get("scale", 1.0) * along + bent, "roll": roll, "phi": phi}
+        return np.stack([found[name] for name in self.channels])
+
+    def residuals(self, z: np.ndarray, noise: np.ndarray, kept: np.ndarray) -> np.ndarray:
+        """Return the distances of track and known values, infinite where there is no such motion: it steps back."""
+        values = self.values(z)
+        try:
+            off = kept * (self.model(values) - self.data) / noise
+        except MjbeerError:
+            off = np.full(self.data.shape, math.inf)
+        return np.append(off, [(values[name] - value) / error for name, (value, error) in self.known.items()])
+
+    def suit(self, values: dict[str, float]) -> dict[str, float]:
+        """Return values with the place and the release that suit the track best, and what is "left" with them [m].
+
+        A sliding load's incline is made to suit, too, as its way is nearly proportional to it.
+        """
+        time, along = (each[:: max(1, len(each) // 100)] for each in (self.track.time, self.track.along))
+        released = time[0] + self.span * np.linspace(-1, 0.8, 91)
+        try:
+            ways, _ = self.motion(values, time - released[:, np.newaxis])
+        except MjbeerError:
+            return values | {"left": math.inf}
+        within = (0.5, 2.0) if "incline" in self.own and self.scene.attachment == "sliding" else (1.0, 1.0)
+        beside = ways - ways.mean(axis=1, keepdims=True)
+        stretch = np.clip(beside @ along / np.maximum((beside**2).sum(axis=1), 1e-30), *within)
+        off = along - stretch[:, np.newaxis] * ways
+        at = int(np.argmin(np.std(off, axis=1)))
+        suited = {"released": released[at], "place": np.mean(off[at]), "left": np.std(off[at])}
+        return values | suited | {"incline": values.get("incline", 0.0) * stretch[at]}
+
+    def solve(self, values: dict[str, float]) -> list[OptimizeResult]:
+        """Return the minimum that is found from a start, or none if there is no such motion."""
+        z = np.clip(self.solved(values), *self.within)
+        radius, kept = self.scene.can.radius, np.ones(self.data.shape, bool)
+        noise = np.array([[values["left"] / (1 if name == "along" else radius)] for name in self.channels])
+        for _ in range(3):  # the noise and the points that are kept settle on the way
+            try:
+                found = least_squares(
+                    self.residuals, z, bounds=self.within, ftol=1e-6, xtol=1e-9, diff_step=_STEP / _MIDDLE,
+                    max_nfev=30, args=(noise, kept),
+                )  # fmt: skip
+            except ValueError:  # of infinite residuals
+                return []
+            found.noise, found.kept, z = noise, kept, found.x
+            off = self.model(self.values(z)) - self.data
+            kept = np.abs(off) <= _FAR * 1.4826 * np.median(np.abs(off), axis=1, keepdims=True)
+            spare = np.maximum(1.0, kept.sum(axis=1) - len(z) / len(off))
+            noise = np.sqrt(_LEAST_NOISE**2 + ((kept * off) ** 2).sum(axis=1) / spare)[:, np.newaxis]
+        found.squares = 2 * self.data.shape[1] * np.log(noise).sum() + (found.fun[self.data.size :] ** 2).sum()
+        return [found]
+
+    def result(self, minima: list[OptimizeResult]) -> Fit:
+        """Return the fit of the best minimum, with what there is to be warned of."""
+        least, own = min(each.squares for each in minima), slice(len(self.own))
+        alike = [each for each in minima if each.squares < least + _AS_GOOD]
+        # Of minima that the track does not tell apart, the one that is nearest to the given scene.
+        found = min(alike, key=lambda each: np.abs(each.x - _MIDDLE)[own].sum())
+        values = self.values(found.x)
+        run = self.simulate(values, float(self.track.time[-1]) - values["released"])
+        _, sizes, ways = np.linalg.svd(found.jac, full_matrices=False)
+        spread = 1 / np.maximum(sizes, 1e-6)
+        covariance = (ways.T * spread**2) @ ways
+        deviations = np.sqrt(np.diag(covariance))
+        told = []
+        # F tests: of white noise, slow waves have no more than the others.
+        power = dct(found.fun[: len(self.track.time)][found.kept[0]], norm="ortho") ** 2 + _LEAST_NOISE**2
+        slow = [math.ceil(len(power) / part) for part in _SLOW]
+        chances = [fdtrc(n, len(power) - n, power[:n].mean() / power[n:].mean()) for n in slow]
+        if (chance := len(chances) * min(chances)) < _DOUBTED:
+            once = f"{1 / max(chance, 1e-99):.0e} tracks"
+            told.append(f"the model is wrong, or the track: noise is as smooth as what is left once in {once}")
+        for name, (value, error) in self.known.items():
+            if (off := abs(values[name] - value) / error) > _PULLED:
+                told.append(f"the model is wrong, or what was known: {name} is {off:.1f} of its errors off")
+        for way, wide in zip(ways, spread, strict=True):
+            if wide > 1:  # the track says less than the sizes
+                least = min(_UNKNOWN, wide * np.abs(way).max())
+                parts = [name for name, part in zip(self.names, way, strict=True) if abs(part) * wide >= least]
+                told.append(f"this track does not tell {' from '.join(parts)}")
+        for other in alike:
+            if self.own and (np.abs(other.x - found.x) / deviations)[own].max() > 2 * _PULLED:
+                there = self.values(other.x)
+                there = ", ".join(f"{name} = {there[name]:.4g}" for name in self.own)
+                told.append(f"another motion is as near to the track: {there}")
+        if far := int((~found.kept).sum()):
+            told.append(f"{far} points are far from all others, and were left out")
+        errors = {name: _SIZES[name] * each for name, each in zip(self.names, deviations.tolist(), strict=True)}
+        errors |= {name: errors[name] * values[name] / self.guess[name] for name in self.logarithmic}
+        model = dict(zip(self.channels, self.model(values), strict=True))
+        return Fit(
+            self.track,
+            run.scene,
+            values,
+            errors,
+            covariance / np.outer(deviations, deviations),
+            dict(zip(self.channels, found.noise[:, 0].tolist(), strict=True)),
+            (*dict.fromkeys(told), *run.warnings),
+            run,
+            model,
         )
-    for name, (value, error) in problem.known.items():
-        if (off := abs(values[name] - value) / error) > _PULLED:
-            resists = "; rolling resistance lets it look less" if name == "incline" and values[name] < value else ""
-            told.append(f"the {name} that was known is {off:.1f} of its errors off{resists}")
-    for way, wide in zip(ways, spread, strict=True):  # directions in which the track says less than the sizes
-        parts = [name for name, part in zip(names, way, strict=True) if abs(part) * wide > _UNKNOWN]
-        if wide > 1 and len(parts) > 1:
-            told.append(f"this track does not tell {' from '.join(parts)}")
-        elif wide > 1:
-            told.append(f"this track does not tell {names[int(np.argmax(np.abs(way)))]}")
-    for other in alike:
-        if own and (np.abs(other.x - found.x) / errors)[:own].max() > 2 * _PULLED:
-            there = problem.values(other.x) | {"damping": math.exp(problem.values(other.x).get("damping", 0.0))}
-            there = ", ".join(f"{name} = {there[name]:.4g}" for name in names[:own])
-            told.append(f"another motion is as near to the track: {there}")
-    if far := sum(int((~kept).sum()) for kept in problem.kept.values()):
-        told.append(f"{far} points are far from all others, and were left out")
-    model, factors = problem.model(values), dict.fromkeys(names, 1.0)
-    if "damping" in values:
-        values["damping"] = factors["damping"] = math.exp(values["damping"])
-    return Fit(
-        problem.track,
-        run.scene,
-        run.phi0,
-        values,
-        {name: factors[name] * error for name, error in zip(names, (errors * problem.sizes).tolist(), strict=True)},
-        covariance / np.outer(errors, errors),
-        dict(problem.noise),
-        (*dict.fromkeys(told), *run.warnings),
-        run,
-        model,
-    )

@@ -12,9 +12,8 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 
-_LENGTHS, _DEGREE = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, math.pi / 180
-_ANGLES = {"rad": 1.0, "deg": _DEGREE, "°": _DEGREE, "degrees": _DEGREE}
-_COLUMNS: dict[str, tuple[dict[str, float], str]] = {
+_LENGTHS, _ANGLES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}, {"rad": 1.0, "deg": math.pi / 180, "°": math.pi / 180}
+_COLUMNS = {
     "time": ({"s": 1.0, "ms": 1e-3, "min": 60.0}, "t|time"),
     "frame": ({}, "frames?|steps?"),
     "x": (_LENGTHS, "x|along|distance|position|position x|x position"),
@@ -23,13 +22,12 @@ _COLUMNS: dict[str, tuple[dict[str, float], str]] = {
     "phi": (_ANGLES, "phi|φ"),
 }
 """What is read: the units that it may have, and its usual headings."""
-_AROUND = re.compile(r"^(latest|run ?#?\d+)\s*[:|]|run #?\d+$|[\[(].*?[\])]")
-"""What stands around the name in a heading: which run it was, and the unit."""
+_TITLE = re.compile(r"(?:latest *:)?(?:run *#?\d+ *[:|])?([^\[(]*)(?:[\[(](.*?)[\])])?(?: *run *#?\d+)?")
+"""A heading: the name, between them which run it was, and the unit."""
 _CROOKED = 0.02
 """Largest distance of places from a straight line (rms), over their range: a mark on the rim, whose path is a cycloid,
 has more than that within a metre."""
-_LEAST = 12
-"""Least number of points: there are half as many unknowns."""
+_LEAST = 12  # points: there are half as many unknowns
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +49,9 @@ class Track:
     """Angle of the load to the incline [rad]."""
 
     def __post_init__(self) -> None:
-        for name in ("time", "along", "roll", "phi"):
-            if name in ("time", "along") or getattr(self, name) is not None:
-                require.set_fields(self, **{name: require.samples(name, getattr(self, name))})
+        for name, value in tuple(vars(self).items()):
+            if name in ("time", "along") or value is not None:
+                require.set_fields(self, **{name: require.samples(name, value)})
                 if (count := len(getattr(self, name))) != len(self.time):
                     raise ParameterError(f"{name} must have as many entries as time, {len(self.time)}, got {count}")
         if len(self.time) < _LEAST or (np.diff(self.time) <= 0).any() or not np.ptp(self.along) > 0:
@@ -78,32 +76,30 @@ def read_track(
       ParameterError: if it cannot be read so; the message has line and column.
     """
     source, columns = require.path(path), require.instance("columns", {} if columns is None else columns, dict)
-    cells, comma = _cells(source)
-    numbers = {line: [_number(cell, comma) for cell in row] for line, row in cells.items()}
-    first = next((line for line, row in numbers.items() if sum(map(math.isfinite, row)) > 1), 0)
+    cells = _cells(source)
+    first = next((line for line, row in cells.items() if sum(map(math.isfinite, map(_number, row))) > 1), 0)
     if not (above := [line for line in cells if line < first]):
         raise ParameterError(f"{source} is no table: there must be a heading above two columns of numbers or more")
-    used = _used(source, above[-1], cells[above[-1]], columns)
+    used = _used(f"{source}, line {above[-1]}", cells[above[-1]], columns)
     if "frame" in used:
-        used["frame"] = used["frame"][0], 1 / require.positive("rate of the frames", rate, "1/s")
-    rows: dict[int, list[float]] = {}
+        used["time"] = used.pop("frame")[0], 1 / require.positive("rate of the frames", rate, "1/s")
+    data: dict[str, list[float]] = {name: [] for name in used}
     for line, row in cells.items():
         if line >= first and all(at < len(row) and row[at] for at, _ in used.values()):
-            for at, _ in used.values():
-                if not math.isfinite(numbers[line][at]):
-                    raise ParameterError(f"{source}, line {line}, column {at + 1}: {row[at]!r} is no number")
-            rows[line] = [numbers[line][at] * scale for at, scale in used.values()]
-    data = dict(zip(used, np.array([*rows.values()]).reshape(-1, len(used)).T, strict=True))
-    clock = "frame" if "frame" in data else "time"
-    if len(back := np.flatnonzero(np.diff(data[clock]) <= 0)):
-        at = f"line {[*rows][back[0] + 1]}, column {used[clock][0] + 1}"
-        raise ParameterError(f"{source}, {at}: this time is not later than the one before")
-    along = _straight(source, data["x"], data["y"]) if "y" in data else data["x"]
-    return Track(data[clock], along, data.get("roll"), data.get("phi"))
+            for name, (at, scale) in used.items():
+                place, value = f"{source}, line {line}, column {at + 1}", _number(row[at])
+                if not math.isfinite(value):
+                    raise ParameterError(f"{place}: {row[at]!r} is no number")
+                if name == "time" and data[name] and not value * scale > data[name][-1]:
+                    raise ParameterError(f"{place}: this time is not later than the one before")
+                data[name].append(value * scale)
+    arrays = {name: np.array(values) for name, values in data.items()}
+    along = _straight(source, arrays["x"], arrays["y"]) if "y" in arrays else arrays["x"]
+    return Track(arrays["time"], along, arrays.get("roll"), arrays.get("phi"))
 
 
-def _cells(source: pathlib.Path) -> tuple[dict[int, list[str]], bool]:
-    """Return the cells of the lines that are not empty, by their numbers, and whether commas stand between them."""
+def _cells(source: pathlib.Path) -> dict[int, list[str]]:
+    """Return the cells of the lines that are not empty, by their numbers, with decimal points."""
     try:
         raw = source.read_bytes()
     except OSError as error:
@@ -111,43 +107,41 @@ def _cells(source: pathlib.Path) -> tuple[dict[int, list[str]], bool]:
     text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig", errors="replace")
     lines = {number: line for number, line in enumerate(text.splitlines(), start=1) if line.strip(" \t;,")}
     mark = next((each for each in "\t;," if 2 * sum(each in line for line in lines.values()) > len(lines)), None)
-    return {number: [cell.strip(' "') for cell in line.split(mark)] for number, line in lines.items()}, mark == ","
+    if mark != ",":  # a comma that does not stand between cells is a decimal one
+        lines = {number: line.replace(",", ".") for number, line in lines.items()}
+    return {number: [cell.strip(' "') for cell in line.split(mark)] for number, line in lines.items()}
 
 
-def _number(cell: str, comma: bool) -> float:
-    """Return the number in a cell, NaN if there is none; a comma that does not stand between cells is a decimal one."""
+def _number(cell: str) -> float:
+    """Return the number in a cell, NaN if there is none."""
     try:
-        return float(cell if comma else cell.replace(",", "."))
+        return float(cell)
     except ValueError:
         return math.nan
 
 
-def _used(
-    source: pathlib.Path, line: int, titles: list[str], columns: Mapping[str, str | int]
-) -> dict[str, tuple[int, float]]:
-    """Return which column has what, and its unit; `titles` are the headings in a line."""
-    names = [_AROUND.sub("", _AROUND.sub("", title.lower()).strip()).strip() for title in titles]
+def _used(place: str, titles: list[str], columns: Mapping[str, str | int]) -> dict[str, tuple[int, float]]:
+    """Return which column has what, and its unit; `titles` are the headings at a place of the file."""
     if not set(columns) <= set(_COLUMNS):
         raise ParameterError(f"columns are those of {', '.join(_COLUMNS)}, got {require.format_value(columns)}")
-    used = {}
+    parts, used = [_TITLE.fullmatch(title.lower()) for title in titles], {}
     for name, (units, usual) in _COLUMNS.items():
-        asked = str(columns.get(name, ""))
-        if asked:
+        if asked := str(columns.get(name, "")):
             meant = [at for at, title in enumerate(titles) if asked in (title, str(at + 1))]
         else:
-            meant = [at for at in range(len(titles)) if re.fullmatch(usual, names[at])]
+            meant = [at for at, part in enumerate(parts) if part and re.fullmatch(usual, part[1].strip())]
         if len(meant) > 1 or (asked and not meant):
             found = f"{len(meant) or 'no'} columns may be {name}"
-            raise ParameterError(f"{source}, line {line}: {found}; say which by its number from 1, of {titles}")
+            raise ParameterError(f"{place}: {found}; say which by its number from 1, of {titles}")
         if meant and not (name == "frame" and "time" in used):
-            title = titles[meant[0]]
-            unit = re.search(r"[\[(]\s*(.*?)\s*[\])]", title)
-            if unit and unit[1] and unit[1].lower() not in units:
-                place = f"{source}, line {line}, column {meant[0] + 1}"
-                raise ParameterError(f"{place}: the unit of {name} is one of {', '.join(units)}, got {title!r}")
-            used[name] = meant[0], units[unit[1].lower()] if unit and unit[1] else 1.0
-    if "x" not in used or not ("time" in used or "frame" in used):
-        raise ParameterError(f"{source}, line {line}: time and x are needed; say which columns they are, of {titles}")
+            part = parts[meant[0]]
+            unit = part[2].strip() if part and part[2] else ""
+            if unit and unit not in units:
+                allowed = f"the unit of {name} is one of {', '.join(units)}, got {titles[meant[0]]!r}"
+                raise ParameterError(f"{place}, column {meant[0] + 1}: {allowed}")
+            used[name] = meant[0], units.get(unit, 1.0)
+    if "x" not in used or not used.keys() & {"time", "frame"}:
+        raise ParameterError(f"{place}: time and x are needed; say which columns they are, of {titles}")
     return used
 
 

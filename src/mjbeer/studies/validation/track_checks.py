@@ -12,8 +12,7 @@ from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import liquid, liquid_in
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.scenes import frozen, sliding
-from mjbeer.tracks.fit import BEND, Fit, fit
-from mjbeer.tracks.problem import remade
+from mjbeer.tracks.fit import BEND, Fit, fit, remade
 from mjbeer.tracks.track import Track
 
 _METAL, _GENTLE = Can.sheet_metal(), math.radians(2)
