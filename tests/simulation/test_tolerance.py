@@ -11,7 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Scene, exact, frozen, liquid, pendulum, simulate, sliding
+from mjbeer import Can, Load, Scene, exact, frozen, liquid, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, ToleranceError
 from mjbeer.integrators.dop853 import Dop853
 from mjbeer.integrators.dynamics import Dynamics
@@ -79,13 +79,17 @@ def test_the_estimate_bounds_the_true_error(scene: Scene, tolerance: float) -> N
             7.881588781407539e-10,
             267,
         ),
+        (
+            Scene(Can(0.033, 0.1, 0.001158855505525004, 6.309968227583648e-07), Load(0.1, 0.033), 0.0),
+            *(0.3710684970435791, 2.5953634724810778e-09, 131),
+        ),
     ],
 )
 def test_a_light_wheel_keeps_to_the_tolerance_or_is_refused(
     scene: Scene, end: float, tolerance: float, samples: int
 ) -> None:
     """Its load passes the lowest point in a moment, and there two runs of Gauss-Jackson were 10 and 5 times as far off
-    as they should have been."""
+    as they should have been, and those of DOP853, with the nudge of any wheel, 1.6 times."""
     with contextlib.suppress(ToleranceError):
         run = simulate(scene, end, 3.1405926535897932, tolerance=tolerance, times=np.linspace(0, end, samples))
         assert_kept(run, tolerance)
