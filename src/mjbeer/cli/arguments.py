@@ -149,7 +149,7 @@ OPTIONS = {
     ),
     "stability": (
         Option("--output", f"{_FOLDER}; an interrupted study in it is continued", "stability", Path),
-        Option("--quick", "fewer integrators, coarser maps, 250 random runs, not 3000; two minutes", False),
+        Option("--quick", "coarser maps, 250 random runs, not 3000; two minutes", False),
         _JSON,
     ),
     "paper": (Option("--output", _FOLDER, "paper", Path), Option("--films", "also draw films of the motions", False)),

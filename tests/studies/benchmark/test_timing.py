@@ -19,13 +19,10 @@ pytestmark = pytest.mark.slow
 STEPS = tuple(16e-3 / 2**k for k in range(6))
 LARGE = tuple(64e-3 / 2**k for k in range(7))
 LADDERS = {
-    Curve("reduced", "Euler"): STEPS,
     Curve("reduced", "RK4"): STEPS,
     Curve("reduced", "DOP853"): LARGE,
     Curve("reduced", "mjbeer", "tolerance"): (1e-6, 1e-9),
-    Curve("equality", "RK4"): STEPS,
     Curve("contact", "DOP853"): LARGE[:5],
-    Curve("equality, defaults", "Euler"): (2e-3,),
     Curve("contact, defaults", "Euler"): (2e-3,),
     Curve("SciPy DOP853", "", "tolerance"): (1e-3, 1e-6),
     Curve("mjbeer.simulate", "", "tolerance"): (1e-6,),

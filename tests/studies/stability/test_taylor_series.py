@@ -1,7 +1,5 @@
 """The reference against Lagrange's equations in extended precision, and against what a motion conserves."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -56,12 +54,6 @@ def test_energy_is_kept_over_a_hundred_swings() -> None:
     found = series(scene, np.linspace(0, 100 * scene.period(1.0), 1001), 1.0)
     total, depth = kinetic_energy(scene, found) + potential_energy(scene, found), scene.oscillator.depth
     assert np.abs(total - total[0]).max() / depth < 2e-14
-
-
-def test_without_gravity_and_rate_nothing_moves() -> None:
-    found = series(sliding(gravity=0.0), np.array([0.0, 1e6]), 1.0)
-    assert found.phi.tolist() == [1.0, 1.0]
-    assert found.u.tolist() == [sliding().load.offset * math.sin(1.0)] * 2
 
 
 def test_a_motion_that_is_too_long_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

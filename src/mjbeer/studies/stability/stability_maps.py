@@ -5,7 +5,6 @@ slides in a can of sheet metal is the stiffer, the stronger it is damped. Both m
 with the same small swing and are judged by the same rule.
 """
 
-import datetime
 import json
 import math
 import pathlib
@@ -32,7 +31,7 @@ from mjbeer.output.terminal import Table
 from mjbeer.simulation.fixed_step import states_after
 from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
-from mjbeer.studies.study import FAILED, Study, document
+from mjbeer.studies.study import FAILED
 from mjbeer.theory.can import Can
 from mjbeer.theory.scenes import frozen, sliding
 
@@ -41,7 +40,7 @@ MAPS = "maps"
 SHIPPED = pathlib.Path(__file__).with_name("maps.json")
 """The maps that come with mjbeer; `mjbeer stability` wrote them."""
 CELLS, FEW_CELLS = 20, 8
-"""Number of timesteps and of values in a map, and in one of a sample."""
+"""Number of timesteps and of values in a map, and in one of a quick study."""
 _AGREEMENT = 0.05
 """Largest relative difference at which a measured border agrees with the predicted one."""
 _RESOLUTION = 1.01
@@ -66,8 +65,6 @@ PLANS: tuple[tuple[str, Integrator], ...] = (
 )
 """All maps: the cause of stiffness, which is an equality whose solref has a time constant ("solref") or a stiffness
 ("direct"), "gravity" without a constraint, or the "damping" between can and load; and the integrator."""
-_SAMPLE = ("Euler", "discrete", "RK4")
-"""The integrators of which maps are made, and coarsely, unless all are asked for."""
 SHADES = {"exploded": "#E8A27C", "stable, inaccurate": "#BFDFF2", "stable and accurate": COLOURS[0]}
 """The outcomes, and their colours, which differ in hue and in brightness."""
 _THEORY: dict[str, Any] = {"color": "black", "linewidth": 1.6}
@@ -187,14 +184,11 @@ class Swings:
         return ACCURATE if np.hypot(phi, rate).max() < ACCURACY else INACCURATE
 
 
-def checks(sample: bool = False) -> list[Check]:
-    """Return a check a map; a `sample` has fewer and coarser ones."""
-    cells, reason = FEW_CELLS if sample else CELLS, "bisection to 1 %, and an instability has to grow before it is seen"
-    return [
-        Check(MAPS, ", ".join(plan), partial(measure, *plan, cells), "", _AGREEMENT, "relative", reason)
-        for plan in PLANS
-        if not sample or plan[1] in _SAMPLE
-    ]
+def checks(cells: int = CELLS) -> list[Check]:
+    """Return a check a map, of so many timesteps and values."""
+    reason = "bisection to 1 %, and an instability has to grow before it is seen"
+    measures = {", ".join(plan): partial(measure, *plan, cells) for plan in PLANS}
+    return [Check(MAPS, name, of, "", _AGREEMENT, "relative", reason) for name, of in measures.items()]
 
 
 def measure(family: str, integrator: Integrator, cells: int) -> dict[str, Any]:
@@ -254,14 +248,8 @@ def table(results: Sequence[Result]) -> Table:
     return Table("Maps of timestep", ("map", *SHADES, "cells as predicted", "border off by"), lines)
 
 
-def to_json(study: Study, date: datetime.date) -> str:
-    """Return the maps of a study as a JSON document, a line each, with its command, its machine and a date."""
-    maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(MAPS))
-    return document({**study.about, "date": date.isoformat()}, MAPS, maps)
-
-
 def load(path: pathlib.Path = SHIPPED) -> dict[str, Any]:
-    """Return the document in a file that `to_json` wrote."""
+    """Return the maps of a study with its command, its machine and a date, from the file that it wrote."""
     return json.loads(path.read_text(encoding="utf-8"))
 
 

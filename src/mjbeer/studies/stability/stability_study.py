@@ -51,12 +51,13 @@ share no code judge a motion without damping; damped ones, liquids and attached 
 
 
 def plan(quick: bool) -> list[Check]:
-    """Return all checks of a study; a `quick` one has a sample of the maps, coarser, and fewer random runs."""
+    """Return all checks of a study; a `quick` one has coarser maps, and fewer random runs."""
     known = [
         Check(KNOWN, each.name, partial(try_case, each), bound=0, unit="runs", reason="each ends as it must")
         for each in cases()
     ]
-    return [*stability_maps.checks(sample=quick), *known, *random_checks(FEW_RUNS if quick else RUNS)]
+    cells, runs = (stability_maps.FEW_CELLS, FEW_RUNS) if quick else (stability_maps.CELLS, RUNS)
+    return [*stability_maps.checks(cells), *known, *random_checks(runs)]
 
 
 def random_checks(runs: int, number: int = 0) -> list[Check]:
@@ -189,13 +190,14 @@ def write(study: Study, folder: pathlib.Path) -> None:
     Raises:
       OutputError: if a file cannot be written.
     """
-    maps = stability_maps.to_json(study, datetime.date.today())
-    files.write(folder / "maps.json", maps)
+    maps = ({"name": of.name, "worst": of.error, **of.values} for of in study.of(stability_maps.MAPS))
+    dated = study.about | {"date": datetime.date.today().isoformat()}
+    files.write(folder / "maps.json", studies.document(dated, stability_maps.MAPS, maps))
     files.write(folder / "totals.json", json.dumps(study.about | totals(study.results), indent=1) + "\n")
     count = len(study.failed)
     verdict = f"**{count} did not come out as they must.**" if count else "All came out as they must."
     lines = ["# mjbeer: stability", "", verdict, _READ]
-    for name, draw in stability_maps.figures(json.loads(maps)).items():
+    for name, draw in stability_maps.figures(stability_maps.load(folder / "maps.json")).items():
         draw(folder / name)
         lines += [f"![{name}]({name}.svg)", "", stability_maps.FAMILIES[name.removeprefix("stability-")].caption, ""]
     lines += [table.markdown() for table in (*tables(study), _table_of_cases(study.of(KNOWN)))]
