@@ -75,13 +75,3 @@ def test_what_is_left_out_of_an_evaluation_changes_no_bit(scene: Scene) -> None:
     # The actuator's force is added to the others in another order: one rounding of their sum.
     exactly = model.nu == 0
     assert rates[model.nv :] == pytest.approx(data.qacc, rel=0 if exactly else 1e-15, abs=0)
-
-
-def test_no_clock_is_read_while_stepping_and_it_is_put_back() -> None:
-    model, velocity = build(sliding(can=Can.sheet_metal(), damping=1e-3)), mujoco.mjtTimer.mjTIMER_VELOCITY
-    dynamics, seen = Dynamics(model), mujoco.MjData(model)
-    Dop853(model, dynamics).run(np.array([0.0, 1.0, 0.0, 0.0]), np.array([0.0, 1.0]), 0.1)
-    assert dynamics.data.timer[velocity].number > 100
-    assert dynamics.data.timer[velocity].duration == 0
-    mujoco.mj_forward(model, seen)
-    assert seen.timer[mujoco.mjtTimer.mjTIMER_FORWARD].duration > 0

@@ -88,21 +88,11 @@ def test_a_wrong_pace_changes_no_motion(scene: Scene, own: OwnTime) -> None:
     assert errors(scene, 2.0, np.array([1 / 60 / scene.oscillator.frequency()]), np.linspace(0, 1, 65), own)[0] < 2e-13
 
 
-def test_uneven_steps_are_as_long_with_a_light_wheel_as_with_a_heavy_one() -> None:
-    """In the time of the steps phi is that of a pendulum; even steps must be short where the load is fast."""
-    for wheel_mass in (1.0, 0.1, 0.02):
-        scene = pendulum(0.1, wheel_mass=wheel_mass)
-        step = np.array([0.15 / math.sqrt(scene.oscillator.depth / float(scene.oscillator.inertia(1.0)))])
-        assert errors(scene, 1.0, step, np.linspace(0, 2, 65))[0] < 1e-8
-    with pytest.raises(DivergenceError):
-        errors(scene, 1.0, step, np.linspace(0, 2, 65), EVEN)
-
-
 @pytest.mark.parametrize("precision", [1e-6, 1e-9, 1e-12])
 def test_the_time_in_a_step_is_known_to_the_precision(precision: float) -> None:
     """Where next to no inertia is left at the lowest point. The steps themselves err by 1e-13 rad here; times that are
     off by a share of `precision` make the load, which turns by 60 rad/s there, err by as many times that."""
-    scene = pendulum(0.1, wheel_mass=0.02)
+    scene = pendulum(0.1, wheel_mass=1e-3)
     own = pendulum_time(scene, 0.5, precision)
     assert errors(scene, 0.5, np.array([1e-3]), np.linspace(0, 1, 65), own)[0] < 60 * precision + 1e-12
 

@@ -92,8 +92,8 @@ class Dop853:
         control = timestep is not None, tolerance, scale, longest, self._corners
         fixed = *self._dynamics.kernel, _TABLEAU, *work[:3], stages, work[3:], times, samples, control, kept
         place = 0.0, step, sample, 0, 1.0, 0.0
-        self.evaluations, place = run_blocks("DOP853", _advance, fixed, place, limit, observer)
-        self.longest = place[-1]
+        evaluations, place = run_blocks("DOP853", _advance, fixed, place, limit, observer)
+        self.evaluations, self.longest = evaluations + (1 if timestep else 2), place[-1]
         return samples
 
     def _first_step(self, start: np.ndarray, slope: np.ndarray, tolerance: float, scale: np.ndarray) -> float:

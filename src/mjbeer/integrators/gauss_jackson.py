@@ -124,11 +124,12 @@ class GaussJackson:
         phi, phi_dot = float(start[size - 1]), float(start[-1])
         pace, slide, speed = dt_ds.py_func(own, phi), 0.0, 0.0
         if size > 1:
-            slide, speed = start[0] - own.share * math.sin(phi), start[size] - own.share * math.cos(phi) * phi_dot
-        pairs = tuple((float(each), 0.0) for each in (0, 0, 0, slide, speed))
+            slide = float(start[0]) - own.share * math.sin(phi)
+            speed = float(start[size]) - own.share * math.cos(phi) * phi_dot
+        none, sums = (0.0, 0.0), ((slide, 0.0), (speed, 0.0))
         work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14), np.empty(2 * size), np.empty(2 * size)
         fixed = *self._dynamics.kernel, own, forcing, timestep, work, times, samples, kept
-        place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), pairs
+        place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), (none, none, none, *sums)
         self.evaluations, _ = run_blocks("GaussJackson", _advance, fixed, place, limit, observer)
         return samples
 

@@ -111,9 +111,10 @@ class Simulator(ReusableModel):
         """
         scene, setting, model = self.scene, self.setting, self.model
         integrator, timestep, tolerance = setting.integrator, setting.timestep, setting.tolerance
-        own = integrator in OWN
-        recorder = None if friction is None else Recorder(model, scene, friction, within=own)
-        if tolerance is None and not own:
+        recorder: Recorder | None = None
+        if tolerance is None and friction is not None:
+            recorder = Recorder(model, scene, friction, within=integrator in OWN)
+        if tolerance is None and integrator not in OWN:
             parts = (_GOLDEN_SECTION * timestep, (1 - _GOLDEN_SECTION) * timestep) if self._uneven else (timestep,)
             steps = np.rint(times / timestep).astype(np.int64)
             states = states_after(model, self.data, start, steps, parts, recorder)
