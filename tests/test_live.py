@@ -14,7 +14,7 @@ import pytest
 import quickjs
 
 from mjbeer import Can, Scene, exact, frozen, liquid, sliding
-from mjbeer.theory import can, load
+from mjbeer.theory import can
 from mjbeer.theory.liquid import LIQUIDS
 from mjbeer.theory.scene import GRAVITY
 
@@ -84,7 +84,7 @@ def test_balanced_and_full_cans_are_those_of_theory() -> None:
 def test_its_constants_are_those_of_theory() -> None:
     found = script("[LIQUIDS, RADIUS, LENGTH, SHEET, GRAVITY, BEER]")
     assert found[0] == {name: each._asdict() for name, each in LIQUIDS.items()}
-    assert found[1:] == [can.RADIUS, can.LENGTH, can.THICKNESS * can.ALUMINIUM, GRAVITY, load.BEER]
+    assert found[1:] == [can.RADIUS, can.LENGTH, can.THICKNESS * can.ALUMINIUM, GRAVITY, can.BEER]
 
 
 @pytest.mark.parametrize(

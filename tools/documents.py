@@ -27,7 +27,7 @@ from mjbeer.studies.stability import stability_maps, stability_study
 from mjbeer.studies.stability.judge import BOTH, NOBODY, SERIES, SILENT, THEORY, VERDICTS
 from mjbeer.studies.validation.validate import checks
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
-from mjbeer.theory.scenes import frozen
+from mjbeer.theory.scene import frozen
 
 CHECKOUT = pathlib.Path(__file__).parents[1]
 sys.path[:0] = [str(CHECKOUT), str(CHECKOUT / "docs" / "figures")]

@@ -12,8 +12,7 @@ from mjbeer.model.joints import initial_joints
 from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import Setting
 from mjbeer.output import files
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import hoop, pendulum
+from mjbeer.theory.scene import Scene, hoop, pendulum
 
 _DIGITS = 12
 """Digits of the numbers in the files."""

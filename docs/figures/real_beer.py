@@ -14,14 +14,10 @@ from scipy.optimize import brentq
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, label, name_below, note, ticks
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.can import THICKNESS, Can
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.exact import exact
+from mjbeer.theory.can import THICKNESS, Can, Damping, segment
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
-from mjbeer.theory.load import segment
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
-from mjbeer.theory.scenes import frozen, sliding
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, frozen, sliding
+from mjbeer.theory.trajectory import Trajectory, exact
 
 CAN = Can.sheet_metal(thickness=THICKNESS * 0.013 / Can.sheet_metal().mass)
 """A 12-oz can of 13 g, as they are sold: one of a sheet of 0.1 mm would have 8.6 g, but real ends are thicker."""

@@ -8,15 +8,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, UntrustedWarning
-from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.exact import exact
+from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import liquid
-from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene, load_drawing
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, hoop, load_drawing, pendulum, sliding
 from mjbeer.theory.standing import standing
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, exact
 
 if TYPE_CHECKING:
     from mjbeer.drawing.video import render

@@ -14,8 +14,7 @@ from mjbeer.drawing.film import MotionFilm
 from mjbeer.drawing.overlay import HEADER, Look
 from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
 from mjbeer.drawing.sheet import Sheet
-from mjbeer.theory.can import RADIUS
-from mjbeer.theory.load import segment
+from mjbeer.theory.can import RADIUS, segment
 
 pytestmark = pytest.mark.slow
 

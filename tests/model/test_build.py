@@ -17,7 +17,7 @@ from mjbeer.model.build import ReusableModel, compile_spec, rolling_spec
 from mjbeer.model.joints import joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, SCENES, scenes
 

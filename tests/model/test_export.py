@@ -23,7 +23,7 @@ from mjbeer.model.build import build
 from mjbeer.model.export import export, viewer_spec
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import kinetic_energy
 from tests.support.scenes import METAL, SCENES
 from tools import portability as others

@@ -16,8 +16,7 @@ from mjbeer.cli.motions import trajectory_of
 from mjbeer.exceptions import AngleWarning, DivergenceError, LiquidWarning, ParameterError, UntrustedWarning
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS
 from mjbeer.simulation.run import Simulator
-from mjbeer.theory.exact import phi_error
-from mjbeer.theory.trajectory import distance
+from mjbeer.theory.trajectory import distance, phi_error
 from tests.support.scenes import METAL, SCENES, error
 
 ARRAYS = ("time", "u", "phi", "u_dot", "phi_dot", "roll", "roll_dot", "lift", "lift_dot", "energy")

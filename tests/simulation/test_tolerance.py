@@ -19,10 +19,9 @@ from mjbeer.model.build import build
 from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation import tolerance as tolerances
 from mjbeer.simulation.run import Run
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations, relaxation_rate
-from mjbeer.theory.exact import phi_error
-from mjbeer.theory.trajectory import distance
+from mjbeer.theory.trajectory import distance, phi_error
 from tests.support.scenes import METAL, error, scenes
 
 pytestmark = pytest.mark.slow

@@ -131,7 +131,7 @@ def test_what_is_not_allowed_is_refused_before_anything_runs(
 def test_units_and_the_call_are_attributes_and_a_run_ends_with_a_whole_timestep() -> None:
     swept = mjbeer.sweep(frozen, 0.1, 0.7, phi_dot0=0.5, timestep=3e-3, fill=[0.5])
     assert (swept.phi.attrs["units"], swept.fill.attrs, swept.phi0, swept.phi_dot0) == ("rad", {}, 0.7, 0.5)
-    assert (swept.make, swept.timestep, swept.duration) == ("mjbeer.theory.scenes.frozen", 3e-3, 34 * 3e-3)
+    assert (swept.make, swept.timestep, swept.duration) == ("mjbeer.theory.scene.frozen", 3e-3, 34 * 3e-3)
     assert swept["phi"][0] == simulate(frozen(), 0.1, 0.7, 0.5, timestep=3e-3).phi[-1]
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, sliding
 from mjbeer.exceptions import ToleranceError
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Damping
 from tests.support import processes, taylor
 from tests.support.scenes import METAL, scenes
 

@@ -8,7 +8,7 @@ import pytest
 from mpmath import MPContext
 
 from mjbeer import Can, Load
-from mjbeer.theory.load import segment
+from mjbeer.theory.can import segment
 
 mp = MPContext()
 mp.dps = 60

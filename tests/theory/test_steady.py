@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mjbeer import Can, Load, Scene, exact, frozen, sliding
 from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, scenes
 

@@ -20,8 +20,7 @@ from mjbeer.output.terminal import say
 from mjbeer.studies.benchmark.points import CASES
 from mjbeer.theory.can import LENGTH, RADIUS, Can
 from mjbeer.theory.liquid import NAMES, liquid, liquid_in
-from mjbeer.theory.scene import DURATION, Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import DURATION, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.theory.standing import standing
 
 SCENES: dict[str, Callable[..., Scene]] = {each.__name__: each for each in (sliding, liquid, frozen, pendulum, hoop)}

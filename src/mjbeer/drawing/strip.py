@@ -15,9 +15,8 @@ from matplotlib.figure import Figure
 
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.exceptions import MjbeerError
-from mjbeer.theory.exact import exact_motion
 from mjbeer.theory.scene import GRAVITY
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
 _THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from mjbeer import require
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.exact import exact_motion
+from mjbeer.theory.can import Damping
 from mjbeer.theory.scene import Scene
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.trajectory import Trajectory, exact_motion
 
 _FILLS = {0.25: "quarter-full", 0.5: "half-full", 0.75: "three-quarters-full", 1.0: "full"}
 

@@ -14,10 +14,8 @@ from mjbeer.model.joints import START_DEPTH, joint_addresses, to_coordinates, to
 from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.mujoco_library import quiet
 from mjbeer.model.setting import Rolling, Setting
-from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.equations import Coordinates, accelerations
-from mjbeer.theory.load import Load
 from mjbeer.theory.scene import Attachment, Scene
 
 _PROBES = {

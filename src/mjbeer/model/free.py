@@ -18,10 +18,8 @@ from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError, UntrustedWarning
 from mjbeer.model import looks, mechanics, mjcf_file
 from mjbeer.model.setting import INTEGRATORS, Setting
-from mjbeer.theory.can import Can
-from mjbeer.theory.load import segment
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.can import Can, segment
+from mjbeer.theory.scene import Scene, sliding
 from mjbeer.theory.standing import MOST_MODES, Standing, standing
 
 _BOB = 1e-3, 0.1

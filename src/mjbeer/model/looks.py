@@ -14,8 +14,7 @@ import numpy as np
 
 from mjbeer.exceptions import TemplateError
 from mjbeer.model import mjcf_file
-from mjbeer.theory.can import LENGTH, RADIUS, Can
-from mjbeer.theory.load import segment
+from mjbeer.theory.can import LENGTH, RADIUS, Can, segment
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.standing import Standing
 

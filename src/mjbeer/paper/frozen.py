@@ -28,9 +28,8 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen
+from mjbeer.theory.scene import Scene, frozen
+from mjbeer.theory.trajectory import exact
 
 _CREEP = 1e-3
 """A can counts as slipping if it slips by more than this in a second, in radii; one that holds slips by 1e-7."""

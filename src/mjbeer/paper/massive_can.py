@@ -11,8 +11,7 @@ from mjbeer.paper.claim import CONSEQUENCE, Bound, Claim, Limit, Misprint, Seen,
 from mjbeer.paper.sliding import KINETIC_11, POTENTIAL_14, POTENTIAL_17
 from mjbeer.paper.witness import DRIFT, EXACT, HELD, METAL, REDUCED, SMALL, WHEEL, oscillate, simulated
 from mjbeer.theory.can import Can
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import pendulum, sliding
+from mjbeer.theory.scene import Scene, pendulum, sliding
 
 _CAN_39 = "rolling/2*s_dot**2 + rolling*b*cos(phi)*s_dot*phi_dot + rolling/2*b**2*{}(phi)**2*phi_dot**2"
 """T_can [J] in s and phi; its last term has the cosine, printed with the sine."""

@@ -9,8 +9,7 @@ from mjbeer.model.setting import DOP853
 from mjbeer.paper.claim import APPROXIMATION, CONSEQUENCE, Bound, Claim, Limit, Misprint, Seen, Witness
 from mjbeer.paper.witness import EXACT, REDUCED, TENTH, loop, oscillate, simulated
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.scene import INCLINE
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.scene import INCLINE, sliding
 
 FAST = 350.0  # phi_dot [rad/s] at phi = 0 of a load that loops fast: nine times the least that makes it loop
 SLOW = 45.0

@@ -17,7 +17,7 @@ from mjbeer.paper.witness import (
     simulated,
 )
 from mjbeer.theory.can import Can
-from mjbeer.theory.scenes import sliding
+from mjbeer.theory.scene import sliding
 
 EQ_6 = "m*b*g*cos(alpha)/inertia"  # omega^2 [1/s^2]
 PRINTED_10 = "24*pi*g*cos(alpha)/(9*pi**2 - 32)"  # the misprint lacks the radius

@@ -29,10 +29,8 @@ from mjbeer.paper.hopping import MU
 from mjbeer.paper.oscillation import SLOW
 from mjbeer.paper.witness import GRIP, loop
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, sliding
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.trajectory import Trajectory, exact
 
 SWING = math.radians(60)  # amplitude [rad] of the swing that shows the hesitation: so wide that the can slows down
 FRICTION = 1.0  # friction coefficient of the incline from which the can lifts off

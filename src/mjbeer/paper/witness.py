@@ -13,10 +13,8 @@ from mjbeer.model.mechanics import Mechanics
 from mjbeer.model.setting import DOP853, Integrator, Rolling, Setting, supported
 from mjbeer.paper.claim import Bound, Seen, Witness
 from mjbeer.simulation.simulate import simulate
-from mjbeer.theory.can import Can
-from mjbeer.theory.load import Load
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, pendulum, sliding
+from mjbeer.theory.can import Can, Load
+from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
 
 
 def simulated(scene: Scene, phi0: float, *more: Any, **settings: Any) -> Witness:

@@ -18,8 +18,7 @@ from mjbeer.report.carry import Carry
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import Name, liquid_in
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 
 METAL = Can.sheet_metal()
 LENGTH = 1.0  # distance from start to finish [m]

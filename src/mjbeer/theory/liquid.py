@@ -26,11 +26,8 @@ import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError, warn_of_liquid
-from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
-from mjbeer.theory.load import segment
-from mjbeer.theory.scene import GRAVITY, INCLINE, Scene
-from mjbeer.theory.scenes import remembers_call, sliding
+from mjbeer.theory.can import Can, Damping, segment
+from mjbeer.theory.scene import GRAVITY, INCLINE, Scene, remembers_call, sliding
 
 Name = Literal["water", "beer", "olive oil", "glycerol", "honey"]
 NAMES: tuple[Name, ...] = get_args(Name)

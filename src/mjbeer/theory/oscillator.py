@@ -20,8 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from mjbeer.exceptions import NoEquilibriumError
-from mjbeer.theory.can import Can
-from mjbeer.theory.load import Load
+from mjbeer.theory.can import Can, Load
 
 _SINC_SERIES = np.array([1 / math.factorial(k) for k in range(19, 2, -2)])
 

@@ -7,8 +7,8 @@ from mjbeer import Can, Scene, frozen, hoop, pendulum, sliding
 from mjbeer.exceptions import ToleranceError
 from mjbeer.studies.stability import taylor_series as module
 from mjbeer.studies.stability.taylor_series import series
+from mjbeer.theory.can import Load
 from mjbeer.theory.equations import kinetic_energy, potential_energy
-from mjbeer.theory.load import Load
 from tests.support import taylor
 
 pytestmark = pytest.mark.slow

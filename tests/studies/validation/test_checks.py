@@ -13,8 +13,8 @@ from mjbeer.checks import Check, Result
 from mjbeer.simulation.run import Run
 from mjbeer.studies.validation import motion_checks as motions
 from mjbeer.studies.validation.validate import Validation, checks
-from mjbeer.theory import exact as theory
-from mjbeer.theory.damping import Damping
+from mjbeer.theory import trajectory as theory
+from mjbeer.theory.can import Damping
 
 CHECKS = {f"{check.name} - {check.by}": check for check in checks()}
 

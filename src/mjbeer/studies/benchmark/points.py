@@ -12,10 +12,8 @@ import numpy as np
 from mjbeer.model.setting import Rolling
 from mjbeer.studies.study import document
 from mjbeer.theory.can import Can
-from mjbeer.theory.exact import exact
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, pendulum, sliding
-from mjbeer.theory.trajectory import Trajectory
+from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.trajectory import Trajectory, exact
 
 COMMAND = "mjbeer benchmark"
 SHIPPED = pathlib.Path(__file__).with_name("study.json")

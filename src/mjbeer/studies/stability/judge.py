@@ -25,9 +25,9 @@ from mjbeer.model.setting import FRICTION, Integrator, Rolling
 from mjbeer.simulation.simulate import simulate
 from mjbeer.studies.stability.taylor_series import series
 from mjbeer.theory.equations import Coordinates
-from mjbeer.theory.exact import exact, exact_motion
 from mjbeer.theory.record import ERROR
 from mjbeer.theory.scene import Scene
+from mjbeer.theory.trajectory import exact, exact_motion
 
 VERDICTS = RIGHT, REFUSED, DOUBTED, SILENT = "right", "refused", "doubted", "silent"
 """Every way in which a run can end. It is right if it is trusted, with an error of at most `record.ERROR` and of its

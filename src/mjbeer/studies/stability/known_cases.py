@@ -7,11 +7,9 @@ from typing import Any, NamedTuple
 from mjbeer.exceptions import NoEquilibriumError
 from mjbeer.model.setting import DOP853, ROLLINGS
 from mjbeer.studies.stability.judge import Trial
-from mjbeer.theory.can import Can
-from mjbeer.theory.load import Load
+from mjbeer.theory.can import Can, Load
 from mjbeer.theory.record import ERROR
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, hoop, pendulum, sliding
 
 TOLERANCE = 1e-9
 """Tolerance of the runs that are made to a tolerance [rad]."""

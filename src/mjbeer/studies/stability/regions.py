@@ -15,12 +15,9 @@ from mjbeer import require
 from mjbeer.exceptions import NoEquilibriumError, ParameterError, collect_liquid_warnings
 from mjbeer.model.setting import DOP853, INTEGRATORS, ROLLINGS, supported
 from mjbeer.studies.stability.judge import Trial
-from mjbeer.theory.can import Can
-from mjbeer.theory.damping import Damping
+from mjbeer.theory.can import Can, Damping, Load
 from mjbeer.theory.liquid import NAMES, liquid
-from mjbeer.theory.load import Load
-from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene
-from mjbeer.theory.scenes import frozen, hoop, pendulum, sliding
+from mjbeer.theory.scene import ATTACHMENTS, GRAVITY, Scene, frozen, hoop, pendulum, sliding
 
 T = TypeVar("T")
 _SWINGS, _TURNED = 400.0, 3e3

@@ -33,7 +33,7 @@ from mjbeer.studies import predictions
 from mjbeer.studies.predictions import ACCURACY, GROWTH, spring
 from mjbeer.studies.study import FAILED
 from mjbeer.theory.can import Can
-from mjbeer.theory.scenes import frozen, sliding
+from mjbeer.theory.scene import frozen, sliding
 
 MAPS = "maps"
 """The group of the study that the maps are in."""

@@ -12,10 +12,9 @@ from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, suppo
 from mjbeer.paper.frozen import equilibrium_53
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import Can
-from mjbeer.theory.exact import phi_error
 from mjbeer.theory.liquid import liquid_in
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, pendulum, sliding
+from mjbeer.theory.scene import Scene, frozen, pendulum, sliding
+from mjbeer.theory.trajectory import phi_error
 
 _FRICTION = 10.0
 """Friction coefficient of the runs with contact. Rolling without slipping needs 1.2 at most in any of them."""

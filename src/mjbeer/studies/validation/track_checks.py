@@ -8,10 +8,9 @@ import numpy as np
 
 from mjbeer.checks import Check
 from mjbeer.theory.can import Can
-from mjbeer.theory.exact import exact
 from mjbeer.theory.liquid import liquid, liquid_in
-from mjbeer.theory.scene import Scene
-from mjbeer.theory.scenes import frozen, sliding
+from mjbeer.theory.scene import Scene, frozen, sliding
+from mjbeer.theory.trajectory import exact
 from mjbeer.tracks.fit import BEND, Fit, fit, remade
 from mjbeer.tracks.track import Track
 
