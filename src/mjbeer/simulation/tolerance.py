@@ -23,11 +23,13 @@ _PARTS = np.linspace(0, 1, 33)
 """Times, over the last one, at which runs are compared besides the samples, unless these are as near one another."""
 _COMPARED = 256
 """Samples at which runs of Gauss-Jackson are compared, if there are more: an error changes within a part of a swing."""
-_LIGHT = 10.0
-"""Uneven part of J over its least value, from which on a wheel is light: its load is fast for a moment only, while it
-passes the lowest point, and makes much of its error there. Two runs of Gauss-Jackson had errors that were the same by
-chance at 20 of 6,366 tolerances, and so DOP853 takes such a wheel. Rounding grows with that ratio, as large inertias
-cancel in the small one, and so does the nudge: with the usual one 1 of 3,700 tolerances was broken."""
+_LIGHT, _BRIEF = 10.0, 4.0
+"""How uneven J is over its least value, from which on a wheel is light: its load is fast for a moment only, while it
+passes the lowest point, and makes much of its error there. Two runs of Gauss-Jackson whose errors were the same by
+chance were then 2.8 times as far off as they should have been; the second number is their safety. Rounding grows with
+that ratio, as large inertias cancel in the small one, and so does the nudge."""
+_LIGHTEST = 40.0
+"""The same, from which on DOP853 takes the wheel: a step of Gauss-Jackson as a whole is too long for the passage."""
 _SAFETY_BY_CHANCE = 3.0
 """Error estimate over the distance of two runs from the third run on, where rounding counts, and for tolerances outside
 `_ASYMPTOTIC`: two runs may agree by chance."""
@@ -109,10 +111,11 @@ class ToleranceLoop:
         angle = 1.0, 0.0 if "slide" in joints else 1.0
         self._angles = np.array([parts.get(name, angle) for name in joints] + [(0.0, 0.0)] * model.nv)
         shape = scene.oscillator
-        self._light = shape.coupling + shape.chord > _LIGHT * shape.base
+        uneven = max(shape.coupling, shape.chord / 4) / shape.base  # half angles of a chord count half
+        self._light, lightest = uneven > _LIGHT, uneven > _LIGHTEST
         self._size = _NUDGE * max(1.0, shape.coupling / (_LIGHT * shape.base)) * self._scale
         try:
-            self._gauss_jackson = None if self._light else GaussJackson(model, self._dynamics)
+            self._gauss_jackson = None if lightest else GaussJackson(model, self._dynamics)
         except UnsupportedError:
             self._gauss_jackson = None
 
@@ -159,12 +162,12 @@ class ToleranceLoop:
 
         The coarser of two runs is nudged, at its start and all along.
         """
-        stride = math.ceil(len(times) / _COMPARED)
+        stride = 1 if self._light else math.ceil(len(times) / _COMPARED)
         compared = slice((len(times) - 1) % stride, None, stride)  # with the last one
         some_times = np.ascontiguousarray(times[compared])
-        safety = 1.0
+        safety = _BRIEF if self._light else 1.0
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
-        timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance)
+        timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
         own = pendulum_time(self._scene, phi0, _PRECISION * tolerance)
         try:
             for _ in range(_TRIES):
