@@ -9,7 +9,6 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from mjbeer import LiquidWarning, exact, liquid, sliding
-from mjbeer.exceptions import ParameterError
 from mjbeer.theory.can import segment
 from mjbeer.theory.equations import slip_rate
 from mjbeer.theory.liquid import ENDS, FILM_LOAD, WALL, liquid_in, lump_warning
@@ -70,6 +69,7 @@ def test_the_fit_is_as_near_as_it_says() -> None:
     used = liquid_in("water")
     exact_torque = used.damping.torque(used.slip)
     assert exact_torque == pytest.approx(sliding(density=used.density).mass * 9.81 * 0.033 * math.sin(math.radians(10)))
+    assert used.damping.holds == pytest.approx((0.139 * used.slip, 1.39 * used.slip))
     x = np.geomspace(0.139, 1.39, 2001)
     ratio = used.damping.torque(used.slip * x) / (exact_torque * x**1.5)
     assert abs(ratio - 1).max() == pytest.approx(FIT_ERROR, rel=0.02)  # the ends are rounded to three digits
@@ -89,12 +89,6 @@ def test_liquids_roll_as_estimated(name: str, effective: float, speed: float) ->
     assert scene.terminal_speed() == pytest.approx(speed, rel=0.15)
     assert used.damping.torque(used.slip) / used.slip == pytest.approx(effective, rel=0.15)
     assert used.law == ("creep" if name == "honey" else "thin layers")
-
-
-@pytest.mark.parametrize("viscosity", [5e-324, 1e-10, 1e7, 1e308])
-def test_a_viscosity_that_no_liquid_has_is_refused(viscosity: float) -> None:
-    with pytest.raises(ParameterError, match=r"viscosity must be between 1e-09 and 1e\+06 \[m\^2/s\], got"):
-        liquid(viscosity=viscosity)
 
 
 def test_a_swing_has_stokes_layers() -> None:
@@ -120,14 +114,9 @@ def test_damping_is_continuous_towards_level_ground() -> None:
 
 
 def test_the_law_says_where_it_holds() -> None:
-    """As near to the layers' torque as the fit, from the lowest to the highest slip rate; creep holds down to 0."""
-    used = liquid_in("water")
-    lowest, highest = used.damping.holds or (0, 0)
-    assert (lowest / used.slip, highest / used.slip) == pytest.approx((0.139, 1.39))
+    """Creep holds down to 0, and so does a swing; water's swing of two radians is one of 18 rad/s."""
     assert liquid_in("honey").damping.holds == pytest.approx((0.0, 217), rel=0.01)
-    lowest, highest = liquid_in("water", incline=0.0).damping.holds or (0, 0)
-    assert lowest == 0
-    assert highest == pytest.approx(1.39 * 37.5, rel=0.01)  # a swing of two radians, of 18 rad/s
+    assert liquid_in("water", incline=0.0).damping.holds == pytest.approx((0.0, 1.39 * 37.5), rel=0.01)
 
 
 WARNED = {
@@ -165,13 +154,9 @@ def test_a_run_says_when_its_liquid_is_no_lump_any_more() -> None:
     assert told in run.warnings
     assert not run.trusted
     assert exact(scene, run.time[:10], 0.0).record.no_lump_at == math.inf
-    for own, fastest, reason in (
-        (scene, 50.0, None),
-        (scene, 200.0, "17.8 to 178 rad/s between can and liquid, which slips by 200"),
-        (sliding(damping=1e-3), 1e9, None),  # what is no liquid's may be anything
-    ):
-        about = lump_warning("water", own, fastest, "", 0.0)
-        assert about is None if reason is None else reason in (about or "")
+    assert lump_warning("water", scene, 50.0, "", 0.0) is None
+    about = lump_warning("water", scene, 200.0, "", 0.0)
+    assert "17.8 to 178 rad/s between can and liquid, which slips by 200" in str(about)
 
 
 @pytest.mark.parametrize(("degrees", "seconds", "share"), [(10, 1, None), (10, 8, "57 %"), (2, 8, None)])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import mjbeer
-from mjbeer import Can, Damping, Load, Scene, exact, sliding
+from mjbeer import Can, Damping, Load, Scene, exact, liquid, sliding
 from mjbeer.exceptions import ParameterError
 
 BEER = Load(0.2, 0.01, 1e-5)
@@ -81,6 +81,7 @@ REFUSED = [
     ("load mass must be between 1e-09 and 10000 [kg], got 0.0", lambda: sliding(fill=1e-300)),
     ("can must be a Can, got 'metal'", lambda: sliding(can="metal")),
     ("load must be a Load, got", lambda: Scene(Can(), Can)),
+    ("viscosity must be between 1e-09 and 1e+06 [m^2/s], got 1e-10", lambda: liquid(viscosity=1e-10)),
 ]
 
 

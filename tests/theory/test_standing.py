@@ -52,15 +52,6 @@ def test_forces_are_those_of_the_pressure_on_the_walls(depth: float) -> None:
             assert one == pytest.approx(DENSITY * RADIUS ** (3 + power) * other, rel=BY_PRESSURE), (share, power)
 
 
-def test_the_polynomials_tell_wrong_forms_from_right_ones() -> None:
-    """The damping of handbooks, 0.79 over the root of Re, and a moment that forgets the weight of the tilted liquid."""
-    can, volume = water(), Volume(60 / 33)
-    assert volume.damping(1)[0] * 1.39 < 0.79
-    omega = 0.5 * can.frequencies(1)[0]
-    moment, weight = can.reaction(omega).moment, DENSITY * GRAVITY * math.pi * RADIUS**4 / 4
-    assert weight / omega**2 > 0.1 * moment
-
-
 @pytest.mark.parametrize("depth", [0.05, 1.0, 50.0])
 def test_sums_over_all_modes(depth: float) -> None:
     """The metacentre; the sum of 2/(xi^2 - 1), whose rest after n terms is 2/(pi^2 n); and slow motion is a solid's."""

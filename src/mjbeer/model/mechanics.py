@@ -176,7 +176,7 @@ def _constrained(scene: Scene) -> dict[str, Inertial]:
                 "a point load frozen to a massless can has no inertia about its centre of mass, which MuJoCo needs; "
                 'use rolling="reduced", or give the can mass'
             )
-        return {"can": Inertial(scene.mass, scene.centre_of_mass, inertia)}
+        return {"can": Inertial(scene.mass, load.moment / scene.mass, inertia)}
     if can.inertia == 0:
         raise UnsupportedError(
             f"a {'massless can' if can.mass == 0 else 'can without inertia'} with a sliding load exists only in "

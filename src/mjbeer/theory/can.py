@@ -1,9 +1,5 @@
-"""A scene's parts: a can that rolls without slipping (paper, section 3), its load, and the damping between them.
+"""The parts of a scene: a can, its load (beer is a segment of a circle in cross section), and the damping."""
 
-The load is a point mass, or beer, whose cross section at rest is a segment of a circle.
-"""
-
-import functools
 import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -169,13 +165,11 @@ class Segment(NamedTuple):
     width: float  # the part of it that lies across, along the flat side: the mean of x^2 over a^2
 
 
-@functools.lru_cache(maxsize=1024)  # a sweep has the same ones again and again
 def segment(fill: float) -> Segment:
     """Return the segment whose height is `fill` times the diameter (fill = h/2a, eq. 32), to full relative precision.
 
-    The closed forms (33), (35) and (37) subtract nearly equal numbers when the can is almost empty. Here the integrals
-    behind them are evaluated, over strips along the flat side: the end of a strip is at the angle t at the axis, 0 <= t
-    <= beta, where y = cos t and dA = 2 sin^2 t dt for a can of radius 1.
+    The closed forms (33), (35) and (37) cancel when the can is almost empty. Here their integrals are evaluated over
+    strips along the flat side, which end at the angle t <= beta at the axis: y = cos t and dA = 2 sin^2 t dt for a = 1.
     """
     beta = 2 * math.atan2(math.sqrt(fill), math.sqrt(1 - fill))
     sine = 2 * math.sqrt(fill * (1 - fill))  # 1 - fill is exact wherever it is small
@@ -199,8 +193,7 @@ def _checked_fill(fill: float) -> float:
 class Damping:
     """A torque c1 w + c2 w |w| + c3 w^3 against the slip rate w = roll_dot - phi_dot of can and load [rad/s].
 
-    It acts on the load with the sign of w and on the can with the other one. MuJoCo's damping of a joint or a tendon is
-    the same polynomial.
+    It acts on the load with the sign of w and on the can with the other one. MuJoCo's damping is the same polynomial.
 
     Raises:
       ParameterError: if a coefficient is negative or not finite.

@@ -7,10 +7,9 @@ where the damping is strong and w small. Divided by M a^2, with M = m + m_can + 
     inertia(phi) phi_ddot = -depth sin(phi - bottom) - beta^2 sin(phi) cos(phi) phi_dot^2
                             + (1 - beta cos(phi)) torque(w) - beta cos(phi) drag roll_dot |roll_dot|.
 
-Each step is a collocation polynomial whose last terms are below rounding, by Legendre polynomials over the step, x = -1
-to 1, through the equations at its Radau points: the Radau IIA method of order 2s - 1. It is L-stable: what has decayed,
-however fast, takes no small steps. (E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, IV.5.) Where w
-or roll_dot passes zero, its absolute value has a corner: a step that would pass one is taken again up to there.
+Each step is a series of Legendre polynomials, x = -1 to 1, that obeys the equations at its Radau points: Radau IIA of
+order 2s - 1, which is L-stable, so that what has decayed takes no small steps. (E. Hairer and G. Wanner, Solving
+Ordinary Differential Equations II, IV.5.) A step that would pass a corner, where w or roll_dot is zero, ends there.
 """
 
 import itertools
@@ -26,11 +25,8 @@ from mjbeer.theory.motion import EPS, ROUNDINGS, UNCERTAIN, Start
 from mjbeer.theory.oscillator import reduced, root
 from mjbeer.theory.scene import Scene
 
-_STAGES = 24
-"""Number of stages s. The method is of order 47, and a swing takes some five steps a period to rounding."""
-_WORK = 6_000
-"""Most corrections of Newton's method in all steps, a tenth of a millisecond each: a can of beer that swings by 1 rad
-takes them in 40 s."""
+_STAGES = 24  # s: of order 47, a swing takes some five steps a period to rounding
+_WORK = 6_000  # most corrections of Newton's method in all: a can of beer that swings by 1 rad takes them in 40 s
 
 Rates = Callable[[np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -54,10 +50,7 @@ _TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
 
 
 def _rates_of(scene: Scene) -> Rates:
-    """Return a function of phi, phi_dot and w, arrays of one shape.
-
-    Its values are phi_ddot and w_dot [rad/s^2], of shape (2, ...), and their derivatives by those three, (2, 3, ...).
-    """
+    """Return a function of phi, phi_dot and w: phi_ddot and w_dot [rad/s^2], and their derivatives, (2, 3, ...)."""
     oscillator, law, radius, mass = scene.oscillator, scene.damping_law, scene.can.radius, scene.effective_mass
     unit, beta, air = mass * radius**2, scene.load.moment / mass / radius, scene.drag * radius / mass
 
@@ -100,8 +93,8 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
 def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float, corners: np.ndarray) -> np.ndarray:
     """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times, of shape (4, times).
 
-    The `state` is phi, phi_dot and w at time 0, `swing_rate` is about that of a swing [rad/s], and `corners` are the
-    sums of phi_dot and w, of shape (sums, 2), whose absolute values count.
+    The `state` is phi, phi_dot and w at time 0, and the rows of `corners` are the sums of phi_dot and w whose absolute
+    values count.
     """
     now, latest, deltas, largest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
     done = int(np.searchsorted(time, 0.0, "right"))
@@ -163,8 +156,7 @@ def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
     The `nodes` are phi_dot and w at the start and the stages, of shape (stages + 1, 2).
     """
     sums, shares = nodes @ corners.T, []
-    # A sum has an eps of phi_dot and w, and the polynomial through the stages, whose sums each processor has in another
-    # order, up to 72 in trials.
+    # The polynomial through the stages is off by up to 72 eps in trials: each processor sums in another order.
     signs = np.where(np.abs(sums) > 256 * EPS * np.abs(nodes).sum(axis=1).max(), np.sign(sums), 0.0)
     for sign, series in zip(signs.T, (_TO_SERIES @ sums).T, strict=True):
         for low, high in itertools.pairwise(np.flatnonzero(sign)):
@@ -180,8 +172,7 @@ def _solve_stages(
 ) -> tuple[int, tuple[np.ndarray, np.ndarray] | None]:
     """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `sensitivity`.
 
-    Newton's method solves for all stages at once, (2, stages), from values that stay as they begin, and may fail:
-    None. Corrections are small beside the largest phi_dot or w, or `scale` [rad/s].
+    Newton's method solves for all stages at once, and may fail: None. `scale` [rad/s] is the least rate that counts.
     """
     s, reach, begin, last = _STAGES, length * _MATRIX, state[1:, np.newaxis], math.inf
     stages, matrix, sides = np.repeat(begin, s, axis=1), np.empty((2 * s, 2 * s)), np.empty((2, s, 2))

@@ -1,8 +1,7 @@
 """The equations of motion of a can that rolls without slipping: accelerations, forces and energy.
 
-The accelerations are those of eqs. (46) and (47), with the damping between can and load and the drag of the air added.
-The normal force N and the friction force F, with which the incline keeps the can rolling, follow from Newton's second
-law for the centre of mass. N < 0 means that the incline would have to pull; |F| > mu N means that the can would slip.
+The accelerations are those of eqs. (46) and (47), with damping and drag added. The normal force N and the friction
+force F of the incline follow from them. N < 0 means that it would have to pull, |F| > mu N that the can would slip.
 """
 
 import math
@@ -20,11 +19,9 @@ class Coordinates:
     time: np.ndarray
     """Time [s]."""
     u: np.ndarray
-    """Place of the axis along the incline [m], positive downhill. At time 0 it is b sin(phi0) for a sliding load, whose
-    centre of mass starts at s = u - b sin(phi) = 0 (eq. 12), and a phi0 for a frozen one (eq. 50)."""
+    """Place of the axis along the incline [m], positive downhill; at time 0 as `Scene.start` says."""
     phi: np.ndarray
-    """Angle of the load to the incline [rad]: 0 where its centre of mass is nearest to the incline, and growing as the
-    can rolls downhill."""
+    """Angle of the load [rad]: 0 where its centre of mass is nearest to the incline; it grows as a can rolls down."""
     u_dot: np.ndarray
     """Velocity of the axis down the incline [m/s]."""
     phi_dot: np.ndarray

@@ -12,10 +12,9 @@ The liquid is one lump that lies still in the rolling can. Three things drag it 
   c = rho sqrt(nu omega/2) (2 beta a^3 L + 2 I A/m), omega being the frequency of small swings on level ground.
 
 One law follows, continuous in the incline and the viscosity, and a polynomial in W, as MuJoCo's damping is. It has the
-larger of the first two torques at the slip rate of steady rolling; but where a swing of some two radians slips faster
-than that, it has the swing's torque at the rate at which the layers of rolling drag as much as those of swinging. Where
-steady rolling is slower than `DECADE` of that, the swing's layers take over, until on level ground they are all there
-is. A real liquid sloshes as well, 1.5 times faster than the lump swings.
+larger of the first two torques at the slip rate of steady rolling, or, where a swing of some two radians slips faster,
+the swing's torque at the rate at which both kinds of layers drag alike. Where steady rolling is slower than `DECADE` of
+that, the swing's layers take over. A real liquid sloshes as well, 1.5 times faster than the lump swings.
 """
 
 import math
@@ -48,19 +47,16 @@ LIQUIDS: dict[Name, Properties] = {
     "beer": Properties(1010.0, 1.6e-6),
     # CRC Handbook of Chemistry and Physics: 84 mPa s; oils differ by some 10 %.
     "olive oil": Properties(911.0, 9.2e-5),
-    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water. By the fit of Cheng, Ind. Eng.
-    # Chem. Res. 47, 3285 (2008), to such tables a hundredth of water takes a fifth of it.
+    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water, of which a hundredth takes a fifth.
     "glycerol": Properties(1261.0, 1.12e-3),
-    # Of 18 % water, some 10 Pa s. By tables after Munro, J. Econ. Entomol. 36, 769 (1943), clover honey of 16 % has 19
-    # Pa s, and a hundredth more of water does what 3.5 degrees do: it takes a third.
+    # Of 18 % water, some 10 Pa s: 19 with 16 %, and a hundredth more takes a third (Munro, J. Econ. Entomol. 36, 769,
+    # 1943).
     "honey": Properties(1420.0, 7e-3),
 }
 """Handbook values at 20 degrees Celsius."""
 
-WALL = 0.8875
-"""Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L."""
-ENDS = 2 * 0.61592
-"""Von Karman's torque on two discs, over rho sqrt(nu) W^1.5 and the second moment of the area."""
+WALL = 0.8875  # Sakiadis's drag on a wall that enters still liquid, over rho U^1.5 sqrt(nu X) L
+ENDS = 2 * 0.61592  # von Karman's torque on two discs, over rho sqrt(nu) W^1.5 and the second moment of the area
 DECADE = 0.139, 1.39
 """Slip rates, over that of the fit, between which the polynomial is within 7.85 % of W^1.5; at the slip rate of the fit
 it is exact. No polynomial with non-negative coefficients is better over a decade."""
@@ -73,8 +69,7 @@ or three times of it changes c by a quarter."""
 FILM_LOAD = 4.4427
 """Largest volume of a film that a turning wall carries round steadily, over a L sqrt(nu a W/g) (Moffatt, J. Mecanique
 16, 651, 1977). More liquid than that stays below as a pool."""
-_CARRIED = 1 / 3
-"""Share of the liquid that such a film can hold, from which on the rest of it is no lump."""
+_CARRIED = 1 / 3  # share of the liquid that such a film can hold, from which on the rest of it is no lump
 
 
 @dataclass(frozen=True)
@@ -112,9 +107,8 @@ def liquid(
     `drag` [kg/m] is that of the air. `liquid_in` has the numbers that were used; the laws are those of the module
     `liquid`.
 
-    A `LiquidWarning` says that the damping is an order of magnitude only: the liquid is no lump at the terminal speed,
-    as its film on the wall can hold a third of it or the wall's centrifugal acceleration exceeds g cos(alpha), or that
-    speed is beyond the slip rates for which the damping is.
+    A `LiquidWarning` says that the damping is an order of magnitude: at the terminal speed a film on the wall can
+    hold a third of the liquid, the centrifugal acceleration exceeds g cos(alpha), or the damping is for other rates.
 
     Raises:
       ParameterError: if a parameter is not allowed, the can is full, or the layers would be turbulent.

@@ -5,9 +5,9 @@ Two kinds of path are enough. An arc begins or ends at a turning point, phi = tu
     dt/ds = sqrt(2 J / |mean torque from the turning point on|),    dt/dx = sqrt(J / 2 (energy + below(x))),
 
 both smooth and positive, with `energy` = E - V at the crest and x the distance past it. A swing is two arcs that meet
-at the equilibrium. A load that passes crests goes up in turns, each with less energy at its crest, until it cannot pass
-the next one, swings round in an arc, and goes down in turns for ever. What goes the other way is watched in a mirror.
-A motion that rounding may change noticeably, as beside a separatrix, is refused.
+at the equilibrium. A load that passes crests goes up in turns until it cannot pass the next one, round in an arc, and
+down in turns for ever. What goes the other way is watched in a mirror. A motion that rounding may change noticeably, as
+beside a separatrix, is refused.
 """
 
 import math
@@ -23,12 +23,9 @@ from mjbeer.theory.oscillator import Oscillator, Potential, root
 from mjbeer.theory.quadrature import TravelTime
 
 EPS = 2.0**-52
-ROUNDINGS = 4 * EPS
-"""Relative rounding of J, and of ramp over depth: up to nine roundings of half an eps each, never all of one sign."""
-UNCERTAIN = 1e-4
-"""Largest effect of rounding on phi [rad], relative beyond 1 rad: a hundredth of the error of a run that is trusted."""
-MOST_TURNS = 10_000
-"""Most turns of a motion on an incline, where each takes another time."""
+ROUNDINGS = 4 * EPS  # of J, and of ramp over depth, relative: up to nine of half an eps each, never all of one sign
+UNCERTAIN = 1e-4  # largest effect of rounding on phi [rad], relative beyond 1 rad: a hundredth of a trusted run's error
+MOST_TURNS = 10_000  # of a motion on an incline, where each takes another time
 
 
 def solve(oscillator: Oscillator, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, np.ndarray]:
@@ -116,8 +113,7 @@ class Start:
     def stays(self, phi: float) -> bool:
         """Return whether a start does not move, as far as doubles tell: at rest, on a barrier, or without any torque.
 
-        An odd multiple of pi is taken as the top of level ground; it is up to 0.64 eps of itself off. The top of a
-        slope is pi less an angle, and in doubles up to an eps of pi off.
+        The double of an odd multiple of pi is up to 0.64 eps off; that of a slope's top is up to an eps of pi off.
         """
         if self.kinetic > 0 or self.potential.excess > 0:
             return self.still
@@ -250,10 +246,7 @@ def _arcs_of_swing(start: Start) -> list[tuple[Arc, int, float]]:
 
 
 def _arc_to(start: Start, side: int) -> Arc:
-    """Return the arc of a swing downhill (1) or uphill (-1) of the rest: from the rest, or the crest if that is nearer.
-
-    In either case V rises or falls from there by 2 `height` to the turning point.
-    """
+    """Return the arc of a swing downhill (1) or uphill (-1) of the rest: from there, or the crest if that is nearer."""
     potential = start.potential
     well = potential.well if side > 0 else math.tau - potential.well
 
@@ -277,8 +270,8 @@ def _arc_to(start: Start, side: int) -> Arc:
 def _paths_over_crests(start: Start) -> Iterator[tuple[Arc | Turns, int, float]]:
     """Yield the paths of a motion that passes crests, with angles past the crest of each turn.
 
-    With each come the number of its most uphill turn from that of the start, and the energy [J] by which it passes or
-    misses a crest. The first has few turns, later ones up to 256, so that memory does not grow with their number.
+    With each come its most uphill turn, counted from the start, and the energy [J] by which it passes or misses a
+    crest. A path has 256 turns at most, so that memory does not grow with their number.
     """
     potential, drop, highest = start.potential, start.potential.drop_per_turn, start.potential.highest
     energy, turn, left, batch = start.energy_above_crest, 0, MOST_TURNS, 8 if drop > 0 else 1

@@ -6,10 +6,9 @@ With the rolling constraint and the conserved momentum eliminated, each scene ob
     J = base + chord sin^2(phi/2) + coupling sin^2(phi),
     V = -ramp phi - depth cos(phi - bottom).
 
-V is a cosine on a ramp. If |ramp| < depth, it has in every turn a minimum (the equilibrium, or rest) and a maximum (the
-barrier). A frozen load gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and
-eqs. 46 and 47 with u eliminated). All coefficients of J are non-negative, so J never cancels, and V is needed only as
-differences, from where nothing cancels: see `Potential`.
+If |ramp| < depth, V has in every turn a minimum (the equilibrium, or rest) and a maximum (the barrier). A frozen load
+gives `chord` and `ramp` (eqs. 51 and 52), a sliding load `coupling` and no ramp (eq. 16, and eqs. 46 and 47 with u
+eliminated). J never cancels, as its coefficients are not negative, and `Potential` has differences of V that do not.
 """
 
 import math
@@ -29,12 +28,11 @@ class Potential:
     """The shape of V = -ramp phi - depth cos(phi - bottom) about its crest, for ramp >= 0.
 
     If ramp < depth, its crest is the barrier, with the equilibrium at a distance `well` before it. On a steeper incline
-    V only falls, and its crest is where it falls least; there the well has no width. In both cases
+    V only falls, its crest is where it falls least, and the well has no width. In both cases
 
         -V'(crest + x) = excess + 2 balanced sin^2(x/2) + curvature sin(x).
 
-    Every turn is lower by `drop_per_turn`. V looks the same upside down: the torque at an angle y past the equilibrium
-    is that at -y past the crest.
+    V looks the same upside down: the torque at an angle y past the equilibrium is that at -y past the crest.
     """
 
     def __init__(self, ramp: float, depth: float, bottom: float) -> None:
@@ -211,10 +209,7 @@ def sinc_gap(x: np.ndarray | float) -> np.ndarray:
 
 
 def root(function: Callable[[np.ndarray], np.ndarray], lower: float, upper: float) -> float:
-    """Return where a function of an array is 0 between `lower`, where it is not positive, and `upper`, to rounding.
-
-    If it is not positive at `upper` it should be 0 there, and is only rounded.
-    """
+    """Return where a function of an array is 0 between `lower`, where it is not positive, and `upper`, to rounding."""
     while True:  # SciPy's brentq takes longer to import than all the theory
         points = np.linspace(lower, upper, 257)
         positive = function(points) > 0

@@ -24,10 +24,7 @@ class TravelTime:
         """Set up a path with dt/dpsi = `rate` [s] from the first to the last of the `edges`.
 
         For psi of shape (panels, nodes) `rate` returns (panels, nodes), or (passages, panels, nodes) if the path is
-        passed so often in a row, each time with another rate, of which the first one is the roughest.
-
-        Raises:
-          ToleranceError: if no panels reproduce `rate`: it is not finite, or too rough.
+        passed so often in a row, the first time with the roughest rate. A `ToleranceError` says that it is too rough.
         """
         lows, ends = np.array(edges[:-1]), np.array(edges[1:])
         panels: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
@@ -84,10 +81,7 @@ def _are_resolved(rates: np.ndarray, lows: np.ndarray, halves: np.ndarray) -> np
 
 
 def _inverse_integral(series: np.ndarray, target: np.ndarray, guess: np.ndarray) -> np.ndarray:
-    """Return the x from 0 to 2 at which the integral of each series from -1 to x - 1 reaches its `target`.
-
-    `guess` is one for x - 1. `series` has the shape (samples, coefficients); each is positive from -1 to 1.
-    """
+    """Return the x from 0 to 2 at which the integral of each positive series from -1 to x - 1 reaches its `target`."""
     values, integral = series.T, (series @ _TO_INTEGRAL).T
     low, high = -np.ones_like(target), np.ones_like(target)
     x = np.clip(guess, -1, 1)

@@ -9,22 +9,15 @@ from mjbeer.theory.equations import Coordinates, select_samples, slip_rate
 from mjbeer.theory.liquid import centrifugal_ratio
 from mjbeer.theory.scene import Scene
 
-ERROR = 1e-2
-"""Largest estimated error of phi and u/a [rad], relative beyond 1 rad, that is trusted: half a degree."""
-SLIP = 1e-3
-"""Largest slip, in radii, that is trusted: a milliradian of roll angle."""
-LIFT = 1e-3
-"""Largest gap or penetration between can and incline, in radii, that is trusted."""
-_SMALL_SWING = 1e-2
-"""Smallest energy with which a drift is compared, over the depth m g b of the well: that of a swing of 0.14 rad. A
-motion that hardly swings would otherwise divide rounding by nearly nothing."""
+# The largest values that are trusted.
+ERROR = 1e-2  # estimated error of phi and u/a [rad], relative beyond 1 rad: half a degree
+SLIP = 1e-3  # in radii: a milliradian of roll angle
+LIFT = 1e-3  # gap or penetration between can and incline, in radii
+_SMALL_SWING = 1e-2  # of the depth m g b of the well: a drift is compared with no less than a swing of 0.14 rad
 
 
 class Record:
-    """The largest slip, lift, drift and rate of a motion so far, and when rolling stopped being possible.
-
-    A motion is added in pieces, in the order of time. Its first sample is what later ones are compared with.
-    """
+    """The largest slip, lift, drift and rate of a motion so far, which is added in pieces, in the order of time."""
 
     def __init__(self, scene: Scene, friction: float = math.inf) -> None:
         """Begin the record of a can that slips where rolling needs more than a coefficient of `friction`."""
@@ -96,10 +89,7 @@ class Record:
             self.axis_drift = _largest(self.axis_drift, motion.u - expected)
 
     def add_forces(self, time: np.ndarray, phi: np.ndarray, phi_dot: np.ndarray, u_dot: np.ndarray | float) -> None:
-        """Add the normal and friction forces that rolling needs at times [s] in the states of the motion there.
-
-        `u_dot` [m/s] matters to damping and drag alone.
-        """
+        """Add the forces that rolling needs at times [s] in the states there; `u_dot` matters to damping and drag."""
         forces = equations.rolling_forces(self.scene, phi, phi_dot, u_dot)
         self.lowest_normal = float(np.minimum(self.lowest_normal, forces.normal.min()))
         self.needed_friction = _largest(self.needed_friction, forces.needed_friction)
@@ -120,8 +110,7 @@ class Record:
     def energy_drift(self) -> float:
         """Return the largest change of the total energy over the largest kinetic energy of the swing, J phi_dot^2 / 2.
 
-        It includes slip and lift, and what damping and drag take. The denominator is at least `_SMALL_SWING` of the
-        well's depth; for a balanced load it is the largest kinetic energy of all that moves.
+        It includes what damping and drag take. A balanced load's is over the largest kinetic energy of all that moves.
         """
         balanced = self.scene.load.offset == 0
         # A thousandth of 1e-11 of the kinetic energy is still many times its rounding.
@@ -131,14 +120,13 @@ class Record:
     def swing_error(self) -> float:
         """Return the error of phi [rad], relative beyond 1 rad, that the drift of the swing's energy implies.
 
-        A relative error of the energy is about that of the speed or the period, and so of the angle covered meanwhile.
-        Where only the phase is off there is none, nor with damping or drag.
+        A relative error of the energy is about that of the angle covered meanwhile. With damping or drag there is none.
         """
         return self._largest_swing_drift / self._least_swing / max(1.0, self.largest_turn)
 
     @property
     def swing_error_at_most(self) -> float:
-        """Return `swing_error` as it would be if the largest drift, whatever its sign, had been there all the time.
+        """Return `swing_error` as it would be if the largest drift had been there all the time.
 
         A step that misses a brief event may bring a drift that the next one takes away, and leave the phase wrong.
         """
@@ -155,9 +143,9 @@ class Record:
 
 
 def failed_checks(record: Record, rolling: str) -> list[str]:
-    """Return the reasons in its record to doubt that the equations of a motion were solved, one sentence for each.
+    """Return the reasons to doubt that the equations of a motion were solved, one sentence for each.
 
-    Only in "contact" may the can slip and part, as `rolling_failures` says, and then friction and impacts take energy.
+    In "contact" the can may slip and part, as `rolling_failures` says, and then friction and impacts take energy.
     """
     reasons = _slip_reasons(record)
     if rolling == "contact" and reasons:
@@ -172,10 +160,9 @@ def failed_checks(record: Record, rolling: str) -> list[str]:
 
 
 def rolling_failures(record: Record, rolling: str, friction: float = math.inf) -> list[str]:
-    """Return where a can did not, or could not, roll as the model of rolling without slipping does.
+    """Return where a can did not, or could not, roll without slipping, one sentence for each.
 
-    In "contact" it slips at its coefficient of `friction`, and leaves the incline. Where it could not, a normal force
-    below 0 says that a real can would have left.
+    In "contact" it slips at its coefficient of `friction`, and leaves the incline. Else a real can does so where N < 0.
     """
     if rolling != "contact":
         at = f"from t = {record.rolling_ends_at:.6g} s"

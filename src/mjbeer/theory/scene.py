@@ -36,8 +36,7 @@ class Scene:
     Raises:
       ParameterError: if a parameter is outside the domain, the load outside the can, a frozen load damped, or nothing
         has inertia at phi = 0.
-      NoEquilibriumError: by what needs a load at rest, if the incline is too steep for that or nothing restores the
-        load. The message names the largest incline.
+      NoEquilibriumError: by what needs a load at rest, if the incline is too steep or nothing restores the load.
       DissipationError: by what has a meaning only with damping or drag, or only without them.
     """
 
@@ -76,7 +75,7 @@ class Scene:
             got = f"damping={require.format_value(self.damping)} and drag={require.format_value(self.drag)}"
             raise ParameterError(f"a frozen load moves as one with its can: damping and drag must be 0, got {got}")
         a, most = can.radius, require.RATIO * (1 + 1e-12)  # a ratio of 1e4 may round up
-        # A can is not balanced by less of a gap than a billionth of its height.
+        # A smaller offset is that of a can that lacks less than a billionth of its height to be full.
         require.within("load offset", load.offset, 1e-14 * a, a, "m", zero=True)
         require.within("mass of the can over that of the load", can.mass / load.mass, 1 / most, most, zero=True)
         require.within("load inertia", load.inertia, 0, most * load.mass * a**2, "kg m^2")
@@ -137,11 +136,6 @@ class Scene:
     def downhill_weight(self) -> float:
         """Return the weight along the incline, m_t g sin(alpha) [N]."""
         return self.mass * self.gravity * math.sin(self.incline)
-
-    @property
-    def centre_of_mass(self) -> float:
-        """Return the distance of their common centre of mass from the axis, d = m b/(m + m_can) [m]: eq. (38)."""
-        return self.load.moment / self.mass
 
     def start(self, phi0: float, phi_dot0: float) -> tuple[float, float]:
         """Return u [m] and u_dot [m/s] of the axis for a start at `phi0` [rad] with `phi_dot0` [rad/s].
@@ -206,15 +200,22 @@ class Scene:
           ToleranceError: if sizes, masses and gravity are of too many different orders of magnitude.
         """
         amplitude = require.number("amplitude", amplitude, "rad")
-        require_no_dissipation(self, "no period")
-        self.equilibrium()
+        self._require_swing("no period")
         return motion.period(self.oscillator, amplitude)
 
     def separatrix(self) -> tuple[float, float]:
         """Return the two angles phi between which the largest swing about the equilibrium stays [rad]."""
-        require_no_dissipation(self, "no largest swing")
-        self.equilibrium()
+        self._require_swing("no largest swing")
         return self.oscillator.separatrix()
+
+    def _require_swing(self, missing: str) -> None:
+        """Check that the load has an equilibrium to swing about for ever."""
+        if self.dissipates:
+            raise DissipationError(
+                f"{missing}: each swing of a load with damping or drag is smaller than the one before, got "
+                f"damping={self.damping!r} and drag={self.drag!r}; scene.modes() has the rates"
+            )
+        self.equilibrium()
 
     def _steady_rolling(self) -> tuple[float, float, float]:
         """Return slip rate [rad/s], torque T on the load [N m] and stiffness k [N m] of steady rolling.
@@ -250,15 +251,12 @@ class Scene:
         return math.atan2(torque, stiffness) - self.incline
 
     def modes(self) -> np.ndarray:
-        """Return the roots s [1/s] of the three modes exp(s t) of small motions about steady rolling.
+        """Return the complex roots s [1/s] of the three modes exp(s t) of small motions about steady rolling, (3,).
 
-        They are complex, of shape (3,), and what decays fastest is first. With P = m b cos(phi), k = m g b cos(alpha +
-        phi), N = M I - P^2 and J_f = M a^2 + I - 2 P a at the terminal tilt, and the slopes c of the damping and d of
-        the drag at the terminal speed,
+        What decays fastest is first. With P = m b cos(phi), k = m g b cos(alpha + phi), N = M I - P^2 and J_f = M a^2 +
+        I - 2 P a at the terminal tilt, and the slopes c of the damping and d of the drag at the terminal speed,
 
             N s^3 + (c J_f/a^2 + d I) s^2 + (M k + c d) s + k (c/a^2 + d) = 0.
-
-        For c to 0 the swing is that of a sliding load, for c to infinity that of a frozen one, each at this tilt.
 
         Raises:
           DissipationError, NoEquilibriumError: as `terminal_speed`.
@@ -275,40 +273,17 @@ class Scene:
             roots -= np.divide(np.polyval(polynomial, roots), derivative, out=correction, where=derivative != 0)
         return np.sort_complex(roots)
 
-    def slip_rate(self) -> float:
-        """Return the mean slip rate of can and load [rad/s] with linear damping: m_t g a sin(alpha)/c, in any motion.
-
-        The motion must be steady, be it that the load stands still or loops; its rate varies, and so does the slip's.
-        """
-        linear, *others = self.damping_law.coefficients
-        if not linear > 0 or any(others) or self.drag > 0:
-            raise DissipationError(
-                "no mean slip rate follows from the scene alone: it does from linear damping without drag, got "
-                f"damping={self.damping!r} and drag={self.drag!r}"
-            )
-        return self.downhill_weight * self.can.radius / linear
-
     def acceleration(self) -> float:
         """Return the steady acceleration of the axis down the incline [m/s^2]: footnote 4, or eq. (1).
 
-        For a frozen load it is that of a balanced one with the same inertia about the axis (A.3): in the long run the
-        unbalanced one rolls down faster, by the factor mean(J) / mean(sqrt(J))^2. With damping or drag it is 0, but for
-        a balanced load without drag, which ends as a frozen one.
+        For a frozen load it is that of a balanced one with the same inertia about the axis (A.3). With damping or drag
+        it is 0, but for a balanced load without drag, which ends as a frozen one.
         """
         if self.dissipates and (self.load.offset > 0 or self.drag > 0):
             return 0.0
         if self.attachment == "sliding" and not self.dissipates:
             return self.downhill_weight / self.effective_mass
         return self.downhill_weight / (self.effective_mass + self.load.axis_inertia / self.can.radius**2)
-
-
-def require_no_dissipation(scene: Scene, what: str) -> None:
-    """Check that nothing takes energy from the motion, for which reason `what` would be missing."""
-    if scene.dissipates:
-        raise DissipationError(
-            f"{what}: each swing of a load with damping or drag is smaller than the one before, got "
-            f"damping={scene.damping!r} and drag={scene.drag!r}; scene.modes() has the rates"
-        )
 
 
 def remembers_call(make: Callable[Parameters, Scene]) -> Callable[Parameters, Scene]:

@@ -1,9 +1,8 @@
 """A standing can with liquid in it: the slosh of its free surface, in the exact linear theory without viscosity.
 
-The liquid has the inside radius R and the height h. Its modes vary as J1(xi r/R) cos(angle) with J1'(xi) = 0; each acts
-on the can like a pendulum, and what does not slosh acts like a rigid body. Heights z are above the centroid of the
-liquid at rest. (H. N. Abramson, ed., "The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106, 1966,
-chapters 2 and 6.)
+The modes of a liquid of radius R and height h vary as J1(xi r/R) cos(angle) with J1'(xi) = 0. Each acts on the can like
+a pendulum, the rest like a rigid body. Heights z are above the centroid of the liquid at rest. (H. N. Abramson, ed.,
+"The Dynamic Behavior of Liquids in Moving Containers", NASA SP-106, 1966, chapters 2 and 6.)
 """
 
 import functools
@@ -22,8 +21,7 @@ from mjbeer.theory.scene import GRAVITY
 QUANTITATIVE, INDICATIVE = 0.1, 0.3
 """Elevations of the surface at the wall, over the radius, up to which linear theory gives numbers, and a picture."""
 MOST_MODES = 5
-SERIES = 4000
-"""Number of terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13."""
+SERIES = 4000  # terms of the infinite sums, which fall as the fourth power or faster: the rest is below 1e-13
 
 
 class Reaction(NamedTuple):
@@ -134,15 +132,13 @@ class Standing:
     def reaction(self, omega: float | np.ndarray) -> Reaction:
         """Return force and moment of the liquid alone in a can that is shaken with a frequency `omega` [rad/s].
 
-        The sums are over all modes; there is no damping. X is sideways, Theta about the level axis across it. Weight
-        is included: a tilted liquid's metacentric moment is -g sum(m_n L_n) = -rho g pi R^4/4 per angle.
+        There is no damping. X is sideways, Theta about the level axis across it. Weight is included: a tilted liquid's
+        metacentric moment is -g sum(m_n L_n) = -rho g pi R^4/4 per angle.
 
         Raises:
           ParameterError: if a frequency is not between 1e-6 and 1e6.
         """
-        if isinstance(omega, (list, tuple)) or getattr(omega, "ndim", 0) > 0:
-            omega = require.samples("omega", omega, "rad/s")
-        for each in np.atleast_1d(omega):
+        for each in np.atleast_1d(np.asarray(omega, object)):
             require.within("omega", each, 1e-6, 1e6, "rad/s")
         omega = np.asarray(omega, float)
         mass, bob, length = self._pendulums(SERIES)
@@ -184,12 +180,11 @@ def standing(
     damping_ratio: float | None = None,
     gravity: float = GRAVITY,
 ) -> Standing:
-    """Return a can that stands, with a liquid in it that sloshes.
+    """Return a can that stands, by default `Can.sheet_metal()`, with a liquid in it that sloshes.
 
     `liquid` is a name that `mjbeer.liquid` knows. `fill` is the height of the liquid over the can's length. `modes` of
     the slosh move in the model, the others are fixed to the can; with 0 the liquid is solid. `damping_ratio` is that of
-    every mode; by default it follows from the viscosity, for clean walls and a clean surface: foam or dust doubles it.
-    `gravity` is in [m/s^2]. The default can is `Can.sheet_metal()`.
+    every mode; by default it follows from the viscosity, for a clean surface: foam or dust doubles it.
 
     A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude.
 

@@ -90,7 +90,7 @@ class Trajectory(Coordinates):
 
     @cached_property
     def forces(self) -> Forces:
-        """Return the normal and friction force [N] that rolling without slipping needs along this motion."""
+        """Return the normal and friction force [N] that rolling without slipping needs."""
         return rolling_forces(self.scene, self.phi, self.phi_dot, self.u_dot)
 
     def rolls_until(self, friction: float = np.inf) -> float:
@@ -118,7 +118,7 @@ class Trajectory(Coordinates):
 
     @cached_property
     def rolling_warnings(self) -> tuple[str, ...]:
-        """Return where a can did not, or could not, roll without slipping as the model does, one sentence for each."""
+        """Return where a can did not, or could not, roll without slipping, one sentence for each."""
         return tuple(rolling_failures(self.record, self.rolling))
 
     @cached_property
@@ -132,10 +132,7 @@ class Trajectory(Coordinates):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Return the reasons not to trust this motion, one sentence for each: of the solver, of rolling, of a liquid.
-
-        That rolling may need more friction than there is counts in contact alone: `rolls_until` knows it of any motion.
-        """
+        """Return the reasons not to trust this motion, one sentence each: of the solver, of rolling, of a liquid."""
         return (*self.solver_warnings, *self.rolling_warnings, *self.liquid_warnings)
 
     @property
@@ -245,9 +242,7 @@ def exact_motion(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -
                 phi, phi_dot = motion.solve(scene.oscillator, time, phi0, phi_dot0)
                 u, u_dot = axis_motion(scene, time, phi, phi_dot, (phi0, phi_dot0, *scene.start(phi0, phi_dot0)))
             roll, roll_dot = u / radius, u_dot / radius
-    except ParameterError:
-        raise
-    except (ArithmeticError, ValueError) as error:
+    except ArithmeticError as error:
         raise ParameterError(
             f"this motion is beyond double precision ({error}), got phi0 = {phi0!r} rad, phi_dot0 = {phi_dot0!r} rad/s "
             f"until {float(time.max())!r} s in {scene!r}"
@@ -305,11 +300,7 @@ def distance(motion: Coordinates, truth: Coordinates, radius: float, start: tupl
 
 
 def phi_error(trajectory: Trajectory, relative: bool = False) -> float:
-    """Return the largest distance of phi [rad] from the exact motion with the same start.
-
-    If `relative`, the distance is divided by the angle that phi has turned, where that exceeds 1 rad: this is the
-    error that a tolerance bounds.
-    """
+    """Return the largest distance of phi [rad] from the exact motion; if `relative`, as `angle_distance` says."""
     truth = exact_motion(trajectory.scene, trajectory.time, trajectory.phi0, trajectory.phi_dot0)
     return angle_distance(trajectory.phi, truth.phi, trajectory.phi0 if relative else None)
 
