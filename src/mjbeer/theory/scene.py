@@ -11,7 +11,7 @@ from typing import Any, Literal, ParamSpec, get_args
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError, ParameterError
+from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory import motion
 from mjbeer.theory.can import BEER, LENGTH, RADIUS, Can, Damping, Load
 from mjbeer.theory.oscillator import Oscillator
@@ -35,10 +35,9 @@ class Scene:
 
     Raises:
       ParameterError: if a parameter is outside the domain, the load outside the can, a frozen load damped, or nothing
-        has inertia at phi = 0.
+        has inertia at phi = 0; and by what has a meaning only with damping or drag, or only without them.
       NoEquilibriumError: by what needs a load at rest, if the incline is too steep for that or nothing restores the
         load. The message names the largest incline.
-      DissipationError: by what has a meaning only with damping or drag, or only without them.
     """
 
     can: Can
@@ -223,7 +222,7 @@ class Scene:
         m g b sin(alpha + phi) = T(w). Without drag T is m_t g a sin(alpha), whatever the law.
         """
         if not self.dissipates:
-            raise DissipationError("no steady rolling: damping and drag are 0, and nothing else brakes the can")
+            raise ParameterError("no steady rolling: damping and drag are 0, and nothing else brakes the can")
         self.oscillator.equilibrium()  # whether anything restores the load
         radius, weight = self.can.radius, self.load.moment * self.gravity
         torque, (linear, quadratic, cubic) = self.downhill_weight * radius, self.damping_law.coefficients
@@ -261,7 +260,7 @@ class Scene:
         For c to 0 the swing is that of a sliding load, for c to infinity that of a frozen one, each at this tilt.
 
         Raises:
-          DissipationError, NoEquilibriumError: as `terminal_speed`.
+          ParameterError, NoEquilibriumError: as `terminal_speed`.
         """
         (slip, _, k), tilt, a, mass = self._steady_rolling(), self.terminal_tilt(), self.can.radius, self.effective_mass
         damping, drag = float(self.damping_law.derivative(slip)) / a**2, 2 * self.drag * a * abs(slip)
@@ -282,7 +281,7 @@ class Scene:
         """
         linear, *others = self.damping_law.coefficients
         if not linear > 0 or any(others) or self.drag > 0:
-            raise DissipationError(
+            raise ParameterError(
                 "no mean slip rate follows from the scene alone: it does from linear damping without drag, got "
                 f"damping={self.damping!r} and drag={self.drag!r}"
             )
@@ -305,7 +304,7 @@ class Scene:
 def require_no_dissipation(scene: Scene, what: str) -> None:
     """Check that nothing takes energy from the motion, for which reason `what` would be missing."""
     if scene.dissipates:
-        raise DissipationError(
+        raise ParameterError(
             f"{what}: each swing of a load with damping or drag is smaller than the one before, got "
             f"damping={scene.damping!r} and drag={scene.drag!r}; scene.modes() has the rates"
         )
