@@ -33,7 +33,7 @@ def draw(path: pathlib.Path) -> None:
     with plots.chart(path, columns=2, width=10, height=4.2, title=title, subtitle=subtitle) as (left, right):
         for name, of, colour in zip(MODES, (beer, rigid), plots.COLOURS, strict=False):
             left.plot(of[-1].time, of[-1].force, color=colour, label=name)
-        plots.label(left, "time [s]", "force [N]", "moved in 1 s")
+        left.set(xlabel="time [s]", ylabel="force [N]", title="moved in 1 s")
         left.legend()
         right.plot(MOVES, 100 * (1 - peaks[1] / peaks[0]), color=plots.COLOURS[1], label="peak force")
         right.plot(MOVES, 100 * after / peaks[0], color=plots.COLOURS[2], label="ringing after the stop")
@@ -41,7 +41,11 @@ def draw(path: pathlib.Path) -> None:
         right.set_ylim(-1, 24)  # so that the curves leave room for the note and the legend
         right.axvspan(min(MOVES), first, color=plots.GREY, alpha=0.12, linewidth=0)
         plots.note(right, "surface rises\nby more than 0.3 R", (min(MOVES), 24), (4, -16))
-        plots.label(right, "time of the move [s]", "error of a rigid can [% of the peak]", "what a rigid can misses")
+        right.set(
+            xlabel="time of the move [s]",
+            ylabel="error of a rigid can [% of the peak]",
+            title="what a rigid can misses",
+        )
         right.legend()
 
 

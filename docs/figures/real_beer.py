@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
 from mjbeer.drawing.words import in_degrees, in_words
-from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, label, name_below, note, ticks
+from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_below, note
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can, Damping, segment
 from mjbeer.theory.liquid import LIQUIDS, NAMES, centrifugal_ratio, liquid_in
@@ -121,7 +121,9 @@ def draw_first_metre(path: pathlib.Path) -> None:
             axes.axhline(1.0, **REFERENCE)
             axes.plot(_VOLUMES, footnote, label="without friction, beer that does not swing: footnote 4", **THEORY)
             axes.set(xscale="log", xlim=(_VOLUMES[0], 400), ylim=(0.27, 1.08))
-            ticks(axes.xaxis, (0.3, 1, 3, 10, 30, 100, 350))
+            marks = (0.3, 1, 3, 10, 30, 100, 350)
+            axes.set_xticks(marks, map(str, marks))
+            axes.tick_params(which="minor", labelbottom=False)
         for degrees in _INCLINES:
             incline = math.radians(degrees)
             mean, lump = _simulated(incline)
@@ -141,8 +143,8 @@ def draw_first_metre(path: pathlib.Path) -> None:
         with_air = _simulated(gentle, 1.0, DRAG)[0]
         spread.plot(_VOLUMES, with_air, "--", color=COLOURS[1], linewidth=1.2, label="MuJoCo: with the air as well, 2°")
         ylabel = "mean acceleration over the first metre / g sin α"
-        label(inclines, "water in the can [mL]", ylabel, "On three inclines, without air")
-        label(spread, "water in the can [mL]", ylabel, f"How sure it is, at {in_degrees(gentle)}")
+        inclines.set(xlabel="water in the can [mL]", ylabel=ylabel, title="On three inclines, without air")
+        spread.set(xlabel="water in the can [mL]", ylabel=ylabel, title=f"How sure it is, at {in_degrees(gentle)}")
         for axes in (inclines, spread):
             axes.plot([], [], label=_TOO_FAST, **_BEYOND)
         inclines.axvline(_ROSCH, ymax=0.6, linestyle="--", **REFERENCE)
@@ -184,8 +186,8 @@ def draw_liquids(path: pathlib.Path) -> None:
         fast.plot([], [], "--", color=GREY, linewidth=1, label="terminal speed")
         fast.plot([], [], label=_TOO_FAST, **(_BEYOND | {"color": GREY}))
         ylabel, closer = "speed of the can down the incline [m/s]", "The slow ones, seen closer"
-        label(fast, "time t [s]", ylabel, "All of them", xlim=(0, 6), ylim=(-0.3, 5))
-        label(slow, "time t [s]", ylabel, closer, xlim=(0, 2), ylim=(-0.2, 0.6))
+        fast.set(xlabel="time t [s]", ylabel=ylabel, title="All of them", xlim=(0, 6), ylim=(-0.3, 5))
+        slow.set(xlabel="time t [s]", ylabel=ylabel, title=closer, xlim=(0, 2), ylim=(-0.2, 0.6))
         name_below([fast, slow], 5)
 
 

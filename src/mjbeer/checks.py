@@ -6,8 +6,6 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-import numpy as np
-
 
 @dataclass(frozen=True)
 class Result:
@@ -62,9 +60,9 @@ def json_values(content: Any) -> Any:
     return None if isinstance(content, float) and not math.isfinite(content) else content
 
 
-def line(content: Any) -> str:
-    """Return content as a line of JSON."""
-    return json.dumps(json_values(content), allow_nan=False) + "\n"
+def to_json(content: Any, indent: int | None = None) -> str:
+    """Return content as JSON, in one line unless it is indented."""
+    return json.dumps(json_values(content), indent=indent, allow_nan=False) + "\n"
 
 
 @dataclass(frozen=True)
@@ -87,8 +85,3 @@ class Check:
         deviation = values.pop("error", None)
         error = None if deviation is None else abs(float(deviation))
         return Result(self.group, self.name, self.by, self.bound, self.unit, self.reason, error, values)
-
-
-def observed_order(steps: np.ndarray, errors: np.ndarray) -> float:
-    """Return the observed order of convergence: the slope of log(error) over log(step)."""
-    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -11,7 +11,7 @@ class MjbeerError(Exception):
 
 
 class ParameterError(MjbeerError, ValueError):
-    """A parameter has a value that is not allowed; the message names the value and what is allowed."""
+    """A parameter has a value that is not allowed, or not for what is asked; the message says what is."""
 
 
 class NoEquilibriumError(MjbeerError):
@@ -20,10 +20,6 @@ class NoEquilibriumError(MjbeerError):
 
 class NoLibrationError(MjbeerError):
     """The motion asked for is no libration: its amplitude or start is at or beyond the separatrix."""
-
-
-class DissipationError(MjbeerError):
-    """The scene has damping or drag, or has none, and what was asked for has a meaning only in the other case."""
 
 
 class UnsupportedError(MjbeerError):
@@ -75,9 +71,11 @@ def warn_of_liquid(message: str, stacklevel: int) -> None:
 
 @contextmanager
 def collect_liquid_warnings() -> Generator[list[str]]:
-    """Yield a list that gets what liquids warn of in this block and this thread, instead of the user."""
-    notes: list[str] = []
-    token = _NOTES.set(notes)
+    """Yield a list that gets what liquids warn of in this block and this thread, instead of the user.
+
+    The filters of `warnings` belong to all threads at once: they would not do.
+    """
+    token = _NOTES.set(notes := [])
     try:
         yield notes
     finally:

@@ -15,7 +15,7 @@ import numpy as np
 from mjbeer.exceptions import AngleWarning, ParameterError
 
 T = TypeVar("T")
-Name = TypeVar("Name", bound=str)
+Name = TypeVar("Name", bound=str | bool)
 
 # The domain: the smallest and the largest value.
 SIZE = 1e-3, 1e2  # of radius and length of a can [m]
@@ -32,7 +32,7 @@ _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 
 def number(name: str, value: Any, unit: str = "") -> float:
     """Return a real number of Python's or NumPy's as a finite float."""
-    if not math.isfinite(result := value if type(value) is float else _float(value)):
+    if not math.isfinite(result := _float(value)):
         raise _refused(f"{name} must be a finite number", unit, value)
     return result
 
@@ -89,10 +89,8 @@ def samples(name: str, value: Any, unit: str = "") -> np.ndarray:
 
 
 def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
-    """Return times [s], none before 0, as a new array of shape (samples,); a single number will do as well."""
-    if not increasing and math.isfinite(_float(value)):
-        value = [value]
-    array = samples(name, value, "s").copy()
+    """Return times [s], none before 0, or a single one, as a new array of shape (samples,)."""
+    array = samples(name, np.atleast_1d(value), "s").copy()
     for index in np.flatnonzero(array < 0):
         non_negative(f"{name}[{index}]", array[index], "s")
     if increasing and (falls := np.flatnonzero(np.diff(array) <= 0)).size:
@@ -102,26 +100,18 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
 
 
 def choice(name: str, value: Any, allowed: Iterable[Name]) -> Name:
-    """Return `value` if it is one of the `allowed` names."""
+    """Return `value` if it is one of the `allowed` names, or of True and False if those are."""
     for each in (names := tuple(allowed)):
-        if isinstance(value, str) and value == each:
+        if isinstance(value, (str, bool, np.bool_)) and value == each:
             return each
     raise ParameterError(f"{name} must be one of {', '.join(map(repr, names))}; got {format_value(value)}")
 
 
 def path(value: Any) -> pathlib.Path:
     """Return the path of a file to be written."""
-    name = os.fspath(value) if isinstance(value, os.PathLike) else value
-    if not isinstance(name, str) or not name or "\0" in name:
+    if not isinstance(value, (str, os.PathLike)) or not str(value):
         raise ParameterError(f"path must be the name of a file, got {format_value(value)}")
-    return pathlib.Path(name)
-
-
-def boolean(name: str, value: Any) -> bool:
-    """Return `value` as True or False; a text such as "no" would count as true."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise ParameterError(f"{name} must be True or False, got {format_value(value)}")
-    return bool(value)
+    return pathlib.Path(value)
 
 
 def instance(name: str, value: Any, kind: type[T]) -> T:
@@ -133,8 +123,7 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
 
 def set_fields(instance: object, **values: object) -> None:
     """Set fields of a frozen dataclass to their checked values."""
-    for name, value in values.items():
-        object.__setattr__(instance, name, value)
+    vars(instance).update(values)
 
 
 def format_value(value: object) -> str:
@@ -151,7 +140,4 @@ def _float(value: Any) -> float:
     """Return a number as a float, which may be infinite, and NaN for what is none, as True, "1" and [1.0] are not."""
     if isinstance(value, np.ndarray) and value.ndim == 0:
         value = value[()]
-    try:
-        return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan
-    except OverflowError:  # an integer of 400 digits
-        return math.nan
+    return float(value) if isinstance(value, numbers.Real) and not isinstance(value, bool) else math.nan

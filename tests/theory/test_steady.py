@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from mjbeer import Can, Load, Scene, frozen, sliding
-from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError
+from mjbeer import Can, Load, Scene, exact, frozen, sliding
+from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
 from tests.support.scenes import METAL, scenes
@@ -37,6 +37,7 @@ def test_tilt_is_that_of_the_frozen_can_and_speed_a_closed_form() -> None:
             assert scene.terminal_tilt() == frozen(can=can).equilibrium()
             speed = scene.mass * 9.81 * math.sin(scene.incline) * 0.033**2 / c
             assert scene.terminal_speed() == pytest.approx(speed, rel=ROUNDING)
+            assert scene.slip_rate() == pytest.approx(speed / 0.033, rel=ROUNDING)
             assert scene.largest_incline() == frozen(can=can).largest_incline()
 
 
@@ -100,15 +101,28 @@ def test_modes_of_weak_and_strong_damping() -> None:
     assert fast.frequency() == pytest.approx(frozen(0.2, can=METAL).frequency(), rel=1e-12)
 
 
+@pytest.mark.slow
+def test_mean_slip() -> None:
+    """Above the largest incline the load loops: the mean of the u-equation over a second, whatever phi does."""
+    scene, c, a = sliding(math.radians(30), damping=1e-2), 1e-2, 0.033
+    motion = exact(scene, [1.0, 2.0], 0.0, 112.7)
+    momentum = scene.mass * motion.u_dot - scene.load.mass * scene.load.offset * np.cos(motion.phi) * motion.phi_dot
+    slipped = np.diff(motion.u)[0] / a - np.diff(motion.phi)[0]
+    assert slipped + np.diff(momentum)[0] * a / c == pytest.approx(scene.slip_rate(), rel=1e-11)  # 18 turns a second
+
+
 def test_what_has_no_answer_says_so() -> None:
     plain, damped, mixed = sliding(), sliding(damping=1e-3), sliding(damping=1e-3, drag=0.01)
     for ask in (plain.terminal_speed, plain.terminal_tilt, plain.modes, frozen().terminal_speed):
-        with pytest.raises(DissipationError, match="damping and drag are 0"):
+        with pytest.raises(ParameterError, match="damping and drag are 0"):
             ask()
+    for scene in (plain, mixed, sliding(damping=Damping(1e-3, 1e-5)), frozen()):
+        with pytest.raises(ParameterError, match=r"no mean slip rate .* linear damping without drag, got"):
+            scene.slip_rate()
     for scene in (damped, mixed):
-        with pytest.raises(DissipationError, match=r"no period.*scene\.modes\(\) has the rates"):
+        with pytest.raises(ParameterError, match=r"no period.*scene\.modes\(\) has the rates"):
             scene.period(0.1)
-        with pytest.raises(DissipationError, match="no largest swing"):
+        with pytest.raises(ParameterError, match="no largest swing"):
             scene.separatrix()
     balanced = Scene(METAL, Load(0.3, 0.0, 1e-4), 0.2, damping=1e-3)
     for scene in (balanced, replace(damped, gravity=0.0)):

@@ -1,6 +1,5 @@
 """The commands about one motion, simulate, render, view, export and fit, and the key figures that they tell."""
 
-import json
 import math
 import os
 import tempfile
@@ -12,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import json_values
+from mjbeer.checks import json_values, to_json
 from mjbeer.cli.arguments import angle, scene, start, steps
 from mjbeer.drawing.words import damping_in_words
 from mjbeer.exceptions import LiquidWarning, MjbeerError, ParameterError, RenderingError
@@ -90,7 +89,7 @@ class Summary:
         """Return the figures as a JSON object, with units in the names; what is not finite becomes null."""
         content = {f"{name} [{unit}]" if unit else name: value for name, value, unit, _ in self.key_figures}
         content |= {"warnings": self.trajectory.warnings, "notes": self.notes}
-        return json.dumps(json_values(content), indent=2, allow_nan=False) + "\n"
+        return to_json(content, indent=2)
 
 
 def _needed(run: Trajectory) -> str:
@@ -222,7 +221,7 @@ def fit(given: Namespace) -> None:
     found = fit(track, guess, given.free or ["incline"], dict(given.known), phi0, given.bend)
     if given.json:
         told = {"values": found.values, "errors": found.errors, "noise": found.noise, "warnings": found.warnings}
-        terminal.write(json.dumps(told, indent=2) + "\n")
+        terminal.write(to_json(told, indent=2))
     else:
         terminal.write("\n".join([found.title, *found.lines()]) + "\n")
         for each in found.warnings:

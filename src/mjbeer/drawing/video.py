@@ -64,7 +64,7 @@ def render(
     target = None if path is None else require.path(path)
     if target and target.suffix.lower() != ".mp4":
         raise ParameterError(f"the file's name must end in .mp4, got {require.format_value(str(path))}")
-    console = terminal.STDERR if require.boolean("progress", progress) else None
+    console = terminal.STDERR if require.choice("progress", progress, (True, False)) else None
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
     film = MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()

@@ -79,7 +79,7 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Any
     names = names or ("phi", "u")
     for name in names:
         require.choice("quantity", name, _LABELS)
-    require.boolean("theory", theory)
+    require.choice("theory", theory, (True, False))
     scene, time = trajectory.scene, trajectory.time
     # A notebook makes matplotlib interactive with the first figure, which the context would undo at its end.
     figure = plt.figure(figsize=(8, max(3.5, 2.5 * len(names))), layout="constrained")

@@ -106,7 +106,7 @@ def specify(
 def _specification(
     scene: Scene | Standing, setting: Setting, visuals: bool, free: bool, phi0: float = 0.0, phi_dot0: float = 0.0
 ) -> mujoco.MjSpec:
-    visuals = require.boolean("visuals", visuals)
+    visuals = require.choice("visuals", visuals, (True, False))
     require_meaningful(scene, setting, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
         return standing_spec(scene, setting, visuals, free)
@@ -130,7 +130,7 @@ def mechanics_fault(scene: Scene, setting: Setting, seen: mujoco.MjModel | None 
 
 def require_meaningful(scene: Scene | Standing, setting: Setting, free: bool, phi0: float, phi_dot0: float) -> None:
     """Refuse what is said of a can that stands and has a meaning for one that rolls only, or the other way round."""
-    require.boolean("free", free)
+    require.choice("free", free, (True, False))
     if not isinstance(scene, Standing):
         require.instance("scene", scene, Scene)
         if not free:

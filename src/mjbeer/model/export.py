@@ -65,7 +65,8 @@ def export(
         raise ParameterError(
             f"MJCF is written: the file's name must end in .xml, got {require.format_value(target.name)}"
         )
-    require.choice("integrator", integrator, PORTABLE if require.boolean("portable", portable) else INTEGRATORS)
+    names = PORTABLE if require.choice("portable", portable, (True, False)) else INTEGRATORS
+    require.choice("integrator", integrator, names)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     require_meaningful(scene, setting, free, phi0, phi_dot0)
     if isinstance(scene, Standing):

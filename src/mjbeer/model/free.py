@@ -68,7 +68,7 @@ def attach(
       TemplateError: if a file of MJCF is missing or lacks an element.
     """
     require.instance("parent", parent, mujoco.MjSpec)
-    free = require.boolean("free", free)
+    free = require.choice("free", free, (True, False))
     place = require.samples("pos", pos, "m"), require.samples("quat", quat)
     if len(place[0]) != 3:
         raise ParameterError(f"pos must have 3 numbers, got {require.format_value(pos)}")

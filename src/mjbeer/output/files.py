@@ -24,12 +24,11 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
         full disk.
     """
     target = pathlib.Path(os.path.realpath(path))  # a link is kept, and the file that it points to is replaced
-    try:
+    with _output_errors(path, target.parent):
         if target.exists() and not target.is_file():
             raise OutputError(f"cannot write {path}: it is {'a folder' if target.is_dir() else 'not a regular file'}")
         if target.exists() and not os.access(target, os.W_OK):  # renaming would replace it although it is read-only
             raise OutputError(f"cannot write {path}: it is read-only")
-        _require_folder(path, target.parent)
         temporary = target.with_name(f".{target.stem}-{secrets.token_hex(4)}{target.suffix}")
         try:
             temporary.touch(exist_ok=False)
@@ -39,8 +38,22 @@ def atomic_write(path: str | os.PathLike[str]) -> Generator[pathlib.Path]:
             temporary.replace(target)
         finally:
             temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def _output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Generator[None]:
+    """Raise what the system has against a path as an `OutputError`.
+
+    If its folder does not exist it says so: making it would hide that its name is misspelt.
+    """
+    try:
+        yield
     except OSError as error:
-        raise _failure(path, error) from error
+        reason = error.strerror or error
+        if not folder.is_dir():
+            nearest = next(each for each in folder.parents if each.is_dir())
+            reason = f"there is no folder {folder}; the nearest one that exists is {nearest}"
+        raise OutputError(f"cannot write {path}: {reason}") from error
 
 
 @contextmanager
@@ -79,22 +92,8 @@ def make_folder(folder: pathlib.Path) -> None:
     Raises:
       OutputError: if it cannot be made.
     """
-    try:
-        _require_folder(folder, folder.absolute().parent)
+    with _output_errors(folder, folder.absolute().parent):
         folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise _failure(folder, error) from error
-
-
-def _require_folder(path: str | os.PathLike[str], folder: pathlib.Path) -> None:
-    """Check that the folder of a path exists: making it would hide that its name is misspelt."""
-    if not folder.is_dir():
-        nearest = next(each for each in folder.parents if each.is_dir())
-        raise OutputError(f"cannot write {path}: there is no folder {folder}; the nearest one that exists is {nearest}")
-
-
-def _failure(path: str | os.PathLike[str], error: OSError) -> OutputError:
-    return OutputError(f"cannot write {path}: {error.strerror or error}")
 
 
 @contextmanager

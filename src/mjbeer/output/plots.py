@@ -13,12 +13,10 @@ import matplotlib as mpl
 from cycler import cycler
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from mjbeer.output import files
 
@@ -108,22 +106,10 @@ def chart(
             files.write(path.with_name(path.name + ".svg"), svg)
 
 
-def label(axes: Axes, x: str, y: str, title: str = "", **settings: Any) -> None:
-    """Name both axes and the panel, and make other settings of `Axes.set`."""
-    axes.set(xlabel=x, ylabel=y, title=title, **settings)
-
-
 def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **style: Any) -> None:
     """Write a note or the name of a line, `offset` [points] to the right of and above a `place` in the data."""
     style = {"color": GREY, "fontsize": 9.5, "va": "center"} | style
     axes.annotate(text, place, offset, textcoords="offset points", **style)
-
-
-def ticks(axis: Axis, values: Sequence[float]) -> None:
-    """Mark these values on an axis and no others, and write them as plain numbers, on a logarithmic axis too."""
-    axis.set_major_locator(FixedLocator(list(values)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}".replace("-", "\N{MINUS SIGN}")))
-    axis.set_minor_formatter(NullFormatter())
 
 
 def add_tooltips(line: Line2D, texts: Sequence[str]) -> None:

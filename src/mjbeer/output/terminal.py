@@ -14,7 +14,6 @@ from rich.text import Text
 
 from mjbeer.exceptions import OutputError
 
-STDOUT = Console()
 STDERR = Console(stderr=True)
 
 
@@ -38,10 +37,10 @@ class Table:
 
     def markdown(self) -> str:
         """Return the table as Markdown, with the title in bold above it if there is one."""
-        heading = [f"**{self.title}**", ""] if self.title else []
+        heading = f"**{self.title}**\n\n" if self.title else ""
         rule = "|".join("---" if index in self.left else "---:" for index in range(len(self.columns)))
-        rows = [f"| {' | '.join(row)} |" for row in (self.columns, *self.rows)]
-        return "\n".join([*heading, rows[0], f"|{rule}|", *rows[1:]]) + "\n"
+        head, *rows = [f"| {' | '.join(row)} |\n" for row in (self.columns, *self.rows)]
+        return "".join([heading, head, f"|{rule}|\n", *rows])
 
     def tabbed(self) -> str:
         """Return the headings and the rows as lines with tabs between the columns, without rich's markup."""
@@ -50,17 +49,15 @@ class Table:
 
 
 def show(*tables: Table) -> None:
-    """Print tables to standard output; where a program reads it, as lines with tabs between the columns.
+    """Print tables to standard output, with the errors of `printing`.
 
-    Several tables then have an empty line between them, and each its title above it, after a #. The errors are those
-    of `printing`.
+    Where a program reads it, they are lines with tabs between the columns, below their titles, which follow a #.
     """
     if sys.stdout.isatty():
         with printing():
-            STDOUT.print(*tables)
+            Console().print(*tables)
     else:
-        titled = [f"# {table.title}\n" * (len(tables) > 1) + table.tabbed() for table in tables]
-        write("\n".join(titled))
+        write("\n".join(f"# {table.title}\n{table.tabbed()}" for table in tables))
 
 
 def say(text: str, style: str = "") -> None:

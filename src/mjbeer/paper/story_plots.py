@@ -9,19 +9,7 @@ from matplotlib.axes import Axes
 from scipy.integrate import solve_ivp
 
 from mjbeer.model.setting import DOP853
-from mjbeer.output.plots import (
-    COLOURS,
-    GREY,
-    PRINTED,
-    REFERENCE,
-    SIMULATED,
-    THEORY,
-    UNPHYSICAL,
-    label,
-    name_below,
-    note,
-    ticks,
-)
+from mjbeer.output.plots import COLOURS, GREY, PRINTED, REFERENCE, SIMULATED, THEORY, UNPHYSICAL, name_below, note
 from mjbeer.paper import hopping, oscillation
 from mjbeer.paper.claim import Seen, value
 from mjbeer.paper.frozen import PRINTED_8
@@ -60,8 +48,8 @@ def draw_trivial(panels: Sequence[Axes]) -> None:
         angle.plot(run.time, np.degrees(run.phi), color=colour, linewidth=width, label=f"can let go at φ = {degrees}°")
         ahead.plot(run.time, 1e3 * (run.u - even), color=colour, linewidth=width)
         ahead.plot(run.time, 1e3 * (centre - even), "k--", label="the beer's centre of mass, in both cans")
-    label(angle, "", "φ [°]", _TILT)
-    label(ahead, _TIME, "u − ½ g sin α t² [mm]", "How far it is ahead of an even acceleration")
+    angle.set(ylabel="φ [°]", title=_TILT)
+    ahead.set(xlabel=_TIME, ylabel="u − ½ g sin α t² [mm]", title="How far it is ahead of an even acceleration")
     name_below((angle, ahead), 2)
 
 
@@ -77,7 +65,7 @@ def draw_hesitation(panels: Sequence[Axes]) -> None:
     axes.plot(times, 1e3 * (run.u - even), label="MuJoCo", **SIMULATED)
     axes.plot(times, 1e3 * printed, label="eq. (25) as printed, but for a constant: twice in a swing", **PRINTED)
     axes.axhline(0, **REFERENCE)
-    label(axes, _TIME, "u − ½ g sin α t² [mm]", "Lead of the can over one that accelerates evenly")
+    axes.set(xlabel=_TIME, ylabel="u − ½ g sin α t² [mm]", title="Lead of the can over one that accelerates evenly")
     name_below([axes], 1)
 
 
@@ -94,7 +82,7 @@ def draw_looping(panels: Sequence[Axes]) -> None:
         axes.plot(x, printed, label="one ripple in a turn: (26) and (28) as printed", **PRINTED)
         axes.plot(x[::5], corrected[::5], "k.", label="and a second, twice in a turn: corrected")
         axes.plot(x, np.degrees(phi), label="MuJoCo", **SIMULATED)
-        label(axes, "", "beer ahead, φ − Ωt [°]", f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean")
+        axes.set(ylabel="beer ahead, φ − Ωt [°]", title=f"{about}: Ω = {turn.Omega:.0f} rad/s in the mean")
         axes.set_xticks(range(0, 361, 90))
     panels[-1].set_xlabel("even turning, Ωt [°]")
     name_below(panels, 1)
@@ -125,8 +113,8 @@ def draw_rocking(panels: Sequence[Axes]) -> None:
     angle.axhline(math.degrees(scene.equilibrium()), label="equilibrium, eq. (53)", **REFERENCE)
     error.plot(times, np.degrees(run.phi - truth), **SIMULATED)
     error.plot(times, np.degrees(printed - truth), **PRINTED)
-    label(angle, "", "φ [°]", _TILT)
-    label(error, _TIME, "φ less that of theory [°]", "How far each is from exact theory")
+    angle.set(ylabel="φ [°]", title=_TILT)
+    error.set(xlabel=_TIME, ylabel="φ less that of theory [°]", title="How far each is from exact theory")
     name_below([angle], 2)
 
 
@@ -149,8 +137,10 @@ def draw_roll_down(panels: Sequence[Axes]) -> None:
         axes.set_xlim(0, times[-1])
     normal.axhline(0, **REFERENCE)
     note(normal, f"no push at {parts:.3f} s", (parts, 7), (-6, 0), ha="right")
-    label(angle, "", "φ − 180° [°]", "How far the can has turned")
-    label(normal, _TIME, "normal force / weight", "How hard the incline pushes; below 0 it would have to pull")
+    angle.set(ylabel="φ − 180° [°]", title="How far the can has turned")
+    normal.set(
+        xlabel=_TIME, ylabel="normal force / weight", title="How hard the incline pushes; below 0 it would have to pull"
+    )
     name_below(panels, 2)
 
 
@@ -172,8 +162,8 @@ def draw_slip_and_hop(panels: Sequence[Axes]) -> None:
         axes.axvline(parts, **REFERENCE)
         axes.set_xlim(0, times[-1])
     note(moved, "from here on rolling\nwould need a pull", (parts, 5), (-6, 0), ha="right")
-    label(friction, "", "friction / normal force", "Friction that rolling needs", ylim=(0, 2.2))
-    label(moved, _TIME, "distance [mm]", "What the can does")
+    friction.set(ylabel="friction / normal force", title="Friction that rolling needs", ylim=(0, 2.2))
+    moved.set(xlabel=_TIME, ylabel="distance [mm]", title="What the can does")
     name_below(panels, 2)
 
 
@@ -202,6 +192,8 @@ def draw_lift_off(panels: Sequence[Axes]) -> None:
     note(axes, "Littlewood: 90°", (0.01, 90), (4, -9))
     note(axes, "heavier hoops never lift off: M/m = 1/13", (1 / 13, 70), (-4, 0), ha="right")
     axes.set_xscale("log")
-    label(axes, "mass of the hoop / weight on its rim, M / m", "angle of the weight from the top [°]")
-    ticks(axes.xaxis, (0.001, 0.002, 0.005, 0.01, 0.02, 0.05))
+    axes.set(xlabel="mass of the hoop / weight on its rim, M / m", ylabel="angle of the weight from the top [°]")
+    marks = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05)
+    axes.set_xticks(marks, map(str, marks))
+    axes.tick_params(which="minor", labelbottom=False)
     name_below([axes], 2)

@@ -16,7 +16,7 @@ from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result, json_values, line
+from mjbeer.checks import Check, Result, to_json
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
@@ -70,7 +70,7 @@ class Study:
 
     def save(self, path: pathlib.Path) -> None:
         """Write the study to a file, as lines of JSON: what it is of, and a line each result."""
-        files.write(path, "".join(map(line, [self.about, *(result.as_json() for result in self.results)])))
+        files.write(path, "".join(map(to_json, [self.about, *(result.as_json() for result in self.results)])))
 
 
 def run(
@@ -144,6 +144,5 @@ def machine() -> dict[str, Any]:
 
 def document(about: dict[str, Any], name: str, rows: Iterable[dict[str, Any]]) -> str:
     """Return as JSON what a study is about, and its rows under a name, a line each, with numbers of six digits."""
-    lines = (json.dumps(json_values(row), allow_nan=False) for row in rows)
-    rounded = (json.loads(line, parse_float=lambda digits: float(f"{float(digits):.6g}")) for line in lines)
+    rounded = (json.loads(to_json(row), parse_float=lambda digits: float(f"{float(digits):.6g}")) for row in rows)
     return json.dumps(about)[:-1] + f', "{name}": [\n' + ",\n".join(map(json.dumps, rounded)) + "\n]}\n"

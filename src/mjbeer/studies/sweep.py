@@ -87,7 +87,7 @@ def sweep(
       OutputError: if the output cannot be written.
       OSError: if the system ends one of the executor's processes.
     """
-    require.boolean("progress", progress)
+    require.choice("progress", progress, (True, False))
     if executor is not None and not isinstance(executor, Executor):
         raise ParameterError(f"executor must be a concurrent.futures.Executor, got {require.format_value(executor)}")
     path = None if output is None else require.path(output)

@@ -11,7 +11,7 @@ from typing import Any, Literal, ParamSpec, get_args
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import DissipationError, NoEquilibriumError, NoLibrationError, ParameterError
+from mjbeer.exceptions import NoEquilibriumError, NoLibrationError, ParameterError
 from mjbeer.theory import motion
 from mjbeer.theory.can import BEER, LENGTH, RADIUS, Can, Damping, Load
 from mjbeer.theory.oscillator import Oscillator
@@ -35,9 +35,8 @@ class Scene:
 
     Raises:
       ParameterError: if a parameter is outside the domain, the load outside the can, a frozen load damped, or nothing
-        has inertia at phi = 0.
+        has inertia at phi = 0; and by what has a meaning only with damping or drag, or only without them.
       NoEquilibriumError: by what needs a load at rest, if the incline is too steep or nothing restores the load.
-      DissipationError: by what has a meaning only with damping or drag, or only without them.
     """
 
     can: Can
@@ -211,7 +210,7 @@ class Scene:
     def _require_swing(self, missing: str) -> None:
         """Check that the load has an equilibrium to swing about for ever."""
         if self.dissipates:
-            raise DissipationError(
+            raise ParameterError(
                 f"{missing}: each swing of a load with damping or drag is smaller than the one before, got "
                 f"damping={self.damping!r} and drag={self.drag!r}; scene.modes() has the rates"
             )
@@ -224,7 +223,7 @@ class Scene:
         m g b sin(alpha + phi) = T(w). Without drag T is m_t g a sin(alpha), whatever the law.
         """
         if not self.dissipates:
-            raise DissipationError("no steady rolling: damping and drag are 0, and nothing else brakes the can")
+            raise ParameterError("no steady rolling: damping and drag are 0, and nothing else brakes the can")
         self.oscillator.equilibrium()  # whether anything restores the load
         radius, weight = self.can.radius, self.load.moment * self.gravity
         torque, (linear, quadratic, cubic) = self.downhill_weight * radius, self.damping_law.coefficients
@@ -259,7 +258,7 @@ class Scene:
             N s^3 + (c J_f/a^2 + d I) s^2 + (M k + c d) s + k (c/a^2 + d) = 0.
 
         Raises:
-          DissipationError, NoEquilibriumError: as `terminal_speed`.
+          ParameterError, NoEquilibriumError: as `terminal_speed`.
         """
         (slip, _, k), tilt, a, mass = self._steady_rolling(), self.terminal_tilt(), self.can.radius, self.effective_mass
         damping, drag = float(self.damping_law.derivative(slip)) / a**2, 2 * self.drag * a * abs(slip)
@@ -272,6 +271,19 @@ class Scene:
             correction = np.zeros_like(roots)
             roots -= np.divide(np.polyval(polynomial, roots), derivative, out=correction, where=derivative != 0)
         return np.sort_complex(roots)
+
+    def slip_rate(self) -> float:
+        """Return the mean slip rate of can and load [rad/s] with linear damping: m_t g a sin(alpha)/c, in any motion.
+
+        The motion must be steady, be it that the load stands still or loops; its rate varies, and so does the slip's.
+        """
+        linear, *others = self.damping_law.coefficients
+        if not linear > 0 or any(others) or self.drag > 0:
+            raise ParameterError(
+                "no mean slip rate follows from the scene alone: it does from linear damping without drag, got "
+                f"damping={self.damping!r} and drag={self.drag!r}"
+            )
+        return self.downhill_weight * self.can.radius / linear
 
     def acceleration(self) -> float:
         """Return the steady acceleration of the axis down the incline [m/s^2]: footnote 4, or eq. (1).

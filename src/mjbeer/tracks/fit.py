@@ -170,7 +170,7 @@ def fit(
       ParameterError: if an argument is not allowed, or the scene has not what is sought.
       MjbeerError: if no motion of such a scene is like the track.
     """
-    console = terminal.STDERR if require.boolean("progress", progress) else None
+    console = terminal.STDERR if require.choice("progress", progress, (True, False)) else None
     problem = _Problem(track, scene, free, {} if known is None else known, phi0, bend)
     # What is warned of is about guesses; the fitted run has its own.
     with warnings.catch_warnings(action="ignore"), terminal.progress_bar(console, 1 + _STARTS) as step:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mjbeer.checks import Check, observed_order
+from mjbeer.checks import Check
 from mjbeer.model.setting import DOP853, INTEGRATORS, Integrator, Rolling, supported
 from mjbeer.paper.frozen import equilibrium_53
 from mjbeer.simulation.simulate import simulate
@@ -142,4 +142,5 @@ def _order_error(scene: Scene, integrator: Integrator) -> float:
     runs = (simulate(scene, duration, 0.3, integrator=integrator, timestep=float(h)) for h in steps)
     errors = np.array([phi_error(run) for run in runs])
     fitted = (errors > between[0]) & (errors < between[1])
-    return observed_order(steps[fitted], errors[fitted]) - ORDERS[integrator][0]
+    order = np.polyfit(np.log(steps[fitted]), np.log(errors[fitted]), 1)[0]
+    return float(order) - ORDERS[integrator][0]

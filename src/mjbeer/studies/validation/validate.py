@@ -1,12 +1,11 @@
 """validate(): measure every check against theory and every claim of the paper; the tables of both."""
 
-import json
 from dataclasses import dataclass
 
 from rich.console import Console
 
 from mjbeer import paper
-from mjbeer.checks import Check, Result, json_values
+from mjbeer.checks import Check, Result, to_json
 from mjbeer.output.terminal import Table, progress_bar
 from mjbeer.studies.study import FAILED, machine
 from mjbeer.studies.validation import motion_checks, standing_checks, track_checks
@@ -54,7 +53,7 @@ class Validation:
             for name, results in (("checks", self.results), ("audit", self.audit))
         }
         content = {"versions": machine()["versions"], "passed": self.passed, **listed}
-        return json.dumps(json_values(content), indent=2, allow_nan=False) + "\n"
+        return to_json(content, indent=2)
 
 
 def checks() -> list[Check]:
