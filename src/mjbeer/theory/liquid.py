@@ -63,9 +63,7 @@ it is exact. No polynomial with non-negative coefficients is better over a decad
 _CURVED = (1 + math.sqrt(1 - 16 / (2 + 10**0.25 + 10**-0.25) ** 2)) / 2
 """Share of the quadratic term in the torque at the slip rate of that fit. With x the slip rate over the decade's
 geometric mean it is x + x^2 times a factor: over x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and most at the ends."""
-_EDGE = 0.03
-"""Length at the edges of the surface where the liquid slips or is carried along, over a: 1 mm in a 12-oz can. A third
-or three times of it changes c by a quarter."""
+_EDGE = 0.03  # of a, where the liquid slips beside the edges: a third or three times of it changes c by a quarter
 FILM_LOAD = 4.4427
 """Largest volume of a film that a turning wall carries round steadily, over a L sqrt(nu a W/g) (Moffatt, J. Mecanique
 16, 651, 1977). More liquid than that stays below as a pool."""
