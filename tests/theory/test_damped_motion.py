@@ -236,10 +236,8 @@ def test_steady_rolling_ends_at_the_largest_incline() -> None:
 def test_modes_are_eigenvalues(scene: Scene, power: float, drag: float, steep: float) -> None:
     """Of the Jacobian of the accelerations, by central differences, over six decades of damping."""
     scene = replace(scene, attachment="sliding")
-    a = scene.can.radius
-    clock = math.sqrt(a / scene.gravity)
-    mass = scene.mass + scene.can.inertia / a**2
-    scene = replace(scene, damping=10**power * mass * a**2 / clock, drag=drag * scene.mass / a)
+    a, (clock, unit) = scene.can.radius, natural(scene)
+    scene = replace(scene, damping=10**power * unit, drag=drag * scene.mass / a)
     scene = replace(scene, incline=steep * scene.largest_incline())
     state = np.array([scene.terminal_tilt(), 0.0, scene.terminal_speed()])
 

@@ -28,11 +28,6 @@ def wheel(can_mass: float = 0.1, load_mass: float = 0.2, offset: float = 0.5, **
     return Scene(Can(1.0, 1.0, can_mass, can_mass), Load(load_mass, offset), 0.0, **named)
 
 
-def shell(inertia: float) -> Scene:
-    """A can of radius 1 that is lighter than its load, which has an inertia of its own."""
-    return Scene(Can(1.0, 1.0, 0.1, 0.1), Load(0.2, 0.5, inertia), 0.0)
-
-
 EDGES = [
     ("can radius", 1e-3, 1e2, lambda value: Can(radius=value)),
     ("can length", 1e-3, 1e2, lambda value: Can(length=value)),
@@ -41,7 +36,7 @@ EDGES = [
     ("load mass", 1e-9, 1e4, lambda value: Load(value, 0.01)),
     ("load offset", 0.0, 1e2, lambda value: Load(1.0, value)),
     ("load offset", 1e-14, 1.0, lambda value: wheel(offset=value)),
-    ("load inertia", None, 2e3, shell),
+    ("load inertia", None, 2e3, lambda value: Scene(Can(1.0, 1.0, 0.1, 0.1), Load(0.2, 0.5, value), 0.0)),
     ("mass of the can over that of the load", 1e-4, 1e4, lambda value: wheel(value / 8, 1 / 8)),
     ("gravity", 1e-3, 1e3, lambda value: sliding(gravity=value)),
     ("phi0", -1e4, 1e4, lambda value: exact(sliding(), 0.0, value)),
@@ -66,19 +61,18 @@ def test_damping_and_drag_have_rates() -> None:
     """At phi = pi a wheel of 0.1 kg with K = 0.2 kg and a load of 0.2 kg at half its radius resists least."""
     rate = (0.2 * 0.25 + 2 * 0.2 * 0.5 + 0.4) / (0.4 * 0.2 * 0.25 * 0.5)
     for damping in (0.999e9 / rate, 1.001e-12 / rate, Damping(quadratic=0.999e9 / rate / 2)):
-        assert wheel(damping=damping * (1 - 1e-9) if isinstance(damping, float) and damping > 1 else damping).dissipates
+        assert wheel(damping=damping).dissipates
     wheel(drag=0.19e9)
     refuses("rate of damping must be 0, or between 1e-12 and 1e+09 [1/s], got", wheel, damping=1.01e9 / rate)
     refuses("rate of damping must be 0, or between", wheel, damping=Damping(quadratic=1e9 / rate))
     refuses("rate of drag must be 0, or between 1e-12 and 1e+09 [1/s], got 1050000000.0", wheel, drag=0.21e9)
 
 
-FILL = "fill must be between 0 and 1, got {!r}"
 NOTHING = "next to nothing resists rotation at phi = 0"
 REFUSED = [
     ("sheet thickness must be greater than 0", lambda: Can.sheet_metal(thickness=0.0)),
     ("load density must be greater than 0", lambda: sliding(density=0.0)),
-    (FILL.format(math.nextafter(1, 2)), lambda: sliding(fill=math.nextafter(1, 2))),
+    ("fill must be between 0 and 1, got 1.0000000000000002", lambda: sliding(fill=math.nextafter(1, 2))),
     ("incline must be between -pi/2 and pi/2 [rad] (90 degrees), got 1.57", lambda: sliding(math.pi / 2)),
     ("attachment must be one of 'sliding', 'frozen'; got 'glued'", lambda: Scene(Can(), BEER, attachment="glued")),
     ("a can without mass has no inertia, got mass 0 kg and inertia 1e-05 kg m^2", lambda: Can(inertia=1e-5)),
@@ -169,14 +163,6 @@ def test_full_and_nearly_full() -> None:
     gap = 2.0**-52
     # 1 - fill is exact, and b = 2 a^3 sin^3(beta) / 3A with sin(beta) = 2 sqrt(gap) to first order.
     assert segment(1 - gap).offset == pytest.approx(16 * gap**1.5 / (3 * math.pi), rel=QUADRATURE)
-
-
-@pytest.mark.parametrize("fill", [1e-30, 1e-300])
-def test_film(fill: float) -> None:
-    """A film of liquid is a parabola's segment: b = a, I_cm = m beta^2 a^2 / 5, however thin."""
-    shape = segment(fill)
-    assert shape.offset == pytest.approx(1, rel=QUADRATURE)
-    assert shape.inertia == pytest.approx(shape.half_angle**2 / 5, rel=QUADRATURE)
 
 
 def test_load_scales_with_the_can() -> None:

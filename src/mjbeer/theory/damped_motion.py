@@ -161,7 +161,7 @@ def _solve_stages(
 ) -> tuple[int, tuple[np.ndarray, np.ndarray] | None]:
     """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `sensitivity`.
 
-    Newton's method solves for all stages at once, and may fail: None. `scale` [rad/s] is the least rate that counts.
+    Newton's method solves for all stages at once, and may fail: None. Errors are relative to `scale` [rad/s] at least.
     """
     s, reach, begin, last = _STAGES, length * _MATRIX, state[1:, np.newaxis], math.inf
     stages, matrix, sides = np.repeat(begin, s, axis=1), np.empty((2 * s, 2 * s)), np.empty((2, s, 2))

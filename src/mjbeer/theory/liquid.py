@@ -47,10 +47,10 @@ LIQUIDS: dict[Name, Properties] = {
     "beer": Properties(1010.0, 1.6e-6),
     # CRC Handbook of Chemistry and Physics: 84 mPa s; oils differ by some 10 %.
     "olive oil": Properties(911.0, 9.2e-5),
-    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water, of which a hundredth takes a fifth.
+    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water, of which a hundredth takes a fifth
+    # (Cheng, Ind. Eng. Chem. Res. 47, 3285, 2008).
     "glycerol": Properties(1261.0, 1.12e-3),
-    # Of 18 % water, some 10 Pa s: 19 with 16 %, and a hundredth more takes a third (Munro, J. Econ. Entomol. 36, 769,
-    # 1943).
+    # Of 18 % water, some 10 Pa s: 19 with 16 %, a hundredth takes a third (Munro, J. Econ. Entomol. 36, 769, 1943).
     "honey": Properties(1420.0, 7e-3),
 }
 """Handbook values at 20 degrees Celsius."""
