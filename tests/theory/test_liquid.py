@@ -76,18 +76,16 @@ def test_the_fit_is_as_near_as_it_says() -> None:
     assert ratio.min() == pytest.approx(1 - FIT_ERROR, rel=1e-4)
 
 
-# Half full, 33 x 120 mm, at 10 degrees, as estimated once with slightly other viscosities: the effective damping
-# torque/slip rate [N m s], and the terminal speed [m/s], to the two digits that were given.
-ESTIMATES = [("water", 9.0e-5, 4.2), ("beer", 1.06e-4, 3.6), ("olive oil", 3.7e-4, 0.95), ("honey", 1.4e-2, 0.04)]
+# Half full, 33 x 120 mm, at 10 degrees, as estimated once with slightly other viscosities: the terminal speed [m/s].
+ESTIMATES = [("water", 4.2), ("beer", 3.6), ("olive oil", 0.95), ("honey", 0.04)]
 
 
-@pytest.mark.parametrize(("name", "effective", "speed"), ESTIMATES)
-def test_liquids_roll_as_estimated(name: str, effective: float, speed: float) -> None:
+@pytest.mark.parametrize(("name", "speed"), ESTIMATES)
+def test_liquids_roll_as_estimated(name: str, speed: float) -> None:
     scene, used = liquid(name), liquid_in(name)
     # Olive oil rolls more slowly than the swing slips for which its law is fitted.
     assert scene.terminal_speed() == pytest.approx(used.slip * 0.033, rel=FIT_ERROR if name == "olive oil" else 1e-12)
     assert scene.terminal_speed() == pytest.approx(speed, rel=0.15)
-    assert used.damping.torque(used.slip) / used.slip == pytest.approx(effective, rel=0.15)
     assert used.law == ("creep" if name == "honey" else "thin layers")
 
 
@@ -128,12 +126,9 @@ WARNED = {
 
 @pytest.mark.parametrize("name", WARNED)
 def test_a_liquid_that_is_no_lump_at_its_terminal_speed_warns_once(name: str) -> None:
-    with pytest.warns(
-        LiquidWarning, match=f"{name} as one lump is an order of magnitude only: .*{WARNED[name]}"
-    ) as all_of_them:
+    with pytest.warns(LiquidWarning, match=f"{name} as one lump is an order of magnitude.*{WARNED[name]}") as given:
         liquid(name)
-    assert len(all_of_them) == 1
-    assert all_of_them[0].filename == __file__
+    assert [each.filename for each in given] == [__file__]
     with pytest.warns(LiquidWarning, match="water as one lump .* can hold all of it"):
         liquid(fill=0.02)
     with warnings.catch_warnings():
@@ -173,5 +168,3 @@ def test_a_film_is_a_reason_once_the_wall_has_carried_it_up(degrees: float, seco
     if share:
         assert f"{100 * carried:.0f} %" == share
         assert f"the film on the wall can hold {share} of it" in run.warnings[0]
-    else:
-        assert carried * min(1, (run.u[-1] - run.u[0]) / (2 * math.pi * 0.033)) < 1 / 3

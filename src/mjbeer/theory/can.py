@@ -9,16 +9,11 @@ import numpy as np
 from mjbeer import require
 from mjbeer.exceptions import ParameterError
 
-RADIUS = 0.033
-"""Radius of a 12-oz can [m]; paper, after eq. (31)."""
-LENGTH = 0.12
-"""Length of a 12-oz can [m]; paper, after eq. (31)."""
-THICKNESS = 1e-4
-"""Wall thickness of an aluminium drinks can [m]; a common value, as the paper gives none."""
-ALUMINIUM = 2700.0
-"""Density of aluminium [kg/m^3]; handbook value."""
-BEER = 1000.0
-"""Density of beer [kg/m^3]: that of water, rounded, from which beer differs by about 1 %."""
+RADIUS = 0.033  # of a 12-oz can [m]; paper, after eq. (31)
+LENGTH = 0.12  # of a 12-oz can [m]; paper, after eq. (31)
+THICKNESS = 1e-4  # of the wall of an aluminium drinks can [m]; a common value, as the paper gives none
+ALUMINIUM = 2700.0  # density [kg/m^3]; handbook value
+BEER = 1000.0  # density [kg/m^3]: that of water, rounded, from which beer differs by about 1 %
 # Trigonometric polynomials of sixth degree over half a turn: 24 Gauss points would integrate them to rounding.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(40)
 

@@ -39,12 +39,10 @@ def _radau_points() -> np.ndarray:
     return np.append(points[:-1], 1.0)
 
 
-_NODES = np.append(-1.0, _radau_points())
-"""The start and the stages of a step."""
+_NODES = np.append(-1.0, _radau_points())  # the start and the stages of a step
 _INTEGRALS = legendre.legint(np.linalg.inv(legendre.legvander(_NODES[1:], _STAGES - 1)), lbnd=-1) / 2
 """The coefficients P_0 to P_s of the integral, over a step of length 1, of the polynomial through values at stages."""
-_MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _INTEGRALS
-"""That integral at the stages, a_ij of the method."""
+_MATRIX = legendre.legvander(_NODES[1:], _STAGES) @ _INTEGRALS  # that integral at the stages, a_ij of the method
 _TO_SERIES = np.linalg.inv(legendre.legvander(_NODES, _STAGES))
 """The coefficients P_0 to P_s of the polynomial through values at the start and the stages."""
 
@@ -71,12 +69,7 @@ def _rates_of(scene: Scene) -> Rates:
 
 
 def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple[np.ndarray, ...]:
-    """Return phi [rad], phi_dot [rad/s], u [m] and u_dot [m/s] at the times `time` [s], none of them negative.
-
-    Raises:
-      ToleranceError: if rounding of start and scene changes phi or u/a by more than 1e-4 rad, relative beyond 1 rad, or
-        if the motion takes too many steps, or too short ones.
-    """
+    """Return phi [rad], phi_dot [rad/s], u [m] and u_dot [m/s] at times [s], with the errors of `exact`."""
     radius, (u0, u_dot0) = scene.can.radius, scene.start(phi0, phi_dot0)
     if scene.incline == 0 and Start.at(scene.oscillator, phi0, phi_dot0).stays(phi0):
         still = np.zeros_like(time)
@@ -93,8 +86,7 @@ def solve(scene: Scene, time: np.ndarray, phi0: float, phi_dot0: float) -> tuple
 def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: float, corners: np.ndarray) -> np.ndarray:
     """Return how far phi and roll have turned [rad], phi_dot and w [rad/s] at sorted times, of shape (4, times).
 
-    The `state` is phi, phi_dot and w at time 0, and the rows of `corners` are the sums of phi_dot and w whose absolute
-    values count.
+    The `state` is phi, phi_dot and w at time 0; a row of `corners` is a sum of phi_dot and w with an absolute value.
     """
     now, latest, deltas, largest = 0.0, float(time[-1]), np.zeros(2), np.ones(2)
     done = int(np.searchsorted(time, 0.0, "right"))
@@ -151,10 +143,7 @@ def _integrate(rates: Rates, time: np.ndarray, state: np.ndarray, swing_rate: fl
 
 
 def _share_to_corner(nodes: np.ndarray, corners: np.ndarray) -> float | None:
-    """Return the share of a step at which the first of the sums whose absolute values count passes zero inside.
-
-    The `nodes` are phi_dot and w at the start and the stages, of shape (stages + 1, 2).
-    """
+    """Return the share of a step, with phi_dot and w at its `nodes`, at which the first corner is passed, if one is."""
     sums, shares = nodes @ corners.T, []
     # The polynomial through the stages is off by up to 72 eps in trials: each processor sums in another order.
     signs = np.where(np.abs(sums) > 256 * EPS * np.abs(nodes).sum(axis=1).max(), np.sign(sums), 0.0)
@@ -172,7 +161,7 @@ def _solve_stages(
 ) -> tuple[int, tuple[np.ndarray, np.ndarray] | None]:
     """Return the number of corrections, phi_dot and w at the stages of a step, and their changes by the `sensitivity`.
 
-    Newton's method solves for all stages at once, and may fail: None. `scale` [rad/s] is the least rate that counts.
+    Newton's method solves for all stages at once, and may fail: None. Errors are relative to `scale` [rad/s] at least.
     """
     s, reach, begin, last = _STAGES, length * _MATRIX, state[1:, np.newaxis], math.inf
     stages, matrix, sides = np.repeat(begin, s, axis=1), np.empty((2 * s, 2 * s)), np.empty((2, s, 2))

@@ -47,10 +47,10 @@ LIQUIDS: dict[Name, Properties] = {
     "beer": Properties(1010.0, 1.6e-6),
     # CRC Handbook of Chemistry and Physics: 84 mPa s; oils differ by some 10 %.
     "olive oil": Properties(911.0, 9.2e-5),
-    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water, of which a hundredth takes a fifth.
+    # Segur and Oberstar, Ind. Eng. Chem. 43, 2117 (1951): 1.41 Pa s without water, of which a hundredth takes a fifth
+    # (Cheng, Ind. Eng. Chem. Res. 47, 3285, 2008).
     "glycerol": Properties(1261.0, 1.12e-3),
-    # Of 18 % water, some 10 Pa s: 19 with 16 %, and a hundredth more takes a third (Munro, J. Econ. Entomol. 36, 769,
-    # 1943).
+    # Of 18 % water, some 10 Pa s: 19 with 16 %, a hundredth takes a third (Munro, J. Econ. Entomol. 36, 769, 1943).
     "honey": Properties(1420.0, 7e-3),
 }
 """Handbook values at 20 degrees Celsius."""
@@ -63,9 +63,7 @@ it is exact. No polynomial with non-negative coefficients is better over a decad
 _CURVED = (1 + math.sqrt(1 - 16 / (2 + 10**0.25 + 10**-0.25) ** 2)) / 2
 """Share of the quadratic term in the torque at the slip rate of that fit. With x the slip rate over the decade's
 geometric mean it is x + x^2 times a factor: over x^1.5 that is sqrt(x) + 1/sqrt(x), 2 at x = 1 and most at the ends."""
-_EDGE = 0.03
-"""Length at the edges of the surface where the liquid slips or is carried along, over a: 1 mm in a 12-oz can. A third
-or three times of it changes c by a quarter."""
+_EDGE = 0.03  # of a, where the liquid slips beside the edges: a third or three times of it changes c by a quarter
 FILM_LOAD = 4.4427
 """Largest volume of a film that a turning wall carries round steadily, over a L sqrt(nu a W/g) (Moffatt, J. Mecanique
 16, 651, 1977). More liquid than that stays below as a pool."""

@@ -165,11 +165,7 @@ class Oscillator:
         return (weight + torque - d_inertia * phi_dot**2 / 2) / self.inertia(phi)
 
     def equilibrium(self) -> float:
-        """Return the angle of stable equilibrium [rad], where |ramp| <= depth: eq. (53) for a frozen load.
-
-        Raises:
-          NoEquilibriumError: if the load is balanced about the axis, or there is no gravity.
-        """
+        """Return the angle of stable equilibrium [rad], where |ramp| <= depth: eq. (53) for a frozen load."""
         if self.depth == 0:
             raise NoEquilibriumError(
                 "nothing restores the load: it is balanced about the axis (offset 0 m) or gravity is 0 m/s^2, "

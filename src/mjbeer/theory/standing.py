@@ -53,6 +53,7 @@ class Standing:
     damping_ratio: float | None = None
     """Damping of every mode over the critical one; None: what the layers on the walls give."""
     gravity: float = GRAVITY
+    """Acceleration of gravity [m/s^2]."""
 
     def __post_init__(self) -> None:
         require.instance("can", self.can, Can)
@@ -61,8 +62,7 @@ class Standing:
                 raise ParameterError(f"a can that stands free must have {what}, as Can.sheet_metal(), got {self.can!r}")
         fill = require.number("fill", self.fill)
         if not 0 < fill < 1:
-            got = require.format_value(self.fill)
-            raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {got}")
+            raise ParameterError(f"fill must be between 0 and 1: a full can has no free surface, got {fill!r}")
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         ratio = self.damping_ratio
@@ -182,9 +182,8 @@ def standing(
 ) -> Standing:
     """Return a can that stands, by default `Can.sheet_metal()`, with a liquid in it that sloshes.
 
-    `liquid` is a name that `mjbeer.liquid` knows. `fill` is the height of the liquid over the can's length. `modes` of
-    the slosh move in the model, the others are fixed to the can; with 0 the liquid is solid. `damping_ratio` is that of
-    every mode; by default it follows from the viscosity, for a clean surface: foam or dust doubles it.
+    `liquid` is a name that `mjbeer.liquid` knows; the others are fields of `Standing`. By default the damping follows
+    from the viscosity, for a clean surface: foam or dust doubles it.
 
     A `LiquidWarning` says where the layers on the walls are not thin, so that the damping is an order of magnitude.
 

@@ -141,9 +141,7 @@ class Trajectory(Coordinates):
         return not self.warnings
 
     def frequency(self) -> float:
-        """Return the angular frequency of the swing [rad/s], measured at all its turning points.
-
-        With damping or drag these are the turning points until the swing has died away.
+        """Return the angular frequency of the swing [rad/s], measured at all its turning points until it dies away.
 
         Raises:
           NoEquilibriumError: if the load has no equilibrium to swing about.
@@ -222,8 +220,8 @@ def exact(scene: Scene, time: ArrayLike, phi0: float, phi_dot0: float = 0.0) -> 
       ParameterError: if `scene` is no scene, a time is negative or not finite, the start is not between -1e4 and 1e4
         rad or -1e6 and 1e6 rad/s, the motion has more than 1e4 turns on an incline, or is beyond double precision.
       NoLibrationError: if the start is so near the separatrix that its rounding decides how the motion goes on.
-      ToleranceError: with damping or drag, if the start is so near an unstable balance that its rounding changes phi by
-        more than 1e-4 rad, or the motion takes too many steps; the message says until when it can be followed.
+      ToleranceError: with damping or drag, if the motion takes too many steps, or rounding of the start changes phi by
+        more than 1e-4 rad; the message says until when it can be followed.
     """
     require.instance("scene", scene, Scene)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
