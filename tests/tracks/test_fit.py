@@ -127,7 +127,7 @@ def test_the_plot_and_the_command_show_the_fit(tmp_path: pathlib.Path, capsys: p
 def test_the_film_has_the_tracked_places_as_marks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the model is the track, they are where the can is."""
     taken = []
-    monkeypatch.setattr("mjbeer.drawing.film.MotionFilm", lambda run, speed, look: taken.append(look.measured) or 1 / 0)
+    monkeypatch.setattr("mjbeer.drawing.film.MotionFilm", lambda run, look, speed: taken.append(look.measured) or 1 / 0)
     result = found(filmed(OIL, noise=0.0), OIL, bend=0.0)
     with pytest.raises(ZeroDivisionError):
         result.video("can.mp4")
