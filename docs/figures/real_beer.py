@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
-from mjbeer.drawing.words import in_degrees, in_words
+from mjbeer.drawing.words import in_degrees
 from mjbeer.output.plots import COLOURS, GREY, REFERENCE, THEORY, chart, name_below, note
 from mjbeer.simulation.simulate import simulate
 from mjbeer.theory.can import THICKNESS, Can, Damping, segment
@@ -166,7 +166,7 @@ def draw_liquids(path: pathlib.Path) -> None:
         name: sliding(density=LIQUIDS[name].density, damping=liquid_in(name).damping) for name in NAMES
     }
     title = "From frictionless to frozen: a lump of liquid comes to a terminal speed"
-    subtitle = f"{in_words(sliding(), {'load'})}; let go with a level surface; lines by MuJoCo"
+    subtitle = f"half-full massless can, incline {in_degrees(INCLINE)}; let go with a level surface; lines by MuJoCo"
     with chart(path, 1, 2, width=10, height=5.6, title=title, subtitle=subtitle) as (fast, slow):
         for (name, scene), colour in zip((scenes | {"ice": frozen()}).items(), _PAINTS, strict=True):
             run = let_go(scene, times)

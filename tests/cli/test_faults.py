@@ -45,7 +45,7 @@ def test_what_cannot_be_written_is_known_before_the_work(
     words: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     work = ["report.page.validate", "studies.benchmark.timing.conduct", "studies.stability.stability_study.conduct"]
-    work.append("drawing.video.encode" if words == "render frozen" else "cli.motions.trajectory_of")
+    work.append("drawing.video._mediapy" if words == "render frozen" else "cli.motions.trajectory_of")
     for each in work:
         monkeypatch.setattr(f"mjbeer.{each}", lambda *_, **__: pytest.fail("the work was begun"))
     ending = {"export frozen": ".xml", "render frozen": ".mp4"}.get(words, "")

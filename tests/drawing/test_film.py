@@ -12,7 +12,7 @@ from mjbeer import Scene, Trajectory, exact, frozen, simulate, sliding
 from mjbeer.drawing.camera import View, follow, on_incline, scale
 from mjbeer.drawing.film import MotionFilm
 from mjbeer.drawing.overlay import HEADER, Look
-from mjbeer.drawing.scene import Display, Painter, Scenery, coordinates
+from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.can import RADIUS, segment
 
@@ -50,7 +50,7 @@ def look(scene: Scene, phis: np.ndarray, rolls: np.ndarray) -> list[Callable[[fl
         column, row = view.pixel(np.array([right, view.eye[1] + view.distance, up]))
         return picture[int(row) + top, int(column)].astype(int)
 
-    drawn = MotionFilm(lambda: still, 1.0, FIXED).plan().draw(times, *SIZE)
+    drawn = MotionFilm(lambda: still, FIXED, speed=1.0).plan().draw(times, *SIZE)
     return [partial(at, *of) for of in zip(drawn, u, strict=True)]
 
 
@@ -95,7 +95,7 @@ def test_the_mark_turns_with_the_can(make: Callable[[float], Scene]) -> None:
 @pytest.mark.draws
 def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
     moved = motion()
-    display, view = Display.of([moved.scene]), still_view(moved, SIZE)
+    display, view = Display([moved.scene]), still_view(moved, SIZE)
     pictures = []
     for still in (False, True):
         sheet = Sheet(*SIZE)
@@ -112,7 +112,7 @@ def test_before_a_still_camera_nothing_is_left_of_earlier_pictures() -> None:
 def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
     """Across the can's axis and from above; on edges and far away, textures are blurred."""
     scene = sliding(math.radians(incline))
-    display = Display.of([scene])
+    display = Display([scene])
     display.pose(np.zeros((1, 4)))
     model = display.model
     flat = [model.geom(name).id for name in ("wall", "board")]
@@ -122,7 +122,7 @@ def test_the_scenery_is_what_opengl_would_draw(incline: float) -> None:
     above = View.towards(points.mean(axis=0) + np.array([0.0, -2.4, 1.6]), points, (400, 200), 0, 0.01)
     for view in (still_view(motion(scene.incline), (400, 200)), above):
         sheet = Sheet(*view.pixels)
-        Scenery(display).draw(sheet, view)
+        display.draw_empty(sheet, view)
         with closing(Painter(display, view.pixels)) as painter:
             drawn = painter._draw(view, 0)
         assert (drawn[..., 3] == 255).all()
@@ -150,7 +150,7 @@ def test_a_picture_of_any_shape_can_be_drawn_and_graphics_memory_is_freed(
     """Also if drawing stops early."""
     closed, real = [], Painter.close
     monkeypatch.setattr(Painter, "close", lambda painter: (closed.append(painter), real(painter)))
-    drawing = MotionFilm(motion, 1.0).plan().draw(np.linspace(0, 0.4, 5), *size)
+    drawing = MotionFilm(motion, speed=1.0).plan().draw(np.linspace(0, 0.4, 5), *size)
     assert next(drawing).shape == (size[1], size[0], 3)
     assert closed == []
     drawing.close()
@@ -172,5 +172,5 @@ def test_a_picture_of_any_shape_can_be_drawn_and_graphics_memory_is_freed(
 )
 def test_a_motion_of_any_kind_can_be_drawn(moved: Trajectory) -> None:
     middle = moved.time[[len(moved.time) // 2]]
-    (drawn,) = MotionFilm(lambda: moved, 1.0).plan().draw(middle, 320, 180)
+    (drawn,) = MotionFilm(lambda: moved, speed=1.0).plan().draw(middle, 320, 180)
     assert np.ptp(drawn) > 200

@@ -41,11 +41,10 @@ class Recorder(Sheet):
 
 def drawn(motion: Trajectory, time: float, *kinds: Mark) -> tuple[Recorder, View, np.ndarray]:
     """Draw marks, and return the sheet, the view, and the coordinates at that time."""
-    positions = coordinates(motion, TIMES)
     view = follow(motion, "fixed", PLANE, PIXELS)[0](time)
     (now,) = coordinates(motion, np.array([time]))
     sheet = Recorder(*PIXELS)
-    Marks(motion, Look("", marks=kinds), PLANE, TIMES, positions).draw(sheet, view, time, now)
+    Marks(motion, Look("", marks=kinds), PLANE).draw(sheet, view, time, now)
     return sheet, view, now
 
 
@@ -126,7 +125,7 @@ def test_the_ghost_is_where_even_acceleration_has_it() -> None:
 def test_gravity_is_plumb_and_the_incline_s_angle_and_distances_are_as_written(incline: float, radius: float) -> None:
     """Each tick is where a point of the board at that distance from the start is seen, in a can of any size."""
     scene, start = frozen(math.radians(incline), can=Can.massless(radius, 3.6 * radius)), radius / 3
-    motion, display = exact(scene, np.linspace(0, 0.5, 51) * math.sqrt(radius / 0.033), 1.0), Display.of([scene])
+    motion, display = exact(scene, np.linspace(0, 0.5, 51) * math.sqrt(radius / 0.033), 1.0), Display([scene])
     board, view = Board(display, start), follow(motion, "fixed", display.ends()[0], PIXELS)[0](0.0)
     sheet = Recorder(*PIXELS)
     board.draw(sheet, view)

@@ -37,7 +37,7 @@ def test_the_plates_have_all_times() -> None:
     """Also that of a can which finishes after the end."""
     cans = [run(frozen(INCLINE, fill=1.0)), run(sliding(INCLINE, can=METAL))]
     last, first = (can.finish(1.0) for can in cans)
-    race = partial(Race, "a race", lambda: cans, 1.0, speed=0.5, still=0.0)
+    race = partial(Race, "a race", lambda: cans, 1.0, speed=0.5)
     assert race(duration=last + 0.1).results(cans) == [(last, f"2nd: {last:.2f} s"), (first, f"1st: {first:.2f} s")]
     early = race(duration=last - 0.01).results(cans)
     assert early == [(pytest.approx(last - 0.41), f"needs {last:.2f} s"), (first, f"1st: {first:.2f} s")]
@@ -60,7 +60,7 @@ def test_centres_of_mass_stay_abreast_however_the_beer_swings(monkeypatch: pytes
     monkeypatch.setattr(Sheet, "line", keep)
     for near in (1.0, 0.0):
         cans = [run(sliding(INCLINE), phi0, 0.6) for phi0 in (near, 0.0)]
-        race = Race("a comparison", partial(list, cans), 0.3, 0.6, 1.0, still=0.0, centres=True)
+        race = Race("a comparison", partial(list, cans), 0.3, 0.6, speed=1.0, centres=True)
         pictures = list(race.plan().draw(np.array([0.0, 0.2, 0.4]), 640, 360))
     red = [np.median(np.nonzero(picture[..., 0] > 2.0 * picture[..., 1])[1]) for picture in pictures]
     assert np.diff(red).min() > 20

@@ -43,16 +43,14 @@ def check(display: Display, number: int, u: float, phi: float, roll: float, lift
 def test_any_scene_anywhere(scene: Scene, turns: float, phi: float, roll: float, height: float) -> None:
     a = scene.can.radius
     phi = roll if scene.attachment == "frozen" else phi
-    display = Display.of([scene])
+    display = Display([scene])
     display.pose(np.array([[turns * a, phi, roll, height * a]]))
     check(display, 0, turns * a, phi, roll, height * a)
 
 
 def test_cans_side_by_side_are_posed_and_painted_by_themselves() -> None:
     """Of another kind each, on one board that is as wide as all lanes; a load without a colour keeps its own."""
-    display = Display.of(
-        [sliding(0.1, can=METAL), frozen(0.1, can=METAL, fill=0.9), sliding(0.1, can=METAL)], apart=0.2
-    )
+    display = Display([sliding(0.1, can=METAL), frozen(0.1, can=METAL, fill=0.9), sliding(0.1, can=METAL)], apart=0.2)
     positions = np.array([[0.1, 0.5, 3.0, 0.0], [0.2, 1.0, 1.0, 0.01], [0.3, 7.0, 7.0, 0.0]])
     display.pose(positions)
     for number, position in enumerate(positions):
@@ -73,8 +71,8 @@ def test_cans_side_by_side_are_posed_and_painted_by_themselves() -> None:
 @pytest.mark.parametrize("radius", [1e-3, 1.0])
 def test_size_does_not_show(radius: float) -> None:
     """The same geoms and vertices for a can of 1 mm as for one of 1 m."""
-    one = Display.of([sliding(can=Can.massless(0.05, 0.1))]).model
-    other = Display.of([sliding(can=Can.massless(radius, 2 * radius))]).model
+    one = Display([sliding(can=Can.massless(0.05, 0.1))]).model
+    other = Display([sliding(can=Can.massless(radius, 2 * radius))]).model
     for field in ("geom_pos", "geom_size", "mesh_vert", "mat_texrepeat", "body_pos"):
         assert np.allclose(getattr(one, field), getattr(other, field), rtol=1e-6, atol=1e-9), field
     assert one.stat.extent == pytest.approx(other.stat.extent)

@@ -63,7 +63,7 @@ def test_a_video_is_h264_of_the_size_and_length_asked_for(tmp_path: pathlib.Path
 @pytest.mark.parametrize(("speed", "fps", "expected"), [(1, 20, 10), (0.5, 20, 20), (100, 20, 1)])
 @pytest.mark.usefixtures("undrawn")
 def test_speed_stretches_time(speed: float, fps: float, expected: int, tmp_path: pathlib.Path) -> None:
-    assert MotionFilm(motion, speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
+    assert MotionFilm(motion, speed=speed).plan().times(fps) == pytest.approx(speed / fps * np.arange(expected))
     video.render(motion(), tmp_path / "can.mp4", speed=speed, fps=fps, progress=False, **SIZE)
     assert len(decode(tmp_path / "can.mp4")[1]) == expected
 
@@ -92,7 +92,6 @@ def test_bad_input_says_what_is_allowed(
     ("script", "kind", "reason"),
     [
         ("echo out of tune >&2\nexit 3\n", RenderingError, "out of tune\nReinstall it"),
-        ("cat > /dev/null\n", RenderingError, "it ended before the video did\nReinstall it"),
         ("cat > /dev/null\necho 'Error: No space left on device' >&2\nexit 1\n", OutputError, "can.mp4: No space left"),
     ],
 )

@@ -134,7 +134,7 @@ def test_the_film_has_the_tracked_places_as_marks(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("mjbeer.drawing.video.write", mock.Mock())
     result = found(filmed(OIL, noise=0.0), OIL, bend=0.0)
     result.video("can.mp4")
-    time, u = film.call_args.args[2].measured[50:].T  # it moves from 0.4 s on
+    time, u = film.call_args.args[1].measured[50:].T  # it moves from 0.4 s on
     assert u == pytest.approx(np.interp(time, result.run.time, result.run.u), abs=1e-6)
 
 

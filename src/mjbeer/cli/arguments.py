@@ -50,9 +50,7 @@ _MEANINGS = {
 
 def angle(text: str) -> float:
     """Read an angle in degrees, or a rate in degrees/s, as one in radians."""
-    if not math.isfinite(degrees := float(text)):
-        raise ArgumentTypeError(f"it must be a finite number [degrees], got {text}")
-    return math.radians(degrees)
+    return math.radians(float(text))
 
 
 def numbers(text: str) -> float | np.ndarray:
@@ -115,7 +113,9 @@ OPTIONS = {
         *_RUN,
         Option("--output", "MP4 file to write", "mjbeer.mp4", Path),
         Option("--speed", "playback speed: 1 is real time, 0.25 is four times slower", 1.0),
-        Option("--camera", "fixed, pan (moves along evenly), close (goes with the can), or auto", "auto", CAMERAS),
+        Option(
+            "--camera", "fixed, pan (moves along evenly), or auto (pan where the can would be small)", "auto", CAMERAS
+        ),
         Option("--width", "width of the video [pixels]", 1280, int),
         Option("--height", "height of the video [pixels]", 720, int),
     ),

@@ -33,16 +33,9 @@ class Summary:
         # Where rolling needs no more than there is, this saves the run that looks for the first time at which it does.
         enough = trajectory.record.needed_friction <= friction
         self.rolls_until = math.inf if enough else trajectory.rolls_until(friction)
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a real can would do otherwise although the run is right: a sentence, or none.
-
-        In contact the can simply slips, and the run's own warnings say so.
-        """
-        slips = f"from t = {self.rolls_until:.6g} s with a friction coefficient of {self.friction:g}"
-        silent = self.trajectory.rolling == "contact" or math.isinf(self.rolls_until)
-        return () if silent else (f"a real can would slip {slips}",)
+        # Although the run is right. In contact the can simply slips, and the run's own warnings say so.
+        slips = f"a real can would slip from t = {self.rolls_until:.6g} s with a friction coefficient of {friction:g}"
+        self.notes = [slips] if trajectory.rolling != "contact" and math.isfinite(self.rolls_until) else []
 
     @property
     def key_figures(self) -> tuple[KeyFigure, ...]:

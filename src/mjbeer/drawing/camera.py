@@ -16,10 +16,8 @@ Camera = Literal["auto", "fixed", "pan"]
 """fixed: still, and so far away that all of the motion is seen. pan: moves along the incline with the constant
 acceleration that fits the motion best. auto: fixed, or pan where the can would be small."""
 CAMERAS: tuple[Camera, ...] = ("auto", "fixed", "pan")
-_LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-"""Axes of an eye that looks along the can's axis: right is downhill, up is up, and backwards is towards the reader."""
-AROUND = 1.9
-"""What is seen around the can's axis on each side, and below it, at least, in radii: the can, its angle, the board."""
+_LEVEL = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # axes of an eye along the can's axis
+AROUND = 1.9  # radii that are seen around the can's axis at least: the can, its angle, the board
 _SMALLEST = 0.11  # radius below which the camera pans, unless told otherwise, in heights of the picture
 
 
@@ -51,8 +49,7 @@ class View:
 
     eye: np.ndarray  # where the eye is [m]
     axes: np.ndarray  # unit vectors in its rows: to the right, up, and backwards from the eye
-    low: np.ndarray
-    """The lower left corner of what is seen, as distances to the right and up over the distance from the eye."""
+    low: np.ndarray  # lower left corner of what is seen, as distances to the right and up over that from the eye
     high: np.ndarray  # the upper right corner, likewise
     distance: float  # distance of what is looked at from the eye [m]
     pixels: tuple[int, int]  # width and height of the picture [pixels]
@@ -60,10 +57,7 @@ class View:
 
     @classmethod
     def facing(cls, centre: np.ndarray, metres: np.ndarray, pixels: tuple[int, int]) -> Self:
-        """Return the view along the can's axis of a rectangle in a plane across it.
-
-        `centre` is the rectangle's centre and `metres` its width and height [m].
-        """
+        """Return the view along the can's axis of a rectangle across it, from its centre and its size in `metres`."""
         # The longer the distance, the less of the can's inside is seen; from above, the board's upper side is.
         distance, above = 4 * float(np.hypot(*metres)), 0.18 * float(metres[1])
         foot = np.array([0.0, -above])
@@ -72,10 +66,8 @@ class View:
 
     @classmethod
     def towards(cls, eye: np.ndarray, points: np.ndarray, pixels: tuple[int, int], top: int, margin: float) -> Self:
-        """Return the upright view from an `eye` [m] that just shows some points [m], shape (n, 3).
-
-        Around them there is a `margin`, in sizes of the picture.
-        """
+        """Return the upright view from an `eye` [m] that just shows some points [m], shape (n, 3), with a `margin`
+        around them, in sizes of the picture."""
         away = eye - points.mean(axis=0)
         distance = float(np.linalg.norm(away))
         right = np.array([-away[1], away[0], 0.0]) / np.hypot(away[0], away[1])

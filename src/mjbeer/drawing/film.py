@@ -1,10 +1,9 @@
-"""A film of a motion: its pictures one after the other, how fast it is shown, and its caption."""
+"""Films: pictures one after the other, how fast they are shown, and a caption; and the film of one motion."""
 
 from collections.abc import Callable, Generator
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
 
 import numpy as np
 
@@ -42,33 +41,27 @@ class RenderPlan:
         return self.start + speed / fps * np.arange(max(1, round(count)))
 
 
-class Film(Protocol):
-    """A film, which can be pickled so that another process can draw it, with what its caption says.
+@dataclass(frozen=True, kw_only=True)
+class Film:
+    """A film, which can be pickled so that another process can draw it."""
 
-    Its still picture shows a time [s]; 0 is a third of the way through. `plan` computes its motion.
-    """
+    speed: float
+    still: float = 0.0  # time of the picture that stands for the film [s]; 0 is a third of the way through
+    caption: str = ""  # what is seen, in whole sentences, for the text beside the film
 
-    @property
-    def caption(self) -> str: ...
-
-    @property
-    def still(self) -> float: ...
-
-    def plan(self) -> RenderPlan: ...
+    def plan(self) -> RenderPlan:
+        """Compute what moves, and return what is needed to draw it."""
+        raise NotImplementedError
 
 
 @dataclass(frozen=True)
-class MotionFilm:
+class MotionFilm(Film):
     """The film of a motion."""
 
     trajectory: Callable[[], Trajectory]  # a function that computes the motion, and that can be pickled
-    speed: float
     look: Look | None = None  # what is drawn; None is the usual look of such a motion
-    still: float = 0.0
-    caption: str = ""
 
     def plan(self) -> RenderPlan:
-        """Compute the motion, and return what is needed to draw it."""
         motion = self.trajectory()
         if (np.diff(motion.time) <= 0).any():
             raise ParameterError(
@@ -81,16 +74,15 @@ class MotionFilm:
 def _pictures(
     trajectory: Trajectory, look: Look, speed: float, times: np.ndarray, width: int, height: int
 ) -> Generator[np.ndarray]:
-    sheet, display = Sheet(width, height), Display.of([trajectory.scene])
+    sheet, display = Sheet(width, height), Display([trajectory.scene])
     has_room = len(trajectory.time) > 1 and width > 24 * sheet.unit  # in a narrower picture charts are not readable
     below = round(STRIP * sheet.unit) if has_room and look.strips else 0
     top, spare = round(HEADER * sheet.unit), round(NOTE * sheet.unit) if look.notes else 0
     seen = height - top - below  # of the scene, where notes are above what the camera shows
-    fine = np.linspace(trajectory.time[0], trajectory.time[-1], 2000)
-    positions, plane = coordinates(trajectory, fine), display.ends()[0]
+    plane = display.ends()[0]
     under = 3.0 if "normal" in look.marks else AROUND  # in radii: the arrows of forces are below the can
     camera, still = follow(trajectory, look.camera, plane, (width, seen - spare), under)
-    marks, board = Marks(trajectory, look, plane, fine, positions), Board(display, float(trajectory.u[0]))
+    marks, board = Marks(trajectory, look, plane), Board(display, float(trajectory.u[0]))
     notes = spans(trajectory, look.notes)
     marked = next(iter(notes.values()), ())
     strip = Strip(charts(trajectory, look.strips), width, below, marked) if below else None

@@ -54,10 +54,7 @@ def missing(films: Sequence[str]) -> str:
 
 def import_mujoco_without_gl() -> None:
     """Import MuJoCo without the OpenGL that MUJOCO_GL names: it would load it at once, and fail where it cannot."""
-    asked = os.environ.get("MUJOCO_GL")
-    os.environ["MUJOCO_GL"] = "disable"
-    try:
-        import mujoco  # noqa: F401
-    finally:
-        del os.environ["MUJOCO_GL"]
-        os.environ |= {"MUJOCO_GL": asked} if asked is not None else {}
+    asked, os.environ["MUJOCO_GL"] = os.environ.get("MUJOCO_GL", ""), "disable"
+    import mujoco  # noqa: F401
+
+    os.environ["MUJOCO_GL"] = asked

@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from mjbeer.drawing import strip
 from mjbeer.drawing.camera import Camera, View, circle, in_space, scale
-from mjbeer.drawing.scene import Display
+from mjbeer.drawing.scene import Display, coordinates
 from mjbeer.drawing.sheet import INK, Colour, Sheet, overlap
 from mjbeer.drawing.words import in_words
 from mjbeer.model import looks
@@ -53,9 +53,7 @@ class Look:
         return cls(title, ("phi", "u_dot" if damped else "u"), camera=camera)
 
 
-# The lines above a picture: what is seen, when, how fast, and what the marks mean. Sizes are in units of the sheet.
-
-HEIGHT = 4.1  # height of the first two lines
+HEIGHT = 4.1  # height of the first two lines above a picture, in units of the sheet
 HEADER = 5.6  # and with the third, which tells what the marks mean
 STRIP = 10  # height of the charts below a picture
 NOTE = 3  # height of a note, at the top of the scene
@@ -141,23 +139,18 @@ def note(sheet: Sheet, notes: Mapping[str, Sequence[tuple[float, float]]], time:
         sheet.plate(place, [words], INK, (0, 0.5), ground=(1.0, 0.95, 0.72))
 
 
-# The marks at the can: the angle phi, paths, forces, and a can that accelerates evenly. Sizes are in radii.
-
-LONGEST = 1.6  # longest arrow of a force; that of the weight is 1. Only the blow of a landing would be longer
-_CLEAR, _FAINT = 0.4, 0.05  # least distance of a force's letter from the foot, and least arrow that is drawn
+LONGEST = 1.6  # longest arrow of a force, in radii; that of the weight is 1. Only the blow of a landing would be longer
+_CLEAR, _FAINT = 0.4, 0.05  # least distance of a force's letter from the foot, and least arrow that is drawn, in radii
 
 
 class Marks:
-    """The marks of a trajectory, to be drawn over the pictures at some times."""
+    """The marks at the can of a trajectory, to be drawn over the pictures at some times. Sizes are in radii."""
 
-    def __init__(
-        self, trajectory: Trajectory, look: Look, plane: float, fine: np.ndarray, positions: np.ndarray
-    ) -> None:
-        """Prepare to draw on the `plane` y of the can's near end [m].
-
-        `positions` are u, phi, roll and lift at the times `fine` [s] at which paths are drawn, shape (times, 4).
-        """
-        self._motion, self._look, self._plane, self._fine, self._positions = trajectory, look, plane, fine, positions
+    def __init__(self, trajectory: Trajectory, look: Look, plane: float) -> None:
+        """Prepare to draw on the `plane` y of the can's near end [m]."""
+        self._motion, self._look, self._plane = trajectory, look, plane
+        self._fine = np.linspace(trajectory.time[0], trajectory.time[-1], 2000)  # times at which paths are drawn [s]
+        self._positions = coordinates(trajectory, self._fine)
         self._radius, self._offset = trajectory.scene.can.radius, trajectory.scene.load.offset
         if {"normal", "friction"} & {*look.marks}:
             forces = strip.forces(trajectory)
@@ -167,6 +160,7 @@ class Marks:
     def draw(self, sheet: Sheet, view: View, time: float, now: np.ndarray) -> None:
         """Draw the marks at a `time` [s] with u, phi, roll and lift `now`."""
         self._sheet, self._view, self._time, self._now = sheet, view, time, now
+        self._size = RADIUS * view.scale(np.array([0.0, self._plane, 0.0]))  # the can's radius [pixels]
         self._axis = np.array([now[0], self._radius + now[3]]) / self._radius
         for mark in (each for each in _LEGENDS if each in self._look.marks):
             getattr(self, f"_{mark}")()
@@ -226,11 +220,6 @@ class Marks:
         along, height = RADIUS * points[..., 0], RADIUS * points[..., 1]
         return self._view.pixel(in_space(self._motion.scene, along, height, self._plane))
 
-    @property
-    def _size(self) -> float:
-        """Return the can's radius in the picture [pixels]."""
-        return RADIUS * self._view.scale(np.array([0.0, self._plane, 0.0]))
-
     def _line(self, points: np.ndarray, width: float, colour: Colour, **style: Any) -> None:
         self._sheet.line(self._pixel(points), max(1.0, width * self._size), colour, **style)
 
@@ -250,11 +239,8 @@ def _towards(angle: float | np.ndarray) -> np.ndarray:
     return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
 
-# What stands still and explains the picture: gravity's arrow, the incline's angle, and distances on the board.
-
-
 class Board:
-    """The near edge of the board's underside, where its numbers and the angle of the incline are."""
+    """What stands still: gravity's arrow, and at the near edge of the board's underside distances and the incline."""
 
     def __init__(self, display: Display, start: float = 0.0) -> None:
         """Take the board of a display; `start` is where the distances begin [m]."""

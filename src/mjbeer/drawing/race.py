@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from mjbeer.drawing.camera import View, in_space, scale
-from mjbeer.drawing.film import RenderPlan
+from mjbeer.drawing.film import Film, RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, head
 from mjbeer.drawing.scene import Display, Painter, coordinates
 from mjbeer.drawing.sheet import INK, Sheet
@@ -50,7 +50,7 @@ class Runner:
 
 
 @dataclass(frozen=True)
-class Race:
+class Race(Film):
     """A film of several cans of one size, let go together on one incline; each has its time by its name at the finish.
 
     With `centres` it is no race: the cans' centres of mass are marked and joined, from one line on.
@@ -60,33 +60,23 @@ class Race:
     runners: Callable[[], Sequence[Runner]]  # a function that computes the motions, and that can be pickled
     length: float  # distance from start to finish, or that is seen from the start on [m]
     duration: float  # [s]
-    speed: float
-    told: Callable[[], str] = str  # a function that says what is seen, in whole sentences, for the text beside the film
-    still: float = 0.0
     facts: str = ""  # what holds for all cans besides the incline, such as "all full"; it stands below the title
     centres: bool = False
 
-    @property
-    def caption(self) -> str:
-        """Return what is seen."""
-        return self.told()
-
     def plan(self) -> RenderPlan:
-        """Compute the motions, and return what is needed to draw them."""
         return RenderPlan(0.0, self.duration, self.speed, partial(self._pictures, self.runners()))
 
     def results(self, runners: Sequence[Runner]) -> list[tuple[float, str]]:
         """Return from when on a can's plate has its time [s], 0.4 s before the end at the latest, and what it says."""
         finishes, end = [runner.finish(self.length) for runner in runners], self.duration
-        places = [sorted(finishes).index(finish) for finish in finishes]
-        ordinals = "1st", "2nd", "3rd", *(f"{place + 1}th" for place in range(3, len(runners)))
-        results = [(finish, f"{ordinals[at]}: {finish:.2f} s") for finish, at in zip(finishes, places, strict=True)]
+        ordinals = dict(zip(sorted(finishes), ("1st", "2nd", "3rd", "4th"), strict=False))
+        results = [(finish, f"{ordinals[finish]}: {finish:.2f} s") for finish in finishes]
         return [of if of[0] < end else (end - 0.4, f"needs {of[0]:.2f} s") for of in results]
 
     def _pictures(self, runners: Sequence[Runner], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         sheet, scenes = Sheet(width, height), [runner.trajectory.scene for runner in runners]
         top, size, facts = round(HEIGHT * sheet.unit), scale(scenes[0]), [f"incline {in_degrees(scenes[0].incline)}"]
-        display = Display.of(scenes, _APART)
+        display = Display(scenes, _APART, lines=[0.0] if self.centres else [0.0, self.length])
         display.paint([runner.colour for runner in runners], [runner.load for runner in runners])
         ends = np.outer([-0.4 * self.length, self.length], [1, 0, 0, 0])  # names have room before the start
         points = np.reshape([display.outline(lane, end) for lane in range(len(scenes)) for end in ends], (-1, 3))
@@ -95,11 +85,11 @@ class Race:
         positions = np.stack([runner.positions(times) for runner in runners], axis=1)
         if self.centres:  # they begin at one line, and in a race the axes do
             positions[..., 0] += [runner.trajectory.u[0] for runner in runners]
-            lines, results = [0.0], [(math.inf, "")] * len(runners)
+            results = [(math.inf, "")] * len(runners)
         else:
-            lines, results, facts = [0.0, self.length], self.results(runners), [f"{self.length:g} m", *facts]
+            results, facts = self.results(runners), [f"{self.length:g} m", *facts]
         words = ", ".join([*facts, self.facts]).removesuffix(", ")
-        with closing(Painter(display, view.pixels, lines=lines)) as painter:
+        with closing(Painter(display, view.pixels)) as painter:
             for time, now in zip(times, positions, strict=True):
                 painter.paint(sheet, view, now)
                 head(sheet, self.title, words, time, self.speed)

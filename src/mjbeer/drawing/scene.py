@@ -51,19 +51,16 @@ def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     return CubicHermiteSpline(trajectory.time, samples, rates)(times)
 
 
-@dataclasses.dataclass(frozen=True, eq=False)
 class Display:
-    """A board with cans of one size on it. Their joints are named as in the templates, with a prefix for each lane."""
+    """A board with cans of one size on it, and a wall behind. Joints are named as in the templates, with a prefix for
+    each lane. All lengths are as drawn."""
 
-    model: mujoco.MjModel
-    data: mujoco.MjData
-    scenes: Sequence[Scene]
-    lanes: Sequence[float]  # where each can is across the board [m], away from the reader
+    def __init__(self, scenes: Sequence[Scene], apart: float = 0.0, lines: Sequence[float] = ()) -> None:
+        """Make the display of cans on one incline, `apart` [m] from each other, the nearest first.
 
-    @classmethod
-    def of(cls, scenes: Sequence[Scene], apart: float = 0.0) -> "Display":
-        """Return the display of cans on one incline, `apart` [m] from each other as drawn, the nearest first."""
-        lanes = [lane * apart for lane in range(len(scenes))]
+        `lines` are distances down the incline at which a line crosses the board [m].
+        """
+        self.scenes, self.lanes, self._lines = scenes, [lane * apart for lane in range(len(scenes))], lines
         specs = [rolling_spec(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
         for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):
             if scene.load.fill is not None:
@@ -74,16 +71,16 @@ class Display:
                 of_can = geom.group == _VISUAL and geom.name not in ("board", "wall")
                 geom.group = number % _UNSEEN if of_can else _UNSEEN
         first, *others = specs
-        for number, (lane, spec) in enumerate(zip(lanes[1:], others, strict=True), start=1):
+        for number, (lane, spec) in enumerate(zip(self.lanes[1:], others, strict=True), start=1):
             spec.option.tolerance = first.option.tolerance  # nothing is stepped here
             parent = first.body("incline") or first.worldbody
             parent.add_frame(pos=[0, lane, 0]).attach_body(spec.body("can"), _prefix(number), "")
         board, wall = first.geom("board"), first.geom("wall")
-        board.pos += [0, lanes[-1] / 2, 0]
-        board.size += [0, lanes[-1] / 2, 0]
-        wall.pos += [0, lanes[-1], 0]
-        model = compile_spec(first)
-        return cls(model, mujoco.MjData(model), scenes, lanes)
+        board.pos += [0, self.lanes[-1] / 2, 0]
+        board.size += [0, self.lanes[-1] / 2, 0]
+        wall.pos += [0, self.lanes[-1], 0]
+        self.model = compile_spec(first)
+        self.data = mujoco.MjData(self.model)
 
     def paint(self, labels: Sequence[Sequence[float]], loads: Sequence[Sequence[float] | None]) -> None:
         """Give each can's label a colour, and its load too unless that is None; what is on the load is then paler."""
@@ -113,36 +110,13 @@ class Display:
     def outline(self, number: int, position: np.ndarray) -> np.ndarray:
         """Return points around both ends of a can [m], shape (2, points, 3), for its u, phi, roll and lift."""
         u, lift = position[[0, 3]] * scale(self.scenes[number])
-        ring = on_incline(self.scenes[number], u, RADIUS + lift) + circle(
-            1.12 * RADIUS
-        )  # with room for what sticks out
+        edge = circle(1.12 * RADIUS)  # with room for what sticks out
+        ring = on_incline(self.scenes[number], u, RADIUS + lift) + edge
         return np.stack([np.insert(ring, 1, y, axis=1) for y in self.ends(number)])
 
-
-def _prefix(number: int) -> str:
-    """Return with what the names begin that belong to a lane."""
-    return f"{number}-" if number else ""
-
-
-def _resize(scene: Scene) -> Scene:
-    """Return the scene at the size at which it is drawn, with masses of 1 kg: a pose does not depend on masses."""
-    size = scale(scene)
-    can = dataclasses.replace(scene.can, radius=RADIUS, length=scene.can.length * size, mass=1.0, inertia=RADIUS**2)
-    load = dataclasses.replace(scene.load, mass=1.0, offset=min(scene.load.offset * size, RADIUS), inertia=RADIUS**2)
-    return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class Scenery:
-    """The wall and the board of a display, in its light: flat, as a sheet draws them ten times as fast as OpenGL."""
-
-    display: Display
-    lines: Sequence[float] = ()
-    """Distances down the incline at which a line crosses the board [m]. All lengths are as drawn."""
-
-    def draw(self, sheet: Sheet, view: View) -> None:
-        """Draw what a view shows onto a sheet. The rows above and below it are not kept."""
-        y = float(self.display.model.geom("wall").pos[1])
+    def draw_empty(self, sheet: Sheet, view: View) -> None:
+        """Draw wall and board, flat, ten times as fast as OpenGL. The rows above and below the view are not kept."""
+        y = float(self.model.geom("wall").pos[1])
         corners = view.corners(y)
         low, high = corners.min(axis=0), corners.max(axis=0)
         x, z = (_SQUARE * (np.arange(*np.floor(ends / _SQUARE + 0.5)) + 0.5) for ends in np.transpose([low, high]))
@@ -154,7 +128,7 @@ class Scenery:
         self._draw_board(sheet, view)
 
     def _draw_board(self, sheet: Sheet, view: View) -> None:
-        board, scene = self.display.model.geom("board"), self.display.scenes[0]
+        board, scene = self.model.geom("board"), self.scenes[0]
         (front, back), (under, over) = ((board.pos[i] - board.size[i], board.pos[i] + board.size[i]) for i in (1, 2))
         seen = np.concatenate([view.corners(front), view.corners(back)]) @ on_incline(scene, 1.0, 0.0)
         stripes = _STRIPE * np.arange(seen.min() // _STRIPE - 1, seen.max() // _STRIPE + 2)
@@ -170,13 +144,13 @@ class Scenery:
 
             sheet.area(bands(stripes[:1], float(np.ptp(stripes))), self.lit(_PALE, normal, view))
             sheet.area(bands(dark, _STRIPE), self.lit(_DARK, normal, view))
-            if len(self.lines) and normal is up:
-                sheet.area(bands(np.array(self.lines) - _STROKE, 2 * _STROKE), self.lit(_PAINT, normal, view))
+            if len(self._lines) and normal is up:
+                sheet.area(bands(np.array(self._lines) - _STROKE, 2 * _STROKE), self.lit(_PAINT, normal, view))
 
     def shade(self, sheet: Sheet, view: View, outline: np.ndarray) -> None:
         """Draw the shadow on the board of a can whose ends have an outline, as `Display.outline` gives it."""
-        along, up = in_space(self.display.scenes[0], np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
-        light, board = self.display.model.light_dir[0], self.display.model.geom("board")
+        along, up = in_space(self.scenes[0], np.array([1.0, 0.0]), np.array([0.0, 1.0]), 0.0)
+        light, board = self.model.light_dir[0], self.model.geom("board")
         fallen = outline - np.multiply.outer((outline @ up - board.pos[2] - board.size[2]) / (light @ up), light)
         near, far = ([ring[(ring @ along).argmin()], ring[(ring @ along).argmax()]] for ring in fallen)
         corners = np.array([*near, *far[::-1]])
@@ -186,11 +160,24 @@ class Scenery:
 
     def lit(self, colour: np.ndarray, normal: np.ndarray, view: View) -> Colour:
         """Return the colour of a face that is turned to a `normal`, lit by the sun and from the eye."""
-        model = self.display.model
+        model = self.model
         head, sun = model.vis.headlight, model.light_diffuse[0] * max(0.0, -normal @ model.light_dir[0])
         light = head.ambient + head.diffuse * max(0.0, float(normal @ view.axes[2])) + sun
         red, green, blue = np.minimum(colour * light, 1.0).tolist()
         return red, green, blue
+
+
+def _prefix(number: int) -> str:
+    """Return with what the names begin that belong to a lane."""
+    return f"{number}-" if number else ""
+
+
+def _resize(scene: Scene) -> Scene:
+    """Return the scene at the size at which it is drawn, with masses of 1 kg: a pose does not depend on masses."""
+    size = scale(scene)
+    can = dataclasses.replace(scene.can, radius=RADIUS, length=scene.can.length * size, mass=1.0, inertia=RADIUS**2)
+    load = dataclasses.replace(scene.load, mass=1.0, offset=min(scene.load.offset * size, RADIUS), inertia=RADIUS**2)
+    return dataclasses.replace(scene, can=can, load=load, gravity=9.81, damping=0.0, drag=0.0)
 
 
 def _separated(shapes: np.ndarray) -> np.ndarray:
@@ -199,19 +186,14 @@ def _separated(shapes: np.ndarray) -> np.ndarray:
 
 
 class Painter:
-    """Draws the cans of a display by OpenGL, and lays them on their scenery. It holds graphics memory until closed.
+    """Draws the cans of a display by OpenGL, and lays them on wall and board. It holds graphics memory until closed.
 
     It replaces mujoco.Renderer, which can only use the OpenGL that MUJOCO_GL named when MuJoCo was imported.
     """
 
-    def __init__(
-        self, display: Display, pixels: tuple[int, int], still: bool = True, lines: Sequence[float] = ()
-    ) -> None:
-        """Prepare to draw pictures of up to so many `pixels`, with `lines` across the board as in `Scenery`.
-
-        `still` says that all views are the same.
-        """
-        self._display, self._scenery, self._still, model = display, Scenery(display, lines), still, display.model
+    def __init__(self, display: Display, pixels: tuple[int, int], still: bool = True) -> None:
+        """Prepare to draw pictures of up to so many `pixels`; `still` says that all views are the same."""
+        self._display, self._still, model = display, still, display.model
         self._empty: np.ndarray | None = None
         self._scene = mujoco.MjvScene(model, model.ngeom)
         self._scene.flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = False
@@ -229,14 +211,14 @@ class Painter:
     def paint(self, sheet: Sheet, view: View, positions: np.ndarray) -> None:
         """Draw a view onto a sheet, with u, phi, roll and lift of each can in the rows of `positions`."""
         if self._empty is None:
-            self._scenery.draw(sheet, view)
+            self._display.draw_empty(sheet, view)
             self._empty = sheet.part(view.top, view.top + view.pixels[1]) if self._still else None
         else:
             sheet.put(self._empty, view.top)
         self._display.pose(positions)
         outlines = [self._display.outline(*of) for of in enumerate(positions)]
         for outline in outlines:
-            self._scenery.shade(sheet, view, outline)
+            self._display.shade(sheet, view, outline)
         for number, outline in reversed(list(enumerate(outlines))):  # the nearest at last
             left, upper, right, lower = view.box(outline, margin=3)
             if right > left and lower > upper:

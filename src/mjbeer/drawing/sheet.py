@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import get_data_path
 from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import to_hex, to_rgba
+from matplotlib.patches import FancyArrow
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from PIL import Image, ImageDraw, ImageFont
@@ -88,16 +89,10 @@ class Sheet:
     def arrow(self, tail: np.ndarray, head: np.ndarray, width: float, colour: Colour) -> None:
         """Draw an arrow; one shorter than its head is drawn as a smaller arrow."""
         way = np.asarray(head) - tail
-        length = float(np.hypot(*way))
-        if length < 1:
-            return
-        width = min(width, length / _HEAD)
-        along = way / length
-        across = np.array([-along[1], along[0]])
-        neck = head - _HEAD * width * along
-        half, wide = across * width / 2, across * 1.5 * width
-        shape = [tail + half, neck + half, neck + wide, head, neck - wide, neck - half, tail - half]
-        self.area(np.array(shape), colour)
+        if (length := float(np.hypot(*way))) >= 1:
+            width = min(width, length / _HEAD)
+            sizes = {"width": width, "head_width": 3 * width, "head_length": _HEAD * width}
+            self.area(FancyArrow(*tail, *way, length_includes_head=True, **sizes).get_xy(), colour)
 
     def text(
         self,

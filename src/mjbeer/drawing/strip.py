@@ -13,21 +13,13 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from mjbeer.drawing.sheet import Sheet
+from mjbeer.drawing.sheet import Colour, Sheet
 from mjbeer.exceptions import MjbeerError
+from mjbeer.output.plots import COLOURS, STYLE
 from mjbeer.theory.scene import GRAVITY
 from mjbeer.theory.trajectory import Trajectory, exact_motion
 
-_MUJOCO = (0.0, 0.447, 0.698)  # colour of a simulation's line, where there is one only
 _THEORY = "#b4bcc8"  # colour of theory's lines, which are wide and lie below
-_STYLE: dict[Any, Any] = {
-    "axes.grid": True,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "grid.alpha": 0.35,
-    "font.family": "DejaVu Sans",  # matplotlib's own, whatever the user's settings are
-    "legend.frameon": False,
-}
 _LETTERS = 1.15  # height of letters, in units
 _INTERVALS = 50  # number of intervals of a motion over which forces are averaged
 
@@ -39,7 +31,7 @@ class Line:
     name: str
     time: np.ndarray  # times [s], shape (samples,)
     values: np.ndarray  # values at these times
-    colour: tuple[float, float, float] | None = None
+    colour: Colour | None = None
     """Its colour; None for theory's line, which is seen from the beginning."""
 
 
@@ -64,7 +56,7 @@ def charts(trajectory: Trajectory, names: Sequence[str]) -> list[Chart]:
     source, drawn = "exact theory" if trajectory.rolling == "exact" else "MuJoCo", []
     for name in names:
         title, values, limits = QUANTITIES[name]
-        lines = [Line(source, trajectory.time, values(trajectory), _MUJOCO)]
+        lines = [Line(source, trajectory.time, values(trajectory), COLOURS[0])]
         if theory is not None:
             rolls = theory.time <= theory.rolls_until()  # later the incline would have to pull
             lines.append(Line("theory", theory.time[rolls], values(theory)[rolls]))
@@ -82,11 +74,10 @@ def wrapped(angle: np.ndarray | float) -> np.ndarray:
 
 
 def even(motion: Trajectory, time: np.ndarray) -> np.ndarray:
-    """Return where a can would be at some times [s] that accelerates evenly [m].
+    """Return where a can would be at some times [s] that accelerates evenly [m]: the motion goes to and fro about it.
 
-    It starts with the same momentum as the can of the motion, and with its load at rest in it where that has an
-    equilibrium: the motion goes to and fro about it. With damping or drag no can accelerates evenly. It is then one
-    that has neither, and what it gains on the motion is what they cost.
+    It starts with the same momentum, and with its load at rest in it where that has an equilibrium. It has neither
+    damping nor drag: what it gains on the motion is what they cost.
     """
     scene, u, u_dot = motion.scene, motion.u[0], motion.u_dot[0]
     scene = dataclasses.replace(scene, damping=0.0, drag=0.0) if scene.dissipates else scene
@@ -99,12 +90,11 @@ def even(motion: Trajectory, time: np.ndarray) -> np.ndarray:
 
 
 def forces(motion: Trajectory) -> np.ndarray:
-    """Return the normal force and the friction that act in a motion, also while the can slips or is in the air.
+    """Return the normal force and the friction, positive up the incline, also while the can slips or is in the air.
 
-    They are in weights of can and load, without gravity those on earth, and have the shape (2, samples); the friction
-    is positive up the incline. They follow from the change of the momentum, and each is the mean over a fiftieth of the
-    motion: a can that hardly presses on the ground rises and lands many times a second by a fraction of a millimetre,
-    and each landing is a blow.
+    They are in weights of can and load, without gravity those on earth, with the shape (2, samples). They follow from
+    the change of the momentum over a fiftieth of the motion: a can that hardly presses on the ground rises and lands
+    many times a second, and each landing is a blow.
     """
     scene, time, load = motion.scene, motion.time, motion.scene.load.moment
     across = scene.mass * motion.lift_dot + load * np.sin(motion.phi) * motion.phi_dot
@@ -137,7 +127,8 @@ class Strip:
         """Prepare to draw charts, in which some spans of time are `marked`."""
         self._charts, self._height, self._unit, self._marked = charts, height, height / 10, marked
         letters = _LETTERS * self._unit
-        with rc_context(_STYLE | {"font.size": letters, "axes.linewidth": 0.06 * self._unit}):
+        sizes = {"font.size": letters, "legend.fontsize": letters, "axes.titlesize": letters}
+        with rc_context(STYLE | sizes | {"axes.linewidth": 0.06 * self._unit, "font.family": "DejaVu Sans"}):
             figure = Figure(figsize=(width / 72, height / 72), dpi=72)
             canvas = FigureCanvasAgg(figure)
             panels = figure.subplots(1, len(charts), squeeze=False)[0]
@@ -166,7 +157,7 @@ class Strip:
             panel.plot(line.time, unbroken(line.values), **style, linewidth=width, label=line.name)
         for first, last in self._marked:
             panel.axvspan(first, last, color="#fff1b8", linewidth=0)
-        panel.set_title(chart.title, fontsize=_LETTERS * unit, loc="left", pad=0.45 * unit)
+        panel.set_title(chart.title, pad=0.45 * unit)
         panel.xaxis.set_major_formatter("{x:g} s")
         panel.set_xlim(min(line.time[0] for line in chart.lines), max(line.time[-1] for line in chart.lines))
         low, high = panel.get_ylim()
@@ -184,11 +175,9 @@ class Strip:
         sheet.put(shown, top)
         for (transform, extent), chart in zip(self._panels, self._charts, strict=True):
             for line in chart.lines:
-                if line.colour is None:
-                    continue
                 value = line.values[max(int(np.searchsorted(line.time, time, side="right")) - 1, 0)]
                 column, up = transform.transform((min(time, line.time[-1]), value))
-                if extent.y0 - 1 <= up <= extent.y1 + 1:
+                if line.colour and extent.y0 - 1 <= up <= extent.y1 + 1:
                     sheet.disc(np.array([column, top + self._height - up]), 0.5 * self._unit, line.colour)
 
 

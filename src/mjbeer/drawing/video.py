@@ -7,7 +7,7 @@ import os
 import pathlib
 import re
 import warnings
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from mjbeer import require
 from mjbeer.drawing.camera import CAMERAS, Camera
 from mjbeer.drawing.film import Film, MotionFilm, RenderPlan
 from mjbeer.drawing.overlay import Look
-from mjbeer.exceptions import AngleWarning, LiquidWarning, ParameterError, RenderingError, UntrustedWarning
+from mjbeer.exceptions import ParameterError, RenderingError
 from mjbeer.output import files, terminal
 from mjbeer.output.plots import Picture
 from mjbeer.theory.trajectory import Trajectory
@@ -67,13 +67,13 @@ def render(
     console = terminal.STDERR if require.choice("progress", progress, (True, False)) else None
     require.instance("trajectory", trajectory, Trajectory)
     require.choice("camera", camera, CAMERAS)
-    film = MotionFilm(lambda: trajectory, speed, Look.usual(trajectory, camera)).plan()
+    film = MotionFilm(lambda: trajectory, Look.usual(trajectory, camera), speed=speed).plan()
     if target is None:
         with contextlib.closing(_pictures(film, width, height, fps)) as pictures, _mediapy() as mediapy:
             mediapy.show_video(pictures, fps=fps, autoplay=False)
         return
     with terminal.progress_bar(console, len(film.times(fps))) as begin:
-        write(film, target, width, height, fps, lambda _: begin(f"drawing {target.name}"))
+        write(film, target, width, height, fps, begin)
 
 
 def write(
@@ -82,32 +82,24 @@ def write(
     width: int,
     height: int,
     fps: float,
-    seen: Callable[[np.ndarray], None] = lambda _: None,
+    begin: Callable[[str], None] = lambda _: None,
 ) -> None:
-    """Write a film as a video, as `render` does, and call `seen` with each picture."""
-    with files.atomic_write(path) as temporary, contextlib.closing(_pictures(plan, width, height, fps)) as pictures:
-
-        def watched() -> Generator[np.ndarray]:
-            for picture in pictures:
-                seen(picture)
-                yield picture
-
-        encode(watched(), temporary, int(width), int(height), fps)
-
-
-def encode(pictures: Iterable[np.ndarray], path: pathlib.Path, width: int, height: int, fps: float) -> None:
-    """Write pictures of shape (height, width, 3), uint8, one at a time, so that memory holds only one."""
-    with _mediapy() as mediapy:
-        writer = mediapy.VideoWriter(path, (height, width), fps=fps, crf=_RATE, ffmpeg_args=_ENCODED)
+    """Write a film as a video, as `render` does, picture by picture; `begin` gets the words of a progress bar."""
+    with (
+        files.atomic_write(path) as temporary,
+        contextlib.closing(_pictures(plan, width, height, fps)) as pictures,
+        _mediapy() as mediapy,
+    ):
+        shape = int(height), int(width)
+        writer = mediapy.VideoWriter(temporary, shape, fps=fps, crf=_RATE, ffmpeg_args=_ENCODED)
         try:
             with writer:
                 for picture in pictures:
+                    begin(f"drawing {path.name}")
                     writer.add_image(picture)
         except BrokenPipeError:
             writer.close()  # which now raises what ffmpeg said
             raise
-        if path.stat().st_size == 0:
-            raise RuntimeError("it ended before the video did")
 
 
 def _pictures(plan: RenderPlan, width: int, height: int, fps: float) -> Generator[np.ndarray]:
@@ -205,8 +197,6 @@ def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
 
 
 def _done(order: Any) -> Any:
-    """Write what is ordered: reports show on purpose what cannot be trusted."""
-    with warnings.catch_warnings():
-        for kind in (UntrustedWarning, LiquidWarning, AngleWarning):
-            warnings.simplefilter("ignore", kind)
+    """Write what is ordered, without mjbeer's warnings: reports show on purpose what cannot be trusted."""
+    with warnings.catch_warnings(action="ignore", category=UserWarning):
         return order.write()

@@ -1,7 +1,6 @@
 """A scene in words, for titles and captions, and a run as a plot of its quantities over time."""
 
 import math
-from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -14,26 +13,21 @@ from mjbeer.theory.trajectory import Trajectory, exact_motion
 _FILLS = {0.25: "quarter-full", 0.5: "half-full", 0.75: "three-quarters-full", 1.0: "full"}
 
 
-def in_words(scene: Scene, varied: Collection[str] = ()) -> str:
-    """Return a scene in words, as "half-full massless can, beer frozen, incline 10°".
-
-    `varied` names the differences between the scenes of a plot, which are left out: "load" (its attachment, or the
-    masses of a hoop or a pendulum) and "incline".
-    """
+def in_words(scene: Scene) -> str:
+    """Return a scene in words, as "half-full massless can, beer frozen, incline 10°"."""
     can, load = scene.can, scene.load
     if load.inertia > 0:
         full = "" if load.fill is None else _FILLS.get(load.fill, f"{100 * load.fill:.3g} % full")
         parts = [f"{full} {'massless can' if can.mass == 0 else f'can of {1e3 * can.mass:.3g} g'}".strip()]
-        parts.append("" if "load" in varied else f"{'load' if load.fill is None else 'beer'} {scene.attachment}")
+        parts.append(f"{'load' if load.fill is None else 'beer'} {scene.attachment}")
         parts.append(f"its centre of mass {1e3 * load.offset:.3g} mm from the axis" if load.fill is None else "")
     else:  # a load without size: a pendulum's bob or a weight on a hoop
         body = "wheel with a pendulum" if scene.attachment == "sliding" else "hoop with a weight on its rim"
-        parts = [body, "" if "load" in varied else f"M = {1e3 * can.mass:.3g} g, m = {1e3 * load.mass:.3g} g"]
+        parts = [body, f"M = {1e3 * can.mass:.3g} g, m = {1e3 * load.mass:.3g} g"]
     law = scene.damping_law
     parts.append("" if not law else f"damping {law.linear:.3g} N m s" if law == Damping(law.linear) else "damped")
     parts.append(f"drag {scene.drag:.3g} kg/m" if scene.drag else "")
-    if "incline" not in varied:
-        parts.append(f"incline {in_degrees(scene.incline)}" if scene.incline else "level ground")
+    parts.append(f"incline {in_degrees(scene.incline)}" if scene.incline else "level ground")
     return ", ".join(part for part in parts if part)
 
 

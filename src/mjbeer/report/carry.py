@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 
 from mjbeer.drawing.camera import View, circle
-from mjbeer.drawing.film import RenderPlan
+from mjbeer.drawing.film import Film, RenderPlan
 from mjbeer.drawing.overlay import HEIGHT, STRIP, head
-from mjbeer.drawing.scene import Display, Scenery
+from mjbeer.drawing.scene import Display
 from mjbeer.drawing.sheet import INK, Sheet
 from mjbeer.drawing.strip import Chart, Line, Strip
 from mjbeer.model.build import build
@@ -74,43 +74,42 @@ MOVES = {1.0: (0.80, 0.15, 0.20), 1.6: (0.05, 0.40, 0.75)}
 
 
 @dataclass(frozen=True)
-class Carry:
-    """The film of two cans that are moved 0.4 m, one quickly and one gently; it is a `drawing.film.Film`."""
+class Carry(Film):
+    """The film of two cans that are moved 0.4 m, one quickly and one gently."""
 
     title: str = "Two grippers carry beer: which of them feels it slosh?"
     speed: float = 0.5
     still: float = 0.25
     caption: str = (
-        "Two cans, half full of beer, are carried 0.4 m: the near one in 1 s, the far one in 1.6 s. The chart has "
-        "the force of each gripper, and in grey what it would be if the beer were solid, as in other simulators. In "
-        "the gentle move the surface rises by less than 0.1 R at the wall, where linear theory gives numbers, and the "
-        "beer hardly rings after the stop. In the quick move it rises by 0.28 R, which is beyond that: the extra force "
-        "and the ringing, a tenth of the largest force each, are then more of a picture than numbers."
+        "Two cans, half full of beer, are carried 0.4 m, in 1 s and in 1.6 s. The chart has the force of each gripper, "
+        "and in grey what it would be if the beer were solid, as in other simulators. In the gentle move the surface "
+        "rises by less than 0.1 R at the wall, where linear theory gives numbers, and the beer hardly rings after the "
+        "stop. In the quick move it rises by 0.28 R, which is beyond that: the extra force and the ringing, a tenth of "
+        "the largest force each, are then more of a picture than numbers."
     )
 
     def plan(self) -> RenderPlan:
-        """Compute both motions, and return what is needed to draw them."""
         runs = {duration: carry(standing(), duration=duration, after=_LONGEST - duration) for duration in MOVES}
         return RenderPlan(0.0, _LONGEST, self.speed, partial(self._draw, runs))
 
     def _draw(self, runs: dict[float, Carried], times: np.ndarray, width: int, height: int) -> Generator[np.ndarray]:
         sheet, can = Sheet(width, height), standing()
         top, below = round(HEIGHT * sheet.unit), round(STRIP * sheet.unit)
-        scenery = Scenery(Display.of([sliding(0.0)] * len(runs), _APART), (0.0, _DISTANCE))
+        display = Display([sliding(0.0)] * len(runs), _APART, lines=(0.0, _DISTANCE))
         corners = [_OUTLINE + np.array([x, y, _HIGH]) for x in (_LEFT, _DISTANCE) for y in (0.0, _APART)]
         view = View.towards(_EYE, np.reshape(corners, (-1, 3)), (width, height - top - below), top, 0.02)
         lines = [Line(f"moved in {each:g} s", run.time, run.force, MOVES[each]) for each, run in runs.items()]
         lines += [Line("solid beer", run.time, (can.mass + can.can.mass) * run.acceleration) for run in runs.values()]
         strip = Strip([Chart("force [N]", lines)], width, below)
-        scenery.draw(sheet, view)
+        display.draw_empty(sheet, view)
         empty = sheet.part(top, height - below)
         for time in times:
             sheet.put(empty, top)
             for lane, (duration, run) in reversed(list(enumerate(runs.items()))):
                 place = np.array([np.interp(time, run.time, run.place), lane * _APART, _HIGH])
-                scenery.shade(sheet, view, place + _OUTLINE)
+                display.shade(sheet, view, place + _OUTLINE)
                 rise = float(np.interp(time, run.time, run.rise))
-                _draw_gripper(sheet, view, scenery, can, place, rise, np.array(MOVES[duration]))
+                _draw_gripper(sheet, view, display, can, place, rise, np.array(MOVES[duration]))
                 highest = np.abs(run.rise[run.time <= time]).max()
                 trust = "only a picture" if highest > QUANTITATIVE else "within 0.1 R"
                 said, side = (f"in {duration:g} s", f"rises by {highest:.2f} R: {trust}"), [-0.065, 0, can.height]
@@ -121,18 +120,16 @@ class Carry:
 
 
 def _draw_gripper(
-    sheet: Sheet, view: View, scenery: Scenery, can: Standing, place: np.ndarray, rise: float, colour: np.ndarray
+    sheet: Sheet, view: View, display: Display, can: Standing, place: np.ndarray, rise: float, colour: np.ndarray
 ) -> None:
-    """Draw a gripper with pads of a colour, and its can, cut open in front.
-
-    The bottom of the can is at a `place` [m], and its liquid is higher by `rise` radii at the wall ahead.
-    """
+    """Draw a gripper with pads of a colour, and its can with the bottom at a `place` [m], cut open in front; the liquid
+    is higher by `rise` radii at the wall ahead."""
     length, wall = can.can.length, (1 + WALL) * can.can.radius
     assert abs(rise) * wall < min(can.height, length - can.height), "the surface reaches the lid or the bottom"
-    metal, beer = (scenery.display.model.mat(name).rgba[:3] for name in ("metal", "beer"))
+    metal, beer = (display.model.mat(name).rgba[:3] for name in ("metal", "beer"))
 
     def face(corners: np.ndarray, colour: np.ndarray, normal: np.ndarray) -> None:
-        sheet.area(view.pixel(place + corners), scenery.lit(colour, normal, view))
+        sheet.area(view.pixel(place + corners), display.lit(colour, normal, view))
 
     around = np.insert(circle(1.0, 2 * _PLATES), 2, 0.0, axis=1)  # directions: first behind the axis, then before it
     surface = wall * around + np.outer(can.height + rise * wall * around[:, 0], [0, 0, 1])

@@ -23,7 +23,7 @@ from mjbeer.drawing.video import PlotJob
 from mjbeer.output import files
 from mjbeer.output.plots import Picture
 from mjbeer.paper import stories
-from mjbeer.report.films import COMMANDS, FILMS, RACES, film_jobs
+from mjbeer.report import films
 from mjbeer.studies.benchmark import benchmark_tables
 from mjbeer.studies.benchmark.points import SHIPPED, Benchmark
 from mjbeer.studies.stability import stability_maps
@@ -59,7 +59,7 @@ def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validati
     files.make_folder(folder)
     with files.atomic_write(folder / "index.html") as index, tempfile.TemporaryDirectory() as work:
         (folder / "index.html").unlink(missing_ok=True)
-        filmed = film_jobs(pathlib.Path(work), quick)
+        filmed = films.film_jobs(pathlib.Path(work), quick)
         not_drawn = opengl.missing([each.path.stem for each in filmed]) if opengl.problem() else ""
         filmed = [] if not_drawn else filmed
         # The checks take longest, and compile what the films run; plots are quick.
@@ -85,7 +85,7 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
 
 
 def page(
-    validation: Validation, films: Mapping[str, Film], plots: Mapping[str, Picture], quick: bool, not_drawn: str
+    validation: Validation, drawn: Mapping[str, Film], plots: Mapping[str, Picture], quick: bool, not_drawn: str
 ) -> str:
     """Return the page as HTML, with films of scenes and stories and plots by their names.
 
@@ -97,24 +97,20 @@ def page(
     benchmark, maps = Benchmark.load(SHIPPED), stability_maps.load()
     # The least and the largest run time of another tool over that of mjbeer's best setting, at equal error.
     spans = {name: benchmark_tables.span(benchmark, name) for name in ("MuJoCo RK4", "heyoka")}
-    ratios = {name: " to ".join(map(benchmark_tables.two_digits, span)) for name, span in spans.items()}
+    slower = {name: " to ".join(map(benchmark_tables.two_digits, span)) for name, span in spans.items()}
     runs, border = stability_maps.summary(maps["maps"])
     claims = {(claim.equation, claim.quantity): claim for claim in paper.claims() if claim.misprint}
     misprints = [
         (result, claims[name]) for result in validation.audit if (name := (result.group, result.name)) in claims
     ]
     return environment.get_template("page.html").render(
-        sketch=stories.letters(),
-        races=RACES,
-        films=FILMS,
-        commands=COMMANDS,
-        drawn=films,
+        films=films,
+        drawn=drawn,
         not_drawn=not_drawn,
         errors=[plots[f"error-{case}"] for case in benchmark.cases],
         benchmark=benchmark,
         costs=benchmark_tables.tables(benchmark),
-        slower=ratios["MuJoCo RK4"],
-        heyoka=ratios["heyoka"],
+        slower=slower,
         maps=maps,
         map=plots[_MAP],
         families=stability_maps.FAMILIES,
@@ -123,10 +119,9 @@ def page(
         misprints=misprints,
         kinds=Counter(claim.misprint.kind for _, claim in misprints if claim.misprint),
         quoted=[claim for claim in paper.claims() if claim.quote and not claim.misprint],
-        stories=stories.STORIES,
+        stories=stories,
         plots=plots,
         validation=validation,
-        tables=validation.tables(),
         machine=machine(),
         quick=quick,
     )

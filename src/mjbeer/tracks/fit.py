@@ -144,7 +144,7 @@ class Fit:
         u = np.interp(time, self.run.time, self.run.u) + self.track.along - self.model["along"]
         measured = np.stack([time, u], axis=1)
         look = Look("A filmed can, and the motion that was fitted to it", marks=("measured",), measured=measured)
-        write(MotionFilm(lambda: self.run, speed, look).plan(), require.path(path), width, height, 30, lambda _: None)
+        write(MotionFilm(lambda: self.run, look, speed=speed).plan(), require.path(path), width, height, 30)
 
 
 def fit(
