@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from mjbeer import exact
-from mjbeer.drawing.film import Film, MotionFilm
-from mjbeer.drawing.race import Race
+from mjbeer.drawing.film import Film, MotionFilm, Race
 from mjbeer.drawing.words import in_words
 from mjbeer.paper import stories
 from mjbeer.report import films

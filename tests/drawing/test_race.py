@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mjbeer import Can, frozen, simulate, sliding
-from mjbeer.drawing.race import Race, Runner
+from mjbeer.drawing.film import Race, Runner
 from mjbeer.drawing.sheet import Sheet
 from mjbeer.theory.scene import Scene
 

@@ -1,6 +1,7 @@
 """The entry point of `mjbeer`: read the command line, run the command, and turn errors into exit statuses."""
 
 import argparse
+import os
 import re
 import signal
 import sys
@@ -13,20 +14,18 @@ from typing import Any, NoReturn, cast
 import mjbeer
 from mjbeer.cli import motions, studies
 from mjbeer.cli.arguments import OPTIONS, SCENES, STANDING, Option, of_scene
-from mjbeer.drawing import opengl
 from mjbeer.exceptions import AngleWarning, LiquidWarning, MjbeerError, ParameterError, UntrustedWarning
 from mjbeer.output import terminal
 from mjbeer.output.terminal import say
 
 _DESCRIPTION = """The rolling half-full beer can as a MuJoCo model that can be trusted.
 `mjbeer COMMAND --help` shows the options of a command and the scenes, `mjbeer --version` the version."""
+# The functions that run commands, whose docstrings are their help; one may return an exit status.
 COMMANDS = {name: getattr(motions, name, None) or getattr(studies, name) for name in OPTIONS}
-"""The functions that run commands, whose docstrings are their help; one returns an exit status that is not 0."""
-OF_SCENES: dict[str, dict[str, Callable[..., Any]]] = {
+OF_SCENES: dict[str, dict[str, Callable[..., Any]]] = {  # the scenes of which one must follow a command
     **dict.fromkeys(("simulate", "render", "fit", "sweep"), SCENES),
     **dict.fromkeys(("view", "export"), SCENES | STANDING),
 }
-"""The scenes of which one must follow a command."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -68,7 +67,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with terminal.printing():
             given = parse(words)
-        opengl.import_mujoco_without_gl()
+        # MuJoCo loads the OpenGL that MUJOCO_GL names at once, and fails where it cannot.
+        asked, os.environ["MUJOCO_GL"] = os.environ.get("MUJOCO_GL", ""), "disable"
+        import mujoco  # noqa: F401
+
+        os.environ["MUJOCO_GL"] = asked
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UntrustedWarning)  # the commands say it in their own words
             warnings.simplefilter("ignore", AngleWarning)  # angles are in degrees here

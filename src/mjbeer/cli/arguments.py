@@ -26,7 +26,7 @@ from mjbeer.theory.standing import standing
 SCENES: dict[str, Callable[..., Scene]] = {each.__name__: each for each in (sliding, liquid, frozen, pendulum, hoop)}
 STANDING = {"standing": standing}
 _CANS = {"massless": Can.massless, "metal": Can.sheet_metal}
-_MEANINGS = {
+_MEANINGS = {  # of the options of scenes, in the order of the help
     "incline": "angle of the incline to the horizontal [degrees]; if positive, u grows downhill",
     "fill": "height of the load as a fraction of the can's diameter, or of the length of a can that stands",
     "can": "massless (section 2 of the paper), or metal, of aluminium sheet 0.1 mm thick (section 3)",
@@ -45,7 +45,6 @@ _MEANINGS = {
     "modes": "modes of the slosh that move, from 0 (solid) to 5",
     "damping_ratio": "damping of each mode over the critical one; by default what the viscosity gives",
 }
-"""What the options of scenes mean, in the order of the help."""
 
 
 def angle(text: str) -> float:
@@ -107,7 +106,7 @@ _RUN = (
 )
 _JSON = Option("--json", "print the results as JSON", False)
 _FOLDER = "folder to write to"
-OPTIONS = {
+OPTIONS = {  # of each command; if a scene comes first, these come after that of the scene
     "simulate": (*_RUN, Option("--output", 'CSV file to write; "-" is standard output', None, Path), _JSON),
     "render": (
         *_RUN,
@@ -157,7 +156,6 @@ OPTIONS = {
         Option("--quick", "draw smaller videos with fewer frames, and no films for the paper's scenarios", False),
     ),
 }
-"""The options of each command; if a scene comes first, these come after that of the scene."""
 
 
 def of_scene(name: str, command: str) -> list[Option]:

@@ -21,8 +21,7 @@ from mjbeer.output.terminal import say
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory, csv
 
-KeyFigure = tuple[str, Any, str, str]
-"""A name, a value, its unit, and how text shows it: as a format, or in words where it is none."""
+KeyFigure = tuple[str, Any, str, str]  # a name, a value, its unit, and how text shows it: as a format, or in words
 
 
 class Summary:

@@ -10,8 +10,7 @@ from typing import Any
 
 from mjbeer.exceptions import RenderingError
 
-INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"
-"""The line that brings EGL to Debian and Ubuntu."""
+INSTALL = "apt-get update && apt-get install -y libegl1 libopengl0 libgl1-mesa-dri"  # on Debian and Ubuntu
 
 
 @functools.cache
@@ -50,11 +49,3 @@ def problem() -> str | None:
 def missing(films: Sequence[str]) -> str:
     """Return the line that names the films that are missing because there is no OpenGL, and what installs it."""
     return f"not drawn because there is no OpenGL: {', '.join(films)}; on Debian and Ubuntu this installs it: {INSTALL}"
-
-
-def import_mujoco_without_gl() -> None:
-    """Import MuJoCo without the OpenGL that MUJOCO_GL names: it would load it at once, and fail where it cannot."""
-    asked, os.environ["MUJOCO_GL"] = os.environ.get("MUJOCO_GL", ""), "disable"
-    import mujoco  # noqa: F401
-
-    os.environ["MUJOCO_GL"] = asked

@@ -21,13 +21,12 @@ from mjbeer.theory.trajectory import Trajectory
 Mark = Literal["ghost", "paths", "normal", "friction", "phi", "measured"]
 """ghost: a can that accelerates evenly. paths: of a point on the rim and of the load's centre of mass. normal: N.
 friction: F. phi: the angle of the load. measured: where a film has had the axis so far."""
-_KINDS = {
+_KINDS = {  # by the names of looks: the title of a film of which nothing else is known, what rolls, and what is in it
     "sliding": ("Beer that slides in its can without friction", "can", "beer"),
     "frozen": ("Beer frozen to its can", "can", "beer"),
     "pendulum": ("A pendulum in a rolling wheel", "wheel", "bob"),
     "hoop": ("A weight on the rim of a hoop", "hoop", "bar"),
 }
-"""The title of a film of which nothing else is known, what rolls, and what is in it, by the names of looks."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +59,7 @@ NOTE = 3  # height of a note, at the top of the scene
 _RIM, _CENTRE, _GHOST, _FILMED = (0.79, 0.12, 0.16), (0.42, 0.21, 0.0), (0.25, 0.33, 0.45), (0.85, 0.0, 0.35)
 """Colours of the path of a point on the rim, of that of the centre of mass, of the ghost, and of measured places."""
 _NORMAL, _FRICTION = (0.0, 0.45, 0.30), (0.62, 0.20, 0.55)  # colours of the forces
-_LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
+_LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {  # sign, colour, meaning; in the order of drawing
     "ghost": (("- -", _GHOST, "a {} that accelerates evenly"),),
     "paths": (("—", _RIM, "a point on the rim"), ("—", _CENTRE, "centre of mass")),
     "normal": (("→", _NORMAL, "normal force N"),),
@@ -68,7 +67,6 @@ _LEGENDS: dict[Mark, tuple[tuple[str, Colour, str], ...]] = {
     "phi": (),
     "measured": (("•", _FILMED, "where the filmed {} was"),),
 }
-"""What the marks are, in the order in which they are drawn: a sign, its colour, and its meaning."""
 
 
 def header(sheet: Sheet, look: Look, trajectory: Trajectory, time: float, speed: float) -> None:

@@ -1,7 +1,7 @@
 """The drawn scene: one can, or several side by side, on their board; it is posed, never stepped, and drawn by OpenGL.
 
-Its cans have the radius of the templates' can, whatever the scene's radius is. All scenes then look alike, and none is
-too small or too large for the graphics, which compute in single precision.
+Its cans have the radius of the templates' can, whatever the scene's is: none is too small or too large for the single
+precision of the graphics.
 """
 
 import dataclasses
@@ -25,24 +25,19 @@ from mjbeer.theory.can import RADIUS
 from mjbeer.theory.scene import Scene
 from mjbeer.theory.trajectory import Trajectory
 
-_VISUAL, _UNSEEN = 2, 5
-"""MuJoCo's groups of geoms: of what templates show, and of what OpenGL does not draw; each can is in one of its own."""
-_STRIPE = math.pi / 2 * RADIUS
-"""Length of a stripe of the board [m], a quarter turn of the can; a pale one begins at x = 0, as in the templates."""
-_SQUARE, _LINE = 0.1, 0.1 / 64
-"""Distance of the lines on the wall [m], with x = 0 in the middle between two, and their width."""
+_VISUAL, _UNSEEN = 2, 5  # groups of geoms: what templates show, and what is not drawn; each can is in one of its own
+_STRIPE = math.pi / 2 * RADIUS  # length of a stripe of the board [m]; a pale one begins at x = 0, as in templates
+_SQUARE, _LINE = 0.1, 0.1 / 64  # distance of the lines on the wall [m], two of them around x = 0, and their width
 _PAINT, _STROKE = np.array([0.15, 0.17, 0.2]), 0.003  # colour of lines across the board, and half their width [m]
-_PALE, _DARK = np.array([0.94, 0.84, 0.69]), np.array([0.84, 0.71, 0.54])
-_WALL, _GRID = np.array([0.985, 0.99, 1.0]), np.array([0.84, 0.87, 0.92])
-"""Colours of the board's stripes, and of the wall and its lines, as in looks/world.xml."""
+_PALE, _DARK = np.array([0.94, 0.84, 0.69]), np.array([0.84, 0.71, 0.54])  # stripes of the board, as in looks/world.xml
+_WALL, _GRID = np.array([0.985, 0.99, 1.0]), np.array([0.84, 0.87, 0.92])  # the wall and its lines, as there
 _NEAR = np.array([0.0, -1.0, 0.0])  # unit vector towards the reader
 
 
 def coordinates(trajectory: Trajectory, times: np.ndarray) -> np.ndarray:
     """Return u [m], phi [rad], roll [rad] and lift [m] at some times [s], shape (times, 4).
 
-    Between two samples each is the cubic that has the samples' values and rates. Its error falls as the fourth power
-    of the interval, so that the motion looks smooth even with 20 samples per second.
+    Between samples each is the cubic with their values and rates, whose error falls as the interval's fourth power.
     """
     samples = np.stack([trajectory.u, trajectory.phi, trajectory.roll, trajectory.lift], axis=1)
     if len(samples) == 1:
@@ -56,10 +51,8 @@ class Display:
     each lane. All lengths are as drawn."""
 
     def __init__(self, scenes: Sequence[Scene], apart: float = 0.0, lines: Sequence[float] = ()) -> None:
-        """Make the display of cans on one incline, `apart` [m] from each other, the nearest first.
-
-        `lines` are distances down the incline at which a line crosses the board [m].
-        """
+        """Make the display of cans on one incline, `apart` [m] from each other, the nearest first; at the distances
+        `lines` [m] down the incline a line crosses the board."""
         self.scenes, self.lanes, self._lines = scenes, [lane * apart for lane in range(len(scenes))], lines
         specs = [rolling_spec(_resize(scene), Setting("contact"), visuals=True) for scene in scenes]
         for number, (scene, spec) in enumerate(zip(scenes, specs, strict=True)):

@@ -4,6 +4,7 @@ import math
 import pathlib
 from collections.abc import Sequence
 from functools import cache, lru_cache
+from typing import Any
 
 import numpy as np
 from matplotlib import get_data_path
@@ -31,10 +32,8 @@ class Sheet:
         self._pixels = np.asarray(self._renderer.buffer_rgba())
         self._pixels[:] = 255
         self._flip = Affine2D().scale(1, -1).translate(0, height)
-        self.width, self.height, self.unit = width, height, height / 34
-        """The unit of length of letters and margins [pixels]."""
-        self.boxes: list[Box] = []
-        """The boxes of all texts on this picture."""
+        self.width, self.height, self.unit = width, height, height / 34  # the unit is that of letters and margins
+        self.boxes: list[Box] = []  # of all texts on this picture
         self._pasting = self._renderer.new_gc()
 
     def put(self, rows: np.ndarray, top: int) -> None:
@@ -91,7 +90,7 @@ class Sheet:
         way = np.asarray(head) - tail
         if (length := float(np.hypot(*way))) >= 1:
             width = min(width, length / _HEAD)
-            sizes = {"width": width, "head_width": 3 * width, "head_length": _HEAD * width}
+            sizes: Any = {"width": width, "head_width": 3 * width, "head_length": _HEAD * width}
             self.area(FancyArrow(*tail, *way, length_includes_head=True, **sizes).get_xy(), colour)
 
     def text(

@@ -31,8 +31,7 @@ class Line:
     name: str
     time: np.ndarray  # times [s], shape (samples,)
     values: np.ndarray  # values at these times
-    colour: Colour | None = None
-    """Its colour; None for theory's line, which is seen from the beginning."""
+    colour: Colour | None = None  # None for theory's line, which is seen from the beginning
 
 
 @dataclass(frozen=True, eq=False)

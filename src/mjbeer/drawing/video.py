@@ -28,14 +28,13 @@ from mjbeer.theory.trajectory import Trajectory
 
 _LARGEST = 4096  # largest width and height [pixels] that H.264 encoders support
 _RATE = 23  # the rate factor of a file, ffmpeg's default: at 18 no loss is visible, and at 24 letters are still sharp
-_ENCODED = (
+_ENCODED = (  # what ffmpeg is told besides
     # HD colours (BT.709), which players expect; the default are those of SD television.
     *("-vf", "scale=out_color_matrix=bt709:out_range=tv"),
     # A search for motion that is quick and not deep: files are a sixth larger, and take a quarter less time.
     *("-preset", "veryfast", "-x264-params", "bframes=0:me=dia:subme=1:ref=1:weightp=0:threads=1"),
     *("-movflags", "+faststart"),  # a player can start before it has loaded the whole file
 )
-"""What ffmpeg is told about a file besides."""
 _DISK = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)  # ffmpeg prints the system's message for them
 
 
@@ -77,12 +76,7 @@ def render(
 
 
 def write(
-    plan: RenderPlan,
-    path: pathlib.Path,
-    width: int,
-    height: int,
-    fps: float,
-    begin: Callable[[str], None] = lambda _: None,
+    plan: RenderPlan, path: pathlib.Path, width: int, height: int, fps: float, begin: Callable[[str], Any] = str
 ) -> None:
     """Write a film as a video, as `render` does, picture by picture; `begin` gets the words of a progress bar."""
     with (
@@ -183,13 +177,11 @@ def produce(orders: Sequence[Any], console: rich.console.Console) -> list[Any]:
         with terminal.progress_bar(console, len(orders)) as begin, files.pool(len(orders)) as executor:
             futures = {executor.submit(_done, order): order for order in orders}
             for future in as_completed(futures):
-                name = futures[future].path.name
-                try:
-                    future.result()
-                except BrokenProcessPool as error:
-                    raise RenderingError(f"{name} was not made: a process died; is memory short?") from error
-                begin(f"made {name}")
+                future.result()
+                begin(f"made {futures[future].path.name}")
             return [future.result() for future in futures]
+    except BrokenProcessPool as error:
+        raise RenderingError("a process that drew or checked died; is memory short?") from error
     finally:  # a process that was ended while it wrote leaves a hidden file
         for order in orders:
             for unfinished in order.path.parent.glob(f".{order.path.stem}-*"):

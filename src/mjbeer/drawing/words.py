@@ -42,7 +42,7 @@ def damping_in_words(scene: Scene) -> str:
     return " + ".join(f"{share:.4g} {unit}" for share, unit in shares if share) or "0"
 
 
-_LABELS = {
+_LABELS = {  # of the quantities that a plot can show, by their names in a trajectory
     "phi": "φ [°]",
     "u": "u [m]",
     "phi_dot": "dφ/dt [°/s]",
@@ -53,7 +53,6 @@ _LABELS = {
     "slip": "slip [m]",
     "energy": "energy [J]",
 }
-"""Labels of the quantities that a plot can show, by their names in a trajectory."""
 
 
 def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Any, ...]:
@@ -82,13 +81,13 @@ def plot(trajectory: Trajectory, *names: str, theory: bool = False) -> tuple[Any
         if theory:
             dense = np.union1d(time, np.linspace(0, time[-1], 2000))
             truth = exact_motion(scene, dense, trajectory.phi0, trajectory.phi_dot0)
-            for axes, name in zip(panels, names, strict=True):
-                axes.plot(dense, _values(truth, name), label="exact theory", **THEORY)
         source = "exact theory" if trajectory.rolling == "exact" else "MuJoCo"
         parts = math.inf if trajectory.rolling == "contact" else trajectory.rolls_until()
         rolls, pulled = time <= parts, time >= parts
         for axes, name in zip(panels, names, strict=True):
             values = _values(trajectory, name)
+            if theory:
+                axes.plot(dense, _values(truth, name), label="exact theory", **THEORY)
             axes.plot(time[rolls], values[rolls], label=source, **SIMULATED)
             if pulled.any():
                 axes.plot(time[pulled], values[pulled], label="if the incline could pull the can", **UNPHYSICAL)

@@ -8,9 +8,8 @@ from matplotlib.axes import Axes
 from rich.console import Console
 
 from mjbeer.drawing import opengl, video
-from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
 from mjbeer.drawing.overlay import Look
-from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.video import FilmJob, PlotJob
 from mjbeer.drawing.words import in_degrees, in_words
 from mjbeer.output import files

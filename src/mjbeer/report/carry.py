@@ -24,9 +24,8 @@ _DISTANCE, _LONGEST = 0.4, 2.4  # way of the grippers [m], and how long the film
 _APART, _HIGH = 0.34, 0.015  # distance of the grippers, and height at which they hold their cans [m]
 _LEFT, _EYE = -0.26, np.array([0.1, -2.2, 1.5])  # where the picture begins, and where the eye is [m]
 _PLATES, _STEEL = 24, np.array([0.32, 0.36, 0.42])  # flat faces around half a can, and a colour
-_CORNERS = (-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19)
-_OUTLINE = np.array([[(x, y, z) for x, z in _CORNERS] for y in (-0.034, 0.034)])
-"""The corners of the near and the far side of what is around a gripper, from the bottom of its can [m]."""
+_CORNERS = (-0.06, 0.0), (0.06, 0.0), (0.06, 0.19), (-0.06, 0.19)  # of what is around a gripper, from its can's bottom
+_OUTLINE = np.array([[(x, y, z) for x, z in _CORNERS] for y in (-0.034, 0.034)])  # of its near and its far side [m]
 
 
 class Carried(NamedTuple):
@@ -69,8 +68,7 @@ def minimum_jerk(time: np.ndarray, distance: float, duration: float) -> tuple[np
     return place, distance / duration**2 * 60 * share * (1 - share) * (1 - 2 * share)
 
 
-MOVES = {1.0: (0.80, 0.15, 0.20), 1.6: (0.05, 0.40, 0.75)}
-"""Times that the moves of the film take [s], and their colours: a quick one in front, and a gentle one."""
+MOVES = {1.0: (0.80, 0.15, 0.20), 1.6: (0.05, 0.40, 0.75)}  # times that moves take [s], and colours; the quick in front
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from mjbeer.drawing.film import Film, MotionFilm
+from mjbeer.drawing.film import Film, MotionFilm, Race, Runner
 from mjbeer.drawing.overlay import Look
-from mjbeer.drawing.race import Race, Runner
 from mjbeer.drawing.video import FilmJob
 from mjbeer.paper import stories
 from mjbeer.report.carry import Carry
@@ -19,8 +18,7 @@ from mjbeer.theory.scene import frozen, hoop, pendulum, sliding
 
 METAL = Can.sheet_metal()
 LENGTH = 1.0  # distance from start to finish [m]
-_GENTLE = math.radians(5)
-"""Incline of the race of beer [rad]: gentle enough for the frozen can to finish without leaving the board."""
+_GENTLE = math.radians(5)  # incline of the race of beer [rad], on which the frozen can stays on the board
 _STEEPER = math.radians(7.1)
 """Incline of the race of liquids [rad]: let go with a level surface, ice rolls over the top from 6.93 degrees on, and
 honey, the thickest of the liquids, from 7.38."""
@@ -60,7 +58,7 @@ def of_liquids() -> Sequence[Runner]:
     ]
 
 
-RACES = {
+FILMS: dict[str, Film] = {  # by the names of their files
     "race": Race(
         *("Which can wins?", of_beer, LENGTH, 2.3),
         speed=0.25,
@@ -86,9 +84,6 @@ RACES = {
         "they need not stay at the bottom, and of real honey the wall carries up to 30 % round with it. With half or "
         "twice the viscosity honey is last as well.",
     ),
-}
-"""The films that the page shows first, by the names of their files."""
-FILMS: dict[str, Film] = RACES | {
     "sliding": MotionFilm(
         partial(simulate, sliding(can=METAL), 1.2, math.radians(60), tolerance=1e-9),
         speed=0.25,
@@ -134,15 +129,13 @@ FILMS: dict[str, Film] = RACES | {
     ),
     "carry": Carry(),
 }
-"""The films by the names of their files."""
-COMMANDS = {
+COMMANDS = {  # that draw a film by itself; `mjbeer report` draws the others
     "sliding": "mjbeer render sliding --can metal --phi0 60 --duration 1.2 --tolerance 1e-9 --speed 0.25",
     "frozen": "mjbeer render frozen --phi0 180 --duration 0.82 --tolerance 1e-9 --speed 0.2",
     "pendulum": "mjbeer render pendulum --phi0 60 --duration 1.5 --tolerance 1e-9 --speed 0.25",
     "hoop": "mjbeer render hoop --phi0 -171.8873 --phi-dot0 916.7325 --duration 0.5 --rolling contact --timestep 2e-4 "
     "--speed 0.1",
 }
-"""The command that draws a film by itself; the others are drawn by `mjbeer report` alone."""
 
 
 def film_jobs(folder: pathlib.Path, quick: bool) -> list[FilmJob]:

@@ -43,8 +43,6 @@ _MATHML = {
 _GREEK = r"(?<![A-Za-z])(alpha|beta|delta|epsilon|theta|mu|pi|phi|omega|Omega)(?![A-Za-z])"
 _RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 
-Film = tuple[bytes, bytes]  # a film as MP4, and a picture from the midst of it as WebP
-
 
 def write(folder: pathlib.Path, quick: bool, console: Console) -> tuple[Validation, str]:
     """Write index.html and live.html into a folder, each whole or not at all; that of an earlier report goes first.
@@ -85,12 +83,14 @@ def plot_jobs(folder: pathlib.Path) -> list[PlotJob]:
 
 
 def page(
-    validation: Validation, drawn: Mapping[str, Film], plots: Mapping[str, Picture], quick: bool, not_drawn: str
+    validation: Validation,
+    drawn: Mapping[str, tuple[bytes, bytes]],
+    plots: Mapping[str, Picture],
+    quick: bool,
+    not_drawn: str,
 ) -> str:
-    """Return the page as HTML, with films of scenes and stories and plots by their names.
-
-    `not_drawn` says why films are missing, or is "".
-    """
+    """Return the page as HTML, with plots and `drawn` films (as MP4, and a picture of each as WebP) by their names;
+    `not_drawn` says why films are missing, or is ""."""
     loader = PackageLoader("mjbeer.report", "web")
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     environment.filters |= {"mathml": mathml, "share": share, "marked": _marked, "data": _data, "inline": _inline}
