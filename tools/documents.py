@@ -253,8 +253,8 @@ def honesty() -> str:
     silent, above, twice = (found.get(name, 0) for name in (SILENT, stability_study.ABOVE, stability_study.TWICE))
     return prose(
         f"Of {ended(found):,} random runs {silent} were wrong without saying so{allows}. {alone(found):,} were judged "
-        f"by one theory alone, and {found.get(NOBODY, 0)} by none. Of all trusted runs {above} had a larger error than its "
-        f"estimate, and {twice} more than twice as large a one. Of {ended(known):,} runs of known cases "
+        f"by one theory alone, and {found.get(NOBODY, 0)} by none. Of all trusted runs {above} had a larger error than "
+        f"its estimate, and {twice} more than twice as large a one. Of {ended(known):,} runs of known cases "
         f"{known.get(SILENT, 0)} were silent."
     )
 

@@ -67,7 +67,7 @@ def test_standard_output_has_the_csv_or_the_json_alone(
         ("benchmark slding", "scene must be one of 'sliding', 'sliding-metal', "),
         ("simulate sliding --incline 100", "incline must be between -90 and 90 [degrees], got 100"),
         ("sweep frozen --incline 1:100:3", "incline must be between -90 and 90 [degrees], got 100"),
-        ("simulate sliding --phi0 inf", "phi0 must be a finite number [rad], got inf"),
+        ("simulate sliding --phi0 inf", "argument --phi0: it must be a finite number [degrees], got inf"),
         ("simulate frozen --timestep 0", "timestep must be between 1e-07 and 10 [s], got 0.0"),
         ("simulate frozen --timestep 0.5 --integrator Euler --phi0 5e5 --duration 900", "the run diverged at t ="),
         ("render frozen --output film.avi", "the file's name must end in .mp4, got 'film.avi'"),

@@ -49,7 +49,9 @@ _MEANINGS = {  # of the options of scenes, in the order of the help
 
 def angle(text: str) -> float:
     """Read an angle in degrees, or a rate in degrees/s, as one in radians."""
-    return math.radians(float(text))
+    if not math.isfinite(degrees := float(text)):
+        raise ArgumentTypeError(f"it must be a finite number [degrees], got {text}")
+    return math.radians(degrees)
 
 
 def numbers(text: str) -> float | np.ndarray:
