@@ -26,6 +26,9 @@ OWN = (DOP853, GAUSS_JACKSON)
 FRICTION = 1.0
 """Default friction coefficient of a contact, which is MuJoCo's default too."""
 
+_PACKAGE = pathlib.Path(__file__).parents[1]
+_SHIPPED = packed if (packed := _PACKAGE / "mjcf").is_dir() else _PACKAGE.parents[1] / "mjcf"
+"""The folder that comes with mjbeer: a wheel has it inside, a checkout at its top."""
 VARIABLE = "MJBEER_MJCF"
 """The environment variable that names another folder."""
 
@@ -96,8 +99,7 @@ def supported(scene: Scene, rolling: str) -> bool:
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
     if own is None and (own := os.environ.get(VARIABLE)) is None:
-        package = pathlib.Path(__file__).parents[1]  # a wheel has it inside, a checkout at its top
-        return packed if (packed := package / "mjcf").is_dir() else package.parents[1] / "mjcf"
+        return _SHIPPED
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
         raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.format_value(own)}")
     return pathlib.Path(own)
