@@ -60,10 +60,7 @@ def test_requested_times_are_those_of_the_whole_run(integrator: str) -> None:
         ({"times": [0.0, 0.5]}, r"between 0 and the duration 0\.1 s, got 0\.5 s"),
         ({"times": [0.01, 0.01]}, r"times must increase, but times\[1\] is 0\.01 s after 0\.01 s"),
         ({"times": [0.0, 0.0105]}, 'multiples of the timestep 0.001 s only, not at 0.0105 s; integrator="DOP853"'),
-        (
-            {"times": [0.01, 0.01 * (1 + 1e-12)]},
-            r"times must be at least a timestep of 0\.001 s apart, got 0\.01 s and 0\.01",
-        ),
+        ({"times": [0.01, 0.01 * (1 + 1e-12)]}, r"different multiples of .* only, not at 0\.0100000000000\d+ s"),
         ({"friction": 1e-6}, "friction must be between 1e-05 and inf, got 1e-06"),
     ],
 )

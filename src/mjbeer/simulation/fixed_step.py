@@ -1,4 +1,4 @@
-"""MuJoCo's own integrators, stepping a model, and the record of all steps of a run, made while it is stepped."""
+"""MuJoCo's own integrators, and the record of all steps of a run, made while a model is stepped."""
 
 import math
 from collections.abc import Generator, Sequence
@@ -18,8 +18,7 @@ from mjbeer.theory.record import Record
 from mjbeer.theory.scene import Scene
 
 _BLOCK = 4096
-"""Steps between two returns to Python, where a long run can be interrupted. Their states fit into a processor's
-cache."""
+"""Steps between two returns to Python, where a run can be interrupted: their states fit into a processor's cache."""
 _STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
 """MuJoCo's state of a run: time, positions and rates first."""
 
@@ -118,11 +117,11 @@ class Recorder:
     def __call__(self, times: np.ndarray, states: np.ndarray) -> None:
         """Add the next steps."""
         motion = to_coordinates(self._model, self._scene, states, times)
-        if not self._within:
+        if self._within:
+            self.record.add_conserved(motion)
+            self.add_forces(motion)
+        else:
             self.record.add(motion)
-            return
-        self.record.add_conserved(motion)
-        self.add_forces(motion)
 
     def add_forces(self, motion: Coordinates) -> None:
         """Add the forces within the next steps."""
@@ -134,25 +133,17 @@ class Recorder:
 
 
 _PART = np.arange(1, 9)[:, None] / 8  # a step of DOP853 may be half a swing long
-
-
-def _polynomial() -> tuple[np.ndarray, np.ndarray]:
-    """Return what gives change and rate at `_PART` of a step by a polynomial of fifth degree.
-
-    They are multiplied by the change of the step, and by the rates and the second derivatives at its ends.
-    """
-    ends = [[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]]
-    power, terms = np.arange(1, 6), np.linalg.inv(ends)
-    return _PART**power @ terms, power * _PART ** (power - 1) @ terms
-
-
-_CHANGES, _RATES = _polynomial()
+_POWER = np.arange(1, 6)
+_ENDS = [[1, 1, 1, 1, 1], [1, 0, 0, 0, 0], [0, 2, 0, 0, 0], [1, 2, 3, 4, 5], [0, 2, 6, 12, 20]]
+_CHANGES, _RATES = (each @ np.linalg.inv(_ENDS) for each in (_PART**_POWER, _POWER * _PART ** (_POWER - 1)))
+"""What gives change and rate at `_PART` of a step, by the polynomial of fifth degree that has the change of the step,
+and the rates and the second derivatives at its ends."""
 
 
 def _between(time: np.ndarray, place: np.ndarray, rate: np.ndarray, gain: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return times [s], phi, phi_dot and u_dot within steps, from both coordinates and their derivatives at the ends.
+    """Return times [s], phi, phi_dot and u_dot within steps, or at a single end.
 
-    These have shape (2, ends); a single end is returned as it is.
+    Both coordinates and their derivatives at the ends have shape (2, ends).
     """
     if len(time) == 1:
         return time, place[0], *rate

@@ -25,20 +25,19 @@ if TYPE_CHECKING:
     from mjbeer.integrators.dynamics import Dynamics
 
 _GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
-"""The greater of the two parts of a timestep in an uneven run: the golden section, of whose multiples none is near a
-whole number, so that no rate of rotation has the same phase at the ends of both parts."""
+"""The greater part of a timestep in an uneven run. None of its multiples is near a whole number, so that no rate of
+rotation has the same phase at the ends of both parts."""
 _pool: dict[Structure, list["Simulator"]] = {}
 """Simulators that nobody uses, at most as many of a structure as there were threads."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
 that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
 _START_OFFSET = 4e-14
-"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding; it shows beside
-a separatrix how much that matters. A larger one could hide an error, as it may move the motion the other way."""
+"""Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding, which shows how
+much that matters beside a separatrix. A larger one could move the motion against an error, and hide it."""
 _DEPTH = 0.5
-"""Depth at which a can in contact starts in the uneven run, over that in the run: the distance then has half of the
-error that this depth causes. That of softness falls to 0.62 or to 0.38 of itself. Half is between them, so that the
-distance is not much too small either where the two errors are of opposite sign."""
+"""Depth at which a can in contact starts in the uneven run, over that in the run. The error of softness falls to 0.62
+or to 0.38 of itself; that of the depth falls to half, between them, as the two may be of opposite sign."""
 _COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
 _MAX_TURN_PER_STEP = 2.0
@@ -95,10 +94,6 @@ class Simulator(ReusableModel):
     def initial_state(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
         return initial_state(self.model, self.scene, phi0, phi_dot0)
-
-    def coordinates(self, states: np.ndarray, times: np.ndarray) -> Coordinates:
-        """Return the coordinates for states of shape (samples, nq + nv) at `times` [s]."""
-        return to_coordinates(self.model, self.scene, states, times)
 
     def solve(self, start: np.ndarray, times: np.ndarray, friction: float | None = None) -> Solution:
         """Return the states at `times` [s] of the motion from `start`; MuJoCo's integrators use the nearest timesteps.
@@ -192,8 +187,8 @@ class Run(Trajectory):
     def rolls_until(self, friction: float = np.inf) -> float:
         """Return the time [s] until which rolling without slipping was possible with a coefficient of `friction`.
 
-        It is infinite if rolling was possible to the end. Infinite friction, the default, leaves only N > 0 to hold;
-        any other takes a run as long as this one, all of whose steps are looked at.
+        It is infinite if rolling was possible to the end. With infinite friction only N > 0 has to hold; any other
+        takes a run as long as this one.
         """
         friction = require.friction(friction)
         if friction == self.record.friction:
@@ -208,14 +203,10 @@ class Run(Trajectory):
     def error_estimate(self) -> float:
         """Return the estimated global error of phi and u/a [rad], relative to the angle where that exceeds 1 rad.
 
-        It rests on the largest distance from a second run. With a tolerance that was made already. Otherwise the first
-        access makes the uneven run, which takes twice as long as this one; the error is infinite if it diverges.
+        It rests on the largest distance from a second run. Without a tolerance the first access makes that, in twice
+        the time of this one; the error is infinite if it diverges.
         """
-        return self._uneven if self.error is None else self.error
-
-    @cached_property
-    def _uneven(self) -> float:
-        return compare_uneven(self)
+        return compare_uneven(self) if self.error is None else self.error
 
     @cached_property
     def failed_checks(self) -> tuple[str, ...]:
@@ -253,21 +244,20 @@ class Run(Trajectory):
 def compare_uneven(run: Run) -> float:
     """Return the error of phi and u/a [rad] that an uneven run shows, relative beyond 1 rad; infinite if that diverges.
 
-    It begins a little aside. Constraints that are tuned to the timestep are harder in it, so that its distance from the
-    first run includes the effect of their softness; that of the starts includes the effect of rounding, and of the
-    depth at which a can in contact starts.
+    Constraints that are tuned to the timestep are harder in it, so that its distance from the first run includes the
+    effect of their softness. It begins a little aside, which adds that of rounding, and of a contact's depth.
     """
     scene, setting, motion = run.scene, run.setting, run.checkpoints
-    simulator, soft = Simulator(scene, setting, uneven=True), setting.rolling == "contact"
+    simulator = Simulator(scene, setting, uneven=True)
     start = simulator.initial_state(run.phi0 + _START_OFFSET, run.phi_dot0)
-    if soft:
+    if setting.rolling == "contact":
         start[joint_addresses(simulator.model)["lift"]] *= _DEPTH
     try:
         states = simulator.solve(start, motion.time).states
     except DivergenceError:
         return math.inf
     begin = run.phi0, scene.start(run.phi0, run.phi_dot0)[0]
-    uneven = simulator.coordinates(states, motion.time)
+    uneven = to_coordinates(simulator.model, scene, states, motion.time)
     return _OVER_DISTANCE * distance(motion, uneven, scene.can.radius, begin)
 
 
@@ -283,7 +273,7 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
             samples = np.searchsorted(along, times)
     with Simulator.from_pool(scene, setting) as simulator:
         solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
-        motion = simulator.coordinates(solution.states, along)
+        motion = to_coordinates(simulator.model, scene, solution.states, along)
     assert solution.record is not None
     return Run(
         **{name: array[samples] for name, array in vars(motion).items()},

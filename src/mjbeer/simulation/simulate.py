@@ -14,8 +14,8 @@ from mjbeer.simulation.run import Run, integrate
 from mjbeer.theory.scene import DURATION, PHI0, Scene
 
 _ON_A_STEP = 1e-10
-"""Largest distance of a requested time from a multiple of the timestep, over the time: that of a running sum of a
-million timesteps, which is how MuJoCo's own clock counts, is 2e-11 (measured)."""
+"""Largest distance of a requested time from a multiple of the timestep, over the time: a running sum of a million
+timesteps, as MuJoCo's own clock counts, is 2e-11 off (measured)."""
 _MOST_SAMPLES = 1e8
 """Largest number of samples at every timestep: they take ten gigabytes."""
 _MOST_STEPS = 1e12
@@ -109,16 +109,10 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     if setting.integrator in OWN:
         return times
     steps = np.rint(ratios)
-    off = np.flatnonzero(np.abs(ratios - steps) > _ON_A_STEP * ratios)
-    if len(off):
+    off = (np.abs(ratios - steps) > _ON_A_STEP * ratios) | (np.diff(steps, prepend=-1.0) == 0)
+    if off.any():
         raise ParameterError(
-            f"MuJoCo's integrators have samples at multiples of the timestep {timestep!r} s only, not at "
-            f'{require.format_value(times[off[0]])} s; integrator="DOP853" has them anywhere'
-        )
-    same = np.flatnonzero(np.diff(steps) == 0)
-    if len(same):
-        raise ParameterError(
-            f"times must be at least a timestep of {timestep!r} s apart, got {require.format_value(times[same[0]])} s "
-            f"and {require.format_value(times[same[0] + 1])} s"
+            f"MuJoCo's integrators have samples at different multiples of the timestep {timestep!r} s only, not at "
+            f'{times[off][0]} s; integrator="DOP853" has them anywhere'
         )
     return steps * timestep

@@ -24,10 +24,10 @@ _PARTS = np.linspace(0, 1, 33)
 _COMPARED = 256
 """Samples at which runs of Gauss-Jackson are compared, if there are more: an error changes within a part of a swing."""
 _LIGHT, _BRIEF = 10.0, 4.0
-"""How uneven J is over its least value, from which on a wheel is light: its load is fast for a moment only, while it
-passes the lowest point, and makes much of its error there. Two runs of Gauss-Jackson whose errors were the same by
-chance were then 2.8 times as far off as they should have been; the second number is their safety. Rounding grows with
-that ratio, as large inertias cancel in the small one, and so does the nudge."""
+"""How uneven J is over its least value, from which on a wheel is light: its load makes much of its error while it is
+fast, at the lowest point. Two runs of Gauss-Jackson with the same error by chance were 2.8 times as far off as they
+should have been; the second number is their safety. Rounding grows with the ratio, as large inertias cancel in the
+small one, and so does the nudge."""
 _LIGHTEST = 40.0
 """The same, from which on DOP853 takes the wheel: a step of Gauss-Jackson as a whole is too long for the passage."""
 _SAFETY_BY_CHANCE = 3.0
@@ -36,8 +36,8 @@ _SAFETY_BY_CHANCE = 3.0
 _ASYMPTOTIC = (1e-11, 1e-5)
 """Range of tolerances in which rounding or large steps do not hide the method's order."""
 _NUDGE = 4e-14
-"""Distance of the first run's start from the given start, relative to `scales`. The distance of the first two runs then
-includes the effect of a small change of the start, which is large beside a separatrix."""
+"""Distance of the first run's start from the given start, over the size of each component: the distance of the first
+two runs then includes the effect of a small change of the start, which is large beside a separatrix."""
 _PUSH = 2e-15
 """Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows how much a small change of the energy
 on the way matters, as for a swing that comes near a barrier's top, where the start does not."""
@@ -57,15 +57,11 @@ _COARSEST = 1e-6
 """Largest local tolerance. With larger steps the two runs of a motion that spins up may have much the same error: one
 of 2,000 runs was 7.5 times as far from the exact motion as from the other run."""
 _FIRST_RATIO, _RATIO = 64.0, 8.0
-"""Local tolerance of the first run over that of the second, and of any other over that of the next. At order 8 these
-take 1.7 and 1.3 times the evaluations. Errors scatter by ten about what a local tolerance lets expect: with a ratio of
-8 the first two runs were within a third of their common error once in 3,000 random liquids."""
-_LEAST_RATIO = 2.0
-"""The same, at least: with less the finer run is hardly any finer."""
+"""Local tolerance of the first run over that of the second, and of any other over that of the next: 1.7 and 1.3 times
+the evaluations. Errors scatter by ten about what a local tolerance lets expect: with a ratio of 8 the first two runs
+were within a third of their common error once in 3,000 random liquids."""
 _SMALLEST = 1e-16
 """Local tolerance below which the error of a step is rounding."""
-_STALLED = 0.75
-"""Error estimate over that of the run before, above which the finer run was no progress."""
 _EVALUATIONS = 2_000_000
 """Largest number of evaluations in all runs of a call, which take some seconds. A smooth motion takes thousands."""
 _STABLE = 6.4 / 12
@@ -77,23 +73,14 @@ to 2 for swings of 2.85 rad. There the distance of the runs shows how much the m
 _SHORTER = 1.25
 """Longest step of one run of DOP853 over that of the next, at least: a rotation is so even that steps of any length
 keep a local tolerance, and two runs with the same steps have the same error."""
-_MORE = 4
-"""Evaluations of a run over those of the run before, from where on it is rounding that makes its steps small."""
 
-_LOOSE = _ASYMPTOTIC[1]
-"""Largest tolerance for Gauss-Jackson: what is asked for more loosely has its timestep, which is nearly the longest."""
 _FINER = 1.35
 """Timestep of one run of Gauss-Jackson over that of the next. The distance of the two is the error of the coarser one,
-and taken for that of the finer one, which is 37 times smaller. At a ratio of 1.15, and 1.5 times the distance, it took
-as long, and two errors that were near an extremum together, 1e-4 each, were 1e-6 apart."""
-_ORDER = 12
-"""Power of the timestep with which an error of Gauss-Jackson falls, on the safe side of its order, 13."""
-_PRECISION = 1e-3
-"""Precision of the time that passes in a step of Gauss-Jackson, over the tolerance."""
+37 times that of the finer one, for which it is taken. At a ratio of 1.15 two errors of 1e-4 were 1e-6 apart."""
 _SHARE, _REFERENCE, _ADDED, _POWER = 0.078, 1e-9, 1.5, 1 / 14
-"""First timestep of Gauss-Jackson over the distance of the nearest pole, for an error of 1e-9 rad in a cycle; the power
-of the number of cycles with which errors add up; that of an error with which a timestep grows. Of 1,466 random motions
-nine of ten allow 1.03 times the timestep or more, and half of them 1.20 times."""
+"""First timestep of Gauss-Jackson over the distance of the nearest pole, for an error of 1e-9 rad in a cycle; powers of
+the number of cycles with which errors add up, and of an error with which a timestep grows. Nine of ten of 1,466 random
+motions allow 1.03 times the timestep or more."""
 _GAP = 2.5
 """Energy below or above the crest, over the depth of the well, from which on a load hardly lingers there: beside the
 crest the time of a swing, and so its error, grows as the inverse of that energy."""
@@ -106,7 +93,12 @@ class ToleranceLoop:
 
     def __init__(self, model: mujoco.MjModel, scene: Scene, dynamics: Dynamics) -> None:
         self._model, self._scene, self._dynamics = model, scene, dynamics
-        self._scale, joints, radius = scales(model, scene), joint_addresses(model), scene.can.radius
+        joints, radius = joint_addresses(model), scene.can.radius
+        rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
+        sizes = np.array([radius if name in ("slide", "lift") else 1.0 for name in joints])
+        self._scale = np.append(sizes, rate * sizes)
+        """Size of each component of the state below which its error counts absolutely: of lengths a radius, of angles
+        1 rad, and of their rates these times sqrt(g/a)."""
         parts = {"slide": (0.0, 1 / radius), "lift": (0.0, 0.0)}  # phi and u/a are sums of components of the state
         angle = 1.0, 0.0 if "slide" in joints else 1.0
         self._angles = np.array([parts.get(name, angle) for name in joints] + [(0.0, 0.0)] * model.nv)
@@ -122,11 +114,10 @@ class ToleranceLoop:
     def run(self, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float) -> Solution:
         """Return states at `times` [s] whose error of phi and u/a is below `tolerance` [rad] (relative beyond 1 rad).
 
-        Of a smooth motion, runs of Gauss-Jackson are tried first; otherwise all runs are DOP853's, the second with a
-        64th of the local tolerance of the first, and others with an eighth of that of the run before, or the least. The
-        first starts a nudge from `start`. The error estimate is a multiple of the distance of the last two runs at the
-        samples, and no less than what the drift of energy and momentum implies: over many turns the errors of two runs
-        may be the same by chance. From the third run of DOP853 on a share of the distance before counts if that is
+        Of a smooth motion, runs of Gauss-Jackson are tried first; otherwise all runs are DOP853's, with ever smaller
+        local tolerances. The first starts a nudge from `start`. The error estimate is a multiple of the distance of the
+        last two runs, and no less than what the drift of energy and momentum implies: over many turns the errors of two
+        runs may be the same by chance. From the third run of DOP853 on a share of the distance before counts if that is
         larger. The solution has the record of all steps of the last run, for a coefficient of `friction`.
 
         Raises:
@@ -151,7 +142,9 @@ class ToleranceLoop:
         along = np.sort(np.concatenate([times, times[-1] * _PARTS])) if far else times
         found = None
         if self._gauss_jackson is not None:
-            found = self._by_gauss_jackson(self._gauss_jackson, start, along, min(tolerance, _LOOSE), friction)
+            # What is asked for more loosely has the timestep of this tolerance, which is nearly the longest.
+            tight = min(tolerance, _ASYMPTOTIC[1])
+            found = self._by_gauss_jackson(self._gauss_jackson, start, along, tight, friction)
         found = found or self._by_dop853(start, along, tolerance, friction)
         return replace(found, states=found.states[np.searchsorted(along, times)]) if far else found
 
@@ -168,7 +161,7 @@ class ToleranceLoop:
         safety = _BRIEF if self._light else 1.0
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
         timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
-        own = pendulum_time(self._scene, phi0, _PRECISION * tolerance)
+        own = pendulum_time(self._scene, phi0, 1e-3 * tolerance)
         try:
             for _ in range(_TRIES):
                 coarse = method.run(start + self._nudge, some_times, timestep, own, None, self._push, self._left / 2)
@@ -195,7 +188,7 @@ class ToleranceLoop:
                 error = max(safety * distance, drift)
                 if error <= tolerance:
                     return Solution(fine, record, error, GAUSS_JACKSON)
-                timestep *= min(1 / _FINER, (tolerance / error) ** (1 / _ORDER))
+                timestep *= min(1 / _FINER, (tolerance / error) ** (1 / 12))  # its order is 13: on the safe side
         except DivergenceError:
             pass
         return None
@@ -213,7 +206,8 @@ class ToleranceLoop:
             except DivergenceError as error:
                 raise _not_reached(tolerance, str(error)) from error
             self._left -= integrator.evaluations
-            limit, longest = _MORE * integrator.evaluations, integrator.longest / _SHORTER
+            # With four times the evaluations of the run before it is rounding that makes the steps small.
+            limit, longest = 4 * integrator.evaluations, integrator.longest / _SHORTER
             return states
 
         local = max(min(_FIRST * tolerance, _COARSEST), _FIRST_RATIO * _SMALLEST)
@@ -232,10 +226,11 @@ class ToleranceLoop:
             error = safety * max(distances[-1], distances[-2] / ratios[-2])
             if max(error, drift) <= tolerance:
                 break
-            stalled = 0 if max(error, drift) <= _STALLED * estimate else stalled + 1
+            stalled = 0 if max(error, drift) <= 0.75 * estimate else stalled + 1  # above that it is no progress
             ratios.append(min(_RATIO, local / _SMALLEST))
-            # With too large steps the distance is arbitrary: a finer run may be no progress, even twice.
-            if ratios[-1] < _LEAST_RATIO or stalled > 2:
+            # With too large steps the distance is arbitrary: a finer run may be no progress, even twice. With a local
+            # tolerance of more than half of that before a run is hardly any finer.
+            if ratios[-1] < 2 or stalled > 2:
                 end = "with ever smaller steps" if stalled > 2 else "at the limit of rounding"
                 if error <= tolerance:
                     reason = f"two runs agree, but energy or momentum drift like an error of {drift:.2g} rad"
@@ -333,14 +328,3 @@ def _distance(angles: np.ndarray, coarse: np.ndarray, fine: np.ndarray, start: n
     turned = np.maximum.accumulate(np.abs((fine - start) @ angles))
     distance = float((np.abs((fine - coarse) @ angles) / np.maximum(turned, 1.0)).max())
     return distance if distance < math.inf else math.inf
-
-
-def scales(model: mujoco.MjModel, scene: Scene) -> np.ndarray:
-    """Return the size of each component of the state below which its error counts absolutely, shape (nq + nv,).
-
-    It is a radius for lengths and 1 rad for angles, and these times sqrt(g/a) for their rates.
-    """
-    radius = scene.can.radius
-    positions = [radius if name in ("slide", "lift") else 1.0 for name in joint_addresses(model)]
-    rate = math.sqrt(scene.gravity / radius) if scene.gravity > 0 else 1.0
-    return np.array([*positions, *(rate * each for each in positions)])
