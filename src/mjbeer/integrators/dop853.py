@@ -31,9 +31,8 @@ from mjbeer.model.mujoco_library import LARGEST, quiet
 _TABLEAU = np.loadtxt(pathlib.Path(__file__).with_suffix(".txt"))
 _END = 12
 """Index of the end of the step among the stages: twelve are before it, and three for the continuous output after."""
-_ERRORS, _OUTPUT, _WORK = 16, 18, 10
-"""Rows of the tableau after those of the stages: of the two error estimates, and of the continuous output; and number
-of states beside them to work in."""
+_ERRORS, _OUTPUT = 16, 18
+"""Rows of the tableau after those of the stages: of the two error estimates, and of the continuous output."""
 _CAUTION, _SHRINK, _GROW = 0.9, 0.2, 10.0  # step-size control, as in the reference
 _MEMORY = 0.04  # beta of the reference, by which the error of the step before counts: saves two of three rejected steps
 _LEAST = 1e-4  # smallest error of the step before that counts
@@ -48,8 +47,8 @@ _ROUNDING = 32 * float(np.finfo(float).eps)
 class Dop853:
     """The DOP853 method around the forward dynamics of a model of slides and hinges, set up once and run often.
 
-    The `dynamics` are the model's, if they are there already. A damping with the square of a rate, v |v|, has a corner
-    where that rate passes zero: steps of variable length end there, as the method's order holds on either side only.
+    A damping with the square of a rate, v |v|, has a corner where that rate passes zero. Steps of variable length end
+    there, as the method's order holds on either side only.
     """
 
     def __init__(self, model: mujoco.MjModel, dynamics: Dynamics | None = None) -> None:
@@ -83,7 +82,7 @@ class Dop853:
         """
         scale, slope = np.ones(self._size) if scale is None else scale, self._dynamics.rates(start)
         step = timestep or min(self._first_step(start, slope, tolerance, scale), longest)  # in this order NaN stays
-        samples, stages, work = (np.zeros((rows, self._size)) for rows in (len(times), _ERRORS, _WORK))
+        samples, stages, work = (np.zeros((rows, self._size)) for rows in (len(times), _ERRORS, 10))
         stages[0], work[0], sample = slope, start, int(times[0] == 0)
         samples[:sample] = start
         size = _BLOCK + 1 if observer else 0
@@ -149,15 +148,14 @@ def _evaluate(pointers, views, tableau, state, step, stage, stages, out):
 def _advance(pointers, views, tableau, state, new, work, stages, output, times, samples, control, kept, place):
     """Take up to a block of steps, and return the status, the new place and the numbers of evaluations and rows kept.
 
-    `pointers` and `views` are those of `derivative`. The `tableau` is an argument, as a compiler unrolls all loops over
-    numbers that it knows, and takes seconds for it. `state` is moved on. `stages` come with the derivative there in
-    their first row; `new`, `work` and `output` are space to work in. The rows of `samples` whose `times` [s] the steps
-    pass are filled in.
+    `pointers` and `views` are those of `derivative`. The `tableau` is an argument, as a compiler takes seconds to
+    unroll all loops over numbers that it knows. `state` is moved on. `stages` come with the derivative there in their
+    first row; `new`, `work` and `output` are space to work in. The rows of `samples` whose `times` [s] are passed are
+    filled in.
 
-    `control` says whether the step is fixed; otherwise its error is kept below a tolerance times (scale + |state|) in
-    each component, and it lasts no longer than `longest` and ends at `corners`. `place` is the time, the step, the
-    index of the next sample, the number of steps, the error of the last step and the longest step. `kept` takes times
-    and states at the ends of this block's steps, after the start in the first block, or has no room.
+    `control` says whether the step is fixed, and has the tolerance, scale, longest step and corners of a variable one.
+    `place` is the time, the step, the next sample, the number of steps, the error of the last one and the longest one.
+    `kept` takes times and states at the ends of steps, after the start in the first block, or has no room.
     """
     small()
     time, step, sample, steps, before, reached = place
@@ -226,10 +224,7 @@ def _advance(pointers, views, tableau, state, new, work, stages, output, times, 
 
 @inner
 def _passes(corners, state, new):
-    """Return whether one of the sums that the `corners` name changes its sign in a step.
-
-    A sum that is rounding has no sign.
-    """
+    """Return whether a sum that the `corners` name, and that is not rounding, changes its sign in a step."""
     small()
     for row in range(len(corners)):
         first = second = rounding = 0.0

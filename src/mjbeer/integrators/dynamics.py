@@ -1,10 +1,8 @@
-"""What mjbeer's own integrators share in compiled code: MuJoCo's accelerations, and a run in blocks of steps.
+"""MuJoCo's accelerations in compiled code, and a run in blocks of steps, for mjbeer's own integrators.
 
-numba, which compiles it, takes longer to import than all else together: what steps with MuJoCo's integrators alone
-does not import this.
+numba takes longer to import than all else together: what steps with MuJoCo's integrators alone does not import this.
 """
 
-import ctypes
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager, nullcontext
@@ -29,19 +27,17 @@ compiled = partial(njit, cache=True, error_model="numpy", nogil=True, _nrt=False
 inner = partial(compiled, no_cpython_wrapper=True)
 """Compiles what compiled code alone may call; an entry for Python takes a seventh of the compiler's time."""
 inline = partial(inner, forceinline=True)
-"""Compiles what is called in every step into its callers: a call with so many arguments takes as long as what it
-does."""
+"""Compiles what is called in every step into its callers: a call with so many arguments takes as long as its work."""
 _CONSTRAINT = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
 _ACTUATION, _DAMPER = int(mujoco.mjtDisableBit.mjDSBL_ACTUATION), int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
 _SMOOTH = ("mj_fwdKinematics", "mj_makeM", "mj_factorM", "mj_fwdVelocity", "mj_fwdAcceleration")
-"""What mj_forward does for a model without constraints, whose actuators have constant forces that are computed once:
-the same numbers to the last bit, in three quarters of the time."""
+"""What mj_forward does for a model without constraints and with constant actuator forces: the same numbers to the last
+bit, in three quarters of the time."""
 _WITHOUT_PASSIVE = (
     "mj_kinematics", "mj_comPos", "mj_tendon", "mj_crb", "mj_tendonArmature", "mj_factorM", "mj_comVel", "mj_rne",
     "mj_tendonBias", "mj_fwdAcceleration",
 )  # fmt: skip
-"""What that leaves of these in a model that has no damping either: another quarter less. Without tendons, those of the
-tendons are left out, too."""
+"""The same for a model that has no damping either: another quarter less."""
 
 
 @contextmanager
@@ -66,13 +62,11 @@ def _announced() -> Generator[None]:
 def run_blocks(
     name: str, kernel: Any, fixed: tuple[Any, ...], place: tuple, limit: float, observer: Observer | None
 ) -> tuple[int, tuple]:
-    """Call the compiled `kernel` of a method, a block of steps each, until a run is done.
+    """Call a method's compiled `kernel`, a block of steps each, until a run is done; return its evaluations and place.
 
-    Return its evaluations, and the place where it ended.
-
-    It takes `fixed` arguments, the last of which has room for the steps that the `observer` is shown, and a `place`,
-    which begins with the time [s]. It returns the status, the new place, and how many evaluations and kept rows there
-    were.
+    The kernel takes `fixed` arguments, the last of which has room for the steps that the `observer` is shown, and a
+    `place`, which begins with the time [s]. It returns the status, the new place, and how many evaluations and kept
+    rows there were.
 
     Raises:
       DivergenceError: if the motion stops being finite, no step is small enough, or there are `limit` evaluations.
@@ -96,13 +90,11 @@ def run_blocks(
 def call_c(typing_context, function, model, data, flag, result):
     """Call the C function at the address `function`; no address is compiled in, so that caching works.
 
-    It gets two pointers, a number and a third pointer. A function that takes fewer does not look at the others: those
-    that MuJoCo is built for pass them in registers.
+    A function that takes fewer arguments does not look at the others: they are in registers wherever MuJoCo runs.
     """
 
     def generate(context, builder, signature, arguments):
-        pointer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p))
-        function_type = ir.FunctionType(ir.VoidType(), [pointer] * 4)
+        function_type = ir.FunctionType(ir.VoidType(), [each.type for each in arguments[1:]])
         builder.call(builder.inttoptr(arguments[0], function_type.as_pointer()), arguments[1:])
         return context.get_dummy_value()
 
@@ -136,8 +128,8 @@ class Dynamics:
             names = _WITHOUT_PASSIVE if model.opt.disableflags & _DAMPER else _SMOOTH
             names = tuple(name for name in names if model.ntendon or "endon" not in name)
             if "slide" in (joints := [model.joint(joint).name for joint in range(model.njnt)]):
-                # The acceleration does not depend on the slide, and is evaluated at its origin: MuJoCo computes torques
-                # from positions in the world, whose rounding would hide a short arm far from the origin.
+                # The acceleration, which does not depend on the slide, is evaluated at its origin: far from there the
+                # rounding of positions in the world, from which MuJoCo computes torques, would hide a short arm.
                 needed[joints.index("slide")] = False
         bias = data.qfrc_bias.__array_interface__["data"][0]
         functions = np.array([(address(name), bias if name == "mj_tendonBias" else 0) for name in names])

@@ -1,18 +1,15 @@
 """The integrator GaussJackson: a multistep method around MuJoCo's forward dynamics, for smooth motions.
 
 A step predicts phi from the sums and the last accelerations, evaluates MuJoCo's acceleration there, and corrects phi
-with it. A second evaluation there (PECE) makes the method stable at timesteps that are several times as large. It is
-spared by a law, if the caller gives one: a constant and a swing in phi, at any rate. The correction is so small that
-the slope of the law has the effect of an evaluation. States are read off two steps later, with accelerations on both
-sides, where the formula errs far less.
-
-A run begins in the middle of its first steps, the start: the six steps before it and the six after it are those that
-agree with the accelerations in all of them, found by iteration.
+with it. A second evaluation (PECE) makes the method stable at timesteps several times as large. The slope of a law that
+phi nearly obeys, if the caller gives one, has the same effect. States are read off two steps later, with accelerations
+on both sides, where the formula errs far less. The six steps before the start and the six after it are found by
+iteration.
 
 Steps are even in a time s with the caller's pace dt/ds, a positive function of phi. Where that is sqrt(J), in which J
 is the inertia that phi has, phi is a pendulum in s, however light the wheel. Of a load in a can that slides along, the
 slide less a share of sin(phi), which is evenly accelerated, is integrated in time. The motion comes from the
-accelerations of MuJoCo alone: with another pace the steps must be shorter, and the motion is the same.
+accelerations of MuJoCo alone: with another pace only the steps must be shorter.
 
 O. Montenbruck and E. Gill, Satellite Orbits, section 4.2; M. M. Berry and L. M. Healy, Implementation of Gauss-Jackson
 integration for orbit propagation, J. Astronaut. Sci. 52 (2004), and The generalized Sundman transformation for
@@ -81,8 +78,7 @@ class GaussJackson:
     """The Gauss-Jackson method with second sums around the forward dynamics of one model, often run.
 
     The model has the hinge phi, after a slide on which nothing depends, or alone. A step is one evaluation, where
-    DOP853 has twelve and steps three times as large. A damping or a constraint that decays within a few timesteps would
-    make it unstable. The `dynamics` are the model's, if they are there already.
+    DOP853 has twelve and steps three times as large. A damping or a constraint that decays fast would make it unstable.
 
     Raises:
       UnsupportedError: if the model has constraints or damping.
@@ -110,9 +106,8 @@ class GaussJackson:
     ) -> np.ndarray:
         """Return the states at increasing `times` [s], shape (samples, nq + nv), of the motion from `start` at time 0.
 
-        All steps last a `timestep` in the method's `own` time. Six steps are taken before the start, and two more than
-        the times need. A `forcing` [rad/s^2] is added to all accelerations of phi. The `observer` is shown the ends of
-        the steps, and states between them where the load turns far in one.
+        All steps last a `timestep` in the method's `own` time. A `forcing` [rad/s^2] is added to all accelerations of
+        phi. The `observer` is shown the ends of the steps.
 
         Raises:
           DivergenceError: if the motion stops being finite, or there are `limit` evaluations.
@@ -157,8 +152,7 @@ def _accelerations(pointers, views, own, phi, rate, state, change):
 def _begin(pointers, views, own, start, step, gains, pulls, state, change):
     """Find the accelerations of the first `COUNT` steps, and return the evaluations and the two sums of phi.
 
-    There are no evaluations if the iteration does not end. The law's accelerations are iterated first; MuJoCo's are
-    then nearly those that agree with one another.
+    There are no evaluations if the iteration does not end. The law's accelerations, iterated first, are nearly right.
     """
     small()
     end = gains.size - BLOCK  # `COUNT`, a constant, would compile `weighted` once more
@@ -216,8 +210,8 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
     and times and states at the ends of steps are `kept`, after the start, if that has room.
 
     `place` is the time [s] that is passed, how many steps back the last step is read off, the next sample, the node
-    there, and five sums with what rounding took from each: the first and the second sum of the accelerations, and time,
-    place and velocity of the slide less its share at the node.
+    there, and five sums with what rounding took from each: both sums of the accelerations, and time, place and velocity
+    of the slide less its share at the node.
     """
     small()
     _, back, sample, before, (first, second, clock, slide, speed) = place

@@ -1,10 +1,9 @@
 """The time that a multistep method with uneven steps has passed, and the states at times that are asked for.
 
-Steps of uneven length are even in a time s of the method's own, in which the caller's pace, dt/ds, is any positive
-function of phi. What passes of t in a step is integrated by Gauss's formula. That takes no evaluation of the dynamics,
-and as many points as the pace needs there: its square falls to a tenth where a heavy load passes the place of its least
-inertia. In a step as a whole the points are at the same shares of each, where phi is a sum of accelerations with fixed
-weights. In a step with samples phi is a polynomial.
+Steps are even in a time s of the method's own, whose pace, dt/ds, is any positive function of phi. What passes of t in
+a step is integrated by Gauss's formula, with as many points as the pace needs there and no evaluation of the dynamics.
+In a step as a whole the points are at the same shares of each, where phi is a sum of accelerations with fixed weights.
+In a step with samples phi is a polynomial.
 
 The weights with which accelerations are added up come from rational arithmetic. With the backward difference z
 (z a_n = a_n - a_(n-1)) and a step h, the time derivative is -ln(1 - z)/h, so that the velocity is h/(-ln(1 - z)) and
@@ -12,9 +11,8 @@ the position h^2/ln(1 - z)^2 times the acceleration. Their leading terms, 1/z an
 sum of all accelerations; the rest are differences of the last ones, and so weights for them. A factor (1 - z)^back
 gives the value that many steps before the last acceleration: -1 predicts the next step.
 
-A function of compiled code has the method's `own` time, of which `OwnTime` names the parts; the `line` of phi in a
-step, of which `Line` does; and a share of the step that has `passed`. A `node` is phi, its rate in the method's own
-time, and the pace.
+Functions of compiled code have the method's `own` time, an `OwnTime`; the `line` of phi in a step, a `Line`; and a
+share of the step that has `passed`. A `node` is phi, its rate in the method's own time, and the pace.
 """
 
 import functools
@@ -41,8 +39,7 @@ _ROUNDEST = 20.0
 _HIGHEST = 3.0
 """Largest height [rad] of the complex angle at which the pace vanishes that makes a difference."""
 _PUNCTUAL, _ATTEMPTS = 3e-5, 5
-"""Distance of a sample from its time, over a step's, after which one more attempt has all digits, as it cubes that; and
-the most attempts."""
+"""Distance of a sample from its time, over a step's, which one more attempt cubes; and the most attempts."""
 
 OwnTime = namedtuple("OwnTime", "even uneven turns share lawful law height period bounds")
 OwnTime.__doc__ = """The pace is dt/ds = sqrt(even + uneven sin^2(turns phi)); see `own_time` for `share` and `law`.
@@ -149,7 +146,7 @@ END_RATE, END_PLACE = weights(1, LAG), weights(2, LAG)
 def weighted(weights, accelerations, end):
     """Return the weighted sum of the `COUNT` accelerations before index `end`, four by four, so that terms overlap.
 
-    The order is written out. A compiler that may choose it gives other digits where it reads a function from its cache.
+    The order is written out: a compiler that may choose it gives other digits where it reads its cache.
     """
     first, second, third, fourth = weights[COUNT - 1] * accelerations[end - 1], 0.0, 0.0, 0.0
     for k in range(0, COUNT - 1, 4):
