@@ -49,8 +49,7 @@ def blocks(
       DivergenceError: if the motion stops being finite; the message names the time and MuJoCo's reason.
     """
     timesteps = timesteps or [model.opt.timestep]
-    models = [copy(model) for _ in timesteps[1:]]
-    models.insert(0, model)
+    models = [model, *(copy(model) for _ in timesteps[1:])]
     for each, timestep in zip(models, timesteps, strict=True):
         each.opt.timestep = timestep
     rows = np.empty((1, _BLOCK, mujoco.mj_stateSize(model, _STATE)))

@@ -30,8 +30,8 @@ rotation has the same phase at the ends of both parts."""
 _pool: dict[Structure, list["Simulator"]] = {}
 """Simulators that nobody uses, at most as many of a structure as there were threads."""
 _OVER_DISTANCE = 3.2
-"""Error estimate over the distance to an uneven run. The softness of a contact is 0.62 times as large in that run, so
-that its distance is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
+"""Error estimate over the distance to an uneven run. A contact is 0.62 times as soft in that run, so that its distance
+is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
 _START_OFFSET = 4e-14
 """Distance between the starts of a run and of the uneven one [rad]: a hundred times their rounding, which shows how
 much that matters beside a separatrix. A larger one could move the motion against an error, and hide it."""
@@ -42,7 +42,7 @@ _COMPARED = 4096
 """Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
 _MAX_TURN_PER_STEP = 2.0
 """Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
-same at every step of pi, and a rotation looks even. The stages of DOP853 are at too many phases for that."""
+same at every step of pi, but not to the stages of DOP853."""
 
 
 class Simulator(ReusableModel):

@@ -96,16 +96,12 @@ def _sample_times(duration: float, setting: Setting, times: np.ndarray) -> np.nd
     """Return the times of the samples [s], which for MuJoCo's integrators are exact multiples of the timestep."""
     timestep = setting.timestep
     if times[-1] > duration * (1 + _ON_A_STEP):
-        raise ParameterError(
-            f"times must be between 0 and the duration {duration!r} s, got {require.format_value(times[-1])} s"
-        )
+        raise ParameterError(f"times must be between 0 and the duration {duration!r} s, got {times[-1]} s")
     if setting.tolerance is not None:
         return times
     ratios = times / timestep
     if ratios[-1] > _MOST_STEPS:
-        raise ParameterError(
-            f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {require.format_value(times[-1])} s"
-        )
+        raise ParameterError(f"times must be within {_MOST_STEPS:g} timesteps of {timestep!r} s, got {times[-1]} s")
     if setting.integrator in OWN:
         return times
     steps = np.rint(ratios)

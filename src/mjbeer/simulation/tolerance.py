@@ -31,16 +31,16 @@ small one, and so does the nudge."""
 _LIGHTEST = 40.0
 """The same, from which on DOP853 takes the wheel: a step of Gauss-Jackson as a whole is too long for the passage."""
 _SAFETY_BY_CHANCE = 3.0
-"""Error estimate over the distance of two runs from the third run on, where rounding counts, and for tolerances outside
-`_ASYMPTOTIC`: two runs may agree by chance."""
+"""Error estimate over the distance of two runs where they may agree by chance: from the third run on, where rounding
+counts, and for tolerances outside `_ASYMPTOTIC`."""
 _ASYMPTOTIC = (1e-11, 1e-5)
 """Range of tolerances in which rounding or large steps do not hide the method's order."""
 _NUDGE = 4e-14
 """Distance of the first run's start from the given start, over the size of each component: the distance of the first
 two runs then includes the effect of a small change of the start, which is large beside a separatrix."""
 _PUSH = 2e-15
-"""Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows how much a small change of the energy
-on the way matters, as for a swing that comes near a barrier's top, where the start does not."""
+"""Steady change of phi_ddot in a nudged run of Gauss-Jackson, over g/a: it shows where a small change of energy on
+the way matters and one of the start does not, as for a swing that comes near a barrier's top."""
 _ROUNDING = 0.3
 """Effect of the rounding of Gauss-Jackson over that of nudge and push: in 1,500 random motions of sliding loads, judged
 by motions of 33 digits, it was 0.1 at most and 0.01 in the median. With 0.15, 2 of 50,801 tolerances were broken."""
@@ -51,11 +51,10 @@ _ROUNDING_OVER_NUDGE = 3 / 40
 """Estimated effect of rounding over that of the nudge: a run's rounding is like a nudge of some 1e-15; safety is 3."""
 
 _FIRST = 0.05
-"""Local tolerance of the first run over the global tolerance: over some ten periods errors add up to 2-20 times a local
-tolerance (measured on all scenes)."""
+"""Local tolerance of the first run over the global one: errors add up to 2-20 times a local one in ten periods."""
 _COARSEST = 1e-6
-"""Largest local tolerance. With larger steps the two runs of a motion that spins up may have much the same error: one
-of 2,000 runs was 7.5 times as far from the exact motion as from the other run."""
+"""Largest local tolerance: of 2,000 runs with larger steps one was 7.5 times as far from the exact motion as from the
+other run."""
 _FIRST_RATIO, _RATIO = 64.0, 8.0
 """Local tolerance of the first run over that of the second, and of any other over that of the next: 1.7 and 1.3 times
 the evaluations. Errors scatter by ten about what a local tolerance lets expect: with a ratio of 8 the first two runs
@@ -199,10 +198,9 @@ class ToleranceLoop:
 
         def run(start: np.ndarray, local: float, recorder: Recorder | None = None) -> np.ndarray:
             nonlocal limit, longest
+            most = min(limit, self._left)
             try:
-                states = integrator.run(
-                    start, times, None, local, self._scale, min(limit, self._left), longest, recorder
-                )
+                states = integrator.run(start, times, None, local, self._scale, most, longest, recorder)
             except DivergenceError as error:
                 raise _not_reached(tolerance, str(error)) from error
             self._left -= integrator.evaluations
