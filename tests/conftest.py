@@ -57,5 +57,5 @@ def copy(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> pathlib.Pat
     """A copy of the MJCF, which is read instead."""
     folder = tmp_path / "mjcf"
     shutil.copytree(setting.mjcf_folder(), folder)
-    monkeypatch.setenv(setting.VARIABLE, str(folder))
+    monkeypatch.setenv("MJBEER_MJCF", str(folder))
     return folder

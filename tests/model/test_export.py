@@ -19,8 +19,8 @@ import pytest
 
 from mjbeer import Can, Scene, exact, frozen, pendulum, sliding
 from mjbeer.exceptions import OutputError, ParameterError, UnsupportedError
-from mjbeer.model.build import build
-from mjbeer.model.export import export, viewer_spec
+from mjbeer.model.build import add_start, build, rolling_spec
+from mjbeer.model.export import export
 from mjbeer.model.joints import initial_state, to_coordinates
 from mjbeer.model.setting import INTEGRATORS, OWN, ROLLINGS, Rolling, Setting, supported
 from mjbeer.theory.can import Damping
@@ -98,7 +98,9 @@ def test_an_export_is_the_model_and_moves_exactly(
     assert f"Written by mjbeer: rolling={rolling!r}" in text
     assert move(path, scene) < TOLERANCE[rolling]
     if not portable:
-        assert_same(viewer_spec(scene, Setting(rolling, timestep=timestep, friction=FRICTION), *START).compile(), path)
+        spec = rolling_spec(scene, Setting(rolling, timestep=timestep, friction=FRICTION), visuals=True)
+        add_start(spec, scene, *START)
+        assert_same(spec.compile(), path)
         return
     root = ET.parse(path).getroot()
     assert not re.search(r"diagexact|colorspace|<frame", text)
@@ -182,7 +184,7 @@ def test_what_cannot_be_written_is_refused(
 def test_sensors_have_the_values_of_the_letters(name: str, rolling: Rolling) -> None:
     """And the kinetic energy, or none where a constant force stands for a weight."""
     scene, phi, phi_dot = SCENES[name], 1.1, -7.0
-    model, (u, u_dot) = viewer_spec(scene, Setting(rolling), 0.0, 0.0).compile(), scene.start(phi, phi_dot)
+    model, (u, u_dot) = rolling_spec(scene, Setting(rolling), visuals=True).compile(), scene.start(phi, phi_dot)
     data = mujoco.MjData(model)
     data.qpos[:], data.qvel[:] = np.split(initial_state(model, scene, phi, phi_dot), 2)
     mujoco.mj_forward(model, data)

@@ -244,7 +244,7 @@ def test_a_folder_of_one_s_own_has_looks_of_its_own(copy: pathlib.Path, monkeypa
     edit(copy, *EDITS["colour"][:3])
     green = [0, 1, 0, 1]
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) == green
-    monkeypatch.delenv(setting.VARIABLE)
+    monkeypatch.delenv("MJBEER_MJCF")
     assert list(build(SCENES["sliding"], visuals=True).mat("beer").rgba) != green
     assert list(build(SCENES["sliding"], visuals=True, mjcf=copy).mat("beer").rgba) == green
 

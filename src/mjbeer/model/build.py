@@ -71,7 +71,7 @@ def build(
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
     phi0, phi_dot0 = require.start(phi0, phi_dot0)
-    spec = _specification(scene, setting, visuals, free, phi0, phi_dot0)
+    spec = specification(scene, setting, visuals, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
         return compile_spec(spec)
     add_start(spec, scene, phi0, phi_dot0)
@@ -97,20 +97,27 @@ def specify(
     specification, bodies keep their joints, masses and geoms, and lose all options: the parent needs the same ones.
     """
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
-    spec = _specification(scene, setting, visuals, free)
+    spec = specification(scene, setting, visuals, free)
     if isinstance(scene, Scene):
         _warn_of_edits(compile_spec(spec.copy()) if visuals else None, scene, setting)
     return spec
 
 
-def _specification(
+def specification(
     scene: Scene | Standing, setting: Setting, visuals: bool, free: bool, phi0: float = 0.0, phi_dot0: float = 0.0
 ) -> mujoco.MjSpec:
-    visuals = require.choice("visuals", visuals, (True, False))
-    require_meaningful(scene, setting, free, phi0, phi_dot0)
-    if isinstance(scene, Standing):
-        return standing_spec(scene, setting, visuals, free)
-    return rolling_spec(scene, setting, visuals)
+    """Return the specification of a can in a setting, or refuse what has a meaning for the other kind of can only."""
+    visuals, free = require.choice("visuals", visuals, (True, False)), require.choice("free", free, (True, False))
+    if not isinstance(scene, Standing):
+        require.instance("scene", scene, Scene)
+        if not free:
+            raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
+        return rolling_spec(scene, setting, visuals)
+    given = {"rolling": setting.rolling, "friction": setting.friction, "phi0": phi0, "phi_dot0": phi_dot0}
+    for (name, value), usual in zip(given.items(), ("reduced", FRICTION, 0.0, 0.0), strict=True):
+        if value != usual:
+            raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
+    return standing_spec(scene, setting, visuals, free)
 
 
 def _warn_of_edits(seen: mujoco.MjModel | None, scene: Scene, setting: Setting) -> None:
@@ -126,20 +133,6 @@ def mechanics_fault(scene: Scene, setting: Setting, seen: mujoco.MjModel | None 
     if seen is not None and (fault := check.model_fault(seen, scene, setting)):
         return f"{setting.folder / 'looks'}, in {looks.name(scene)}, {fault}"
     return None
-
-
-def require_meaningful(scene: Scene | Standing, setting: Setting, free: bool, phi0: float, phi_dot0: float) -> None:
-    """Refuse what is said of a can that stands and has a meaning for one that rolls only, or the other way round."""
-    require.choice("free", free, (True, False))
-    if not isinstance(scene, Standing):
-        require.instance("scene", scene, Scene)
-        if not free:
-            raise ParameterError("only a standing can is held by free=False: the can of a scene rolls")
-        return
-    given = {"rolling": setting.rolling, "friction": setting.friction, "phi0": phi0, "phi_dot0": phi_dot0}
-    for (name, value), usual in zip(given.items(), ("reduced", FRICTION, 0.0, 0.0), strict=True):
-        if value != usual:
-            raise ParameterError(f"a standing can has no {name}, got {require.format_value(value)}")
 
 
 def rolling_spec(scene: Scene, setting: Setting, visuals: bool = False) -> mujoco.MjSpec:

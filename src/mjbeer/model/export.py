@@ -8,15 +8,7 @@ import mujoco
 
 from mjbeer import require
 from mjbeer.exceptions import ParameterError, TemplateError, UnsupportedError
-from mjbeer.model.build import (
-    START,
-    add_start,
-    compile_spec,
-    mechanics_fault,
-    require_meaningful,
-    rolling_spec,
-)
-from mjbeer.model.free import standing_spec
+from mjbeer.model.build import START, add_start, compile_spec, mechanics_fault, specification
 from mjbeer.model.mujoco_library import library
 from mjbeer.model.setting import FRICTION, INTEGRATORS, Integrator, MujocoIntegrator, Rolling, Setting
 from mjbeer.output import files
@@ -68,14 +60,17 @@ def export(
     names = PORTABLE if require.choice("portable", portable, (True, False)) else INTEGRATORS
     require.choice("integrator", integrator, names)
     setting = Setting(rolling, integrator, timestep, friction=friction, mjcf=mjcf)
-    require_meaningful(scene, setting, free, phi0, phi_dot0)
+    spec = specification(scene, setting, True, free, phi0, phi_dot0)
     if isinstance(scene, Standing):
-        spec = standing_viewer_spec(scene, free, setting)
+        if free:
+            _add_keyframes(spec, scene)
         spec.comment = f" Written by mjbeer: {scene!r}. "
         for joint in spec.joints if portable else ():
             joint.damping = [joint.damping[0], 0, 0]
     else:
-        spec = viewer_spec(scene, setting, phi0=phi0, phi_dot0=phi_dot0)
+        add_start(spec, scene, phi0, phi_dot0)
+        if fault := mechanics_fault(scene, setting, compile_spec(spec)):
+            raise TemplateError(fault)
         if portable:
             _soften(spec, scene)
         spec.comment = f" Written by mjbeer: rolling={rolling!r}, {scene!r}. The start is the keyframe {START!r}. "
@@ -88,26 +83,11 @@ def export(
     files.write(target, _portable(text, model) if portable else text)
 
 
-def viewer_spec(scene: Scene, setting: Setting, phi0: float, phi_dot0: float) -> mujoco.MjSpec:
-    """Return the specification of a scene to be shown, which starts at `phi0` [rad] with `phi_dot0` [rad/s].
-
-    The errors are those of `build` with `visuals`.
-    """
-    spec = rolling_spec(scene, setting, visuals=True)
-    add_start(spec, scene, phi0, phi_dot0)
-    if fault := mechanics_fault(scene, setting, compile_spec(spec)):
-        raise TemplateError(fault)
-    return spec
-
-
-def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.MjSpec:
-    """Return the specification of a standing can to be shown; if it is free, with its keyframes.
+def _add_keyframes(spec: mujoco.MjSpec, can: Standing) -> None:
+    """Add the keyframes of a free standing can.
 
     "start" is at rest, "slosh" has a surface that rises by 0.1 R at the wall, "fall" leans by 1 rad, beyond tipping.
     """
-    spec = standing_spec(can, setting, visuals=True, free=free)
-    if not free:
-        return spec
     upright, rest = [1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0] * can.modes
     tilt = math.asin(QUANTITATIVE / can.elevations(1)[0])
     turned = [math.cos(tilt / 2), 0.0, math.sin(tilt / 2), 0.0]
@@ -117,7 +97,6 @@ def standing_viewer_spec(can: Standing, free: bool, setting: Setting) -> mujoco.
     if can.modes > 0:
         spec.add_key(name="slosh", qpos=[0, 0, 0, *upright, *turned, *rest[4:]])
     spec.add_key(name="fall", qpos=[0, 0, above, *leaning, *rest])
-    return spec
 
 
 def _text(spec: mujoco.MjSpec) -> str:

@@ -50,9 +50,9 @@ def attach(
     """Attach a can to another world and return its body there: the name of all that is in it begins with `prefix`.
 
     A `standing` can stands on its origin, the middle of the bottom; a scene with beer gives a lying can, whose origin
-    is in the middle of its axis, which is y. It rolls on what it meets: the scene's incline is not built, and counts
-    only in the damping that `mjbeer.liquid` has for it. `pos` [m] and `quat` are those of the origin in a `body` of the
-    parent; a can that is not `free` is fixed to it.
+    is in the middle of its axis, which is y. The scene's incline is not built, and counts only in the damping that
+    `mjbeer.liquid` has for it. `pos` [m] and `quat` are those of the origin in a `body` of the parent; a can that is
+    not `free` is fixed to it.
 
     `friction` is one coefficient, or two or three: sliding, torsional, rolling. `None` is MuJoCo's default: 1, 0.005
     and 0.0001. In a contact MuJoCo takes the larger coefficient and the larger condim of the two geoms; the can has
@@ -84,7 +84,7 @@ def attach(
         require.non_negative("friction", each)
     if len(coefficients) > 3:
         raise ParameterError(f"friction must have 1, 2 or 3 numbers, got {require.format_value(friction)}")
-    child, option = _specification(can, Setting()), parent.option
+    child, option = _specification(can), parent.option
     if option.cone == mujoco.mjtCone.mjCONE_PYRAMIDAL:
         option.cone = child.option.cone
     touching = child.geom("can")
@@ -122,7 +122,7 @@ def refill(model: mujoco.MjModel, can: Standing | Scene, prefix: str = "can-") -
     """
     require.instance("model", model, mujoco.MjModel)
     require.instance("prefix", prefix, str)
-    spec, find = _specification(can, Setting(), visuals=False), mujoco.mj_name2id
+    spec, find = _specification(can, visuals=False), mujoco.mj_name2id
     kinds = mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_JOINT
     there = [each for each in _PARTS if any(find(model, kind, f"{prefix}{each}") >= 0 for kind in kinds)]
     needed = [each for each in _PARTS if spec.body(each) is not None or spec.joint(each) is not None]
@@ -217,11 +217,18 @@ def _bob_shares(can: Standing) -> np.ndarray:
     return np.maximum(_BOB[0], _BOB[1] * can.damping_ratios())
 
 
-def _specification(can: Standing | Scene, setting: Setting, visuals: bool = True) -> mujoco.MjSpec:
+def _specification(can: Standing | Scene, visuals: bool = True) -> mujoco.MjSpec:
     """Return the specification of a can that has no free joint yet."""
-    if isinstance(can, Scene):
-        return _lying_spec(can, setting.folder, visuals)
-    return standing_spec(require.instance("can", can, Standing), setting, visuals, free=False)
+    if not isinstance(can, Scene):
+        return standing_spec(require.instance("can", can, Standing), Setting(), visuals, free=False)
+    values = lying_parameters(can)
+    root, path = _read("lying", Setting().folder)
+    mjcf_file.remove(root, "freejoint")
+    if can.attachment == "frozen":
+        mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
+    values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
+    mjcf_file.write(root, values, path)
+    return looks.to_spec(root, path, can, visuals)
 
 
 def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) -> mujoco.MjSpec:
@@ -241,17 +248,6 @@ def standing_spec(can: Standing, setting: Setting, visuals: bool, free: bool) ->
     options = {("option", "integrator"): integrator, ("option", "timestep"): (setting.timestep,)}
     mjcf_file.write(root, standing_parameters(can) | options, path)
     return looks.to_spec(root, path, can, visuals)
-
-
-def _lying_spec(scene: Scene, folder: pathlib.Path, visuals: bool) -> mujoco.MjSpec:
-    values = lying_parameters(scene)
-    root, path = _read("lying", folder)
-    mjcf_file.remove(root, "freejoint")
-    if scene.attachment == "frozen":
-        mjcf_file.remove(root, "joint[@name='swing']", "jointpos", "jointvel")
-    values |= {(f"body {each}", "euler"): (0, 0, 0) for each in ("incline", "can")}  # what it meets is the parent's
-    mjcf_file.write(root, values, path)
-    return looks.to_spec(root, path, scene, visuals)
 
 
 def _read(name: str, folder: pathlib.Path) -> tuple[ET.Element, pathlib.Path]:

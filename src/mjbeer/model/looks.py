@@ -56,15 +56,15 @@ def name(scene: Scene | Standing) -> str:
 
 def to_spec(root: ET.Element, path: pathlib.Path, can: Scene | Standing, visuals: bool) -> mujoco.MjSpec:
     """Return the specification in the tree of the mechanics file at a `path`, with the looks of a can if asked for."""
+    if not visuals:
+        return mjcf_file.to_spec(root, path)
     folder = path.parents[1]
-    if visuals:
-        include_looks(root, name(can), folder)
+    include_looks(root, name(can), folder)
     spec = mjcf_file.to_spec(root, path)
-    if visuals:
-        if isinstance(can, Standing):
-            fit_to_standing(spec, can, folder)
-        else:
-            fit_to_scene(spec, can, folder)
+    if isinstance(can, Standing):
+        _fit_to_standing(spec, can, folder)
+    else:
+        _fit_to_scene(spec, can, folder)
     return spec
 
 
@@ -93,8 +93,7 @@ def include_looks(root: ET.Element, what: str, folder: pathlib.Path) -> None:
     if can is not None and incline is not None:
         can.extend(_level_cameras(folder / "looks" / "cameras.xml", float(incline.get("euler", "0 0 0").split()[1])))
     if what == "standing":
-        floor = ET.SubElement(root, "worldbody")
-        floor.append(ET.Element("include", file="looks/floor.xml"))
+        ET.SubElement(ET.SubElement(root, "worldbody"), "include", file="looks/floor.xml")
 
 
 def _level_cameras(path: pathlib.Path, angle: float) -> ET.Element:
@@ -110,29 +109,23 @@ def _level_cameras(path: pathlib.Path, angle: float) -> ET.Element:
     return cameras
 
 
-def fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
+def _fit_to_scene(spec: mujoco.MjSpec, scene: Scene, folder: pathlib.Path) -> None:
     """Fit what is drawn to the sizes of a scene."""
     _fit_sizes(spec, scene.can, folder, (*_ROLLING, *(("mesh", "load"),) * (scene.load.fill is not None)))
     if scene.attachment == "sliding" and spec.joint("phi") is not None:  # no joint turns with the can
         for geom in filter(None, map(spec.geom, TURNING)):
             spec.delete(geom)
-    if scene.load.fill is not None:
-        shape_beer(spec, scene)
-    else:
-        _place_point_load(spec, scene)
+    draw_load = _place_point_load if scene.load.fill is None else shape_beer
+    draw_load(spec, scene)
     drawn = {geom.meshname for geom in spec.geoms}
     for mesh in spec.meshes:
         if mesh.name not in drawn:
             spec.delete(mesh)
 
 
-def fit_to_standing(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
-    """Fit what is drawn to a standing can, with the errors of `fit`.
-
-    The beer is a column in the body "liquid" under a cylinder that tilts with the body "slosh1".
-    """
-    top = (("geom", "beer_top"),) * (standing.modes > 0)
-    _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *top))
+def _fit_to_standing(spec: mujoco.MjSpec, standing: Standing, folder: pathlib.Path) -> None:
+    """Fit what is drawn to a standing can: a column of beer under a cylinder that tilts with the body "slosh1"."""
+    _fit_sizes(spec, standing.can, folder, (*_UPRIGHT, *(("geom", "beer_top"),) * (standing.modes > 0)))
     for each in ("can_wall", "can_end"):
         spec.geom(each).pos = [0, 0, standing.can.length / 2]
     for each, (low, high, radius) in beer_column(standing).items():

@@ -6,7 +6,7 @@ import math
 import pathlib
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Collection, Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import mujoco
 import numpy as np
@@ -157,8 +157,10 @@ def write_compiled(
 ) -> None:
     """Write numbers into a compiled model, at its `compiled_views`."""
     for key, value in values.items():
-        if key[0] == "option":
-            setattr(model.opt, key[1], _option(value))
+        if isinstance(value, str):
+            model.opt.integrator = int(mujoco.mjtIntegrator.__members__[f"mjINT_{value.upper()}"])
+        elif key[0] == "option":
+            setattr(model.opt, key[1], value[0] if len(value) == 1 else value)
         elif key in where:
             first, *others = where[key]
             first[:] = value[: len(first)]
@@ -168,9 +170,3 @@ def write_compiled(
         geom, (radius, half) = model.geom("can"), values["geom can", "size"]
         geom.rbound = np.hypot(radius, half)
         model.geom_aabb[geom.id] = [0, 0, 0, radius, radius, half]
-
-
-def _option(value: tuple[float, ...] | str) -> Any:
-    if isinstance(value, str):
-        return int(mujoco.mjtIntegrator.__members__[f"mjINT_{value.upper()}"])
-    return value[0] if len(value) == 1 else value

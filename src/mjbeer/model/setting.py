@@ -29,8 +29,6 @@ FRICTION = 1.0
 _PACKAGE = pathlib.Path(__file__).parents[1]
 _SHIPPED = packed if (packed := _PACKAGE / "mjcf").is_dir() else _PACKAGE.parents[1] / "mjcf"
 """The folder that comes with mjbeer: a wheel has it inside, a checkout at its top."""
-VARIABLE = "MJBEER_MJCF"
-"""The environment variable that names another folder."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +96,7 @@ def supported(scene: Scene, rolling: str) -> bool:
 
 def mjcf_folder(own: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Return the folder of the MJCF: one's `own`, or that of the environment, or mjbeer's."""
-    if own is None and (own := os.environ.get(VARIABLE)) is None:
+    if own is None and (own := os.environ.get("MJBEER_MJCF")) is None:
         return _SHIPPED
     if not isinstance(own, (str, os.PathLike)) or not os.path.isdir(own):
         raise ParameterError(f"mjcf must be a folder with mechanics and looks in it, got {require.format_value(own)}")
