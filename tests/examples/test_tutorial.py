@@ -20,7 +20,7 @@ def text_of(outputs: list[Any], kind: str = "text/plain") -> str:
 
 @pytest.mark.costly
 @pytest.mark.draws
-def test_the_tutorial_runs_and_shows_a_plot_a_video_and_tables(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_tutorial_runs_and_shows_plots_a_video_and_a_table(monkeypatch: pytest.MonkeyPatch) -> None:
     """In a kernel of its own, as Jupyter runs it."""
     monkeypatch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
     notebook = nbformat.read(TUTORIAL, as_version=4)
@@ -34,7 +34,7 @@ def test_the_tutorial_runs_and_shows_a_plot_a_video_and_tables(monkeypatch: pyte
     assert sum("image/png" in output.data for output in outputs if "data" in output) == 3
     assert "<video" in html
     assert not [output.text for output in outputs if output.get("name") == "stderr"]  # a warning that nobody explains
-    assert "<th>trusted</th><td>yes</td>" in html
+    assert "\ntrusted\n" in text
     assert "this run is not to be relied on: " in text
     assert "the can slips by" in text
     assert "tolerance 1e-9 rad, error" in text
