@@ -78,7 +78,7 @@ def report(given: Namespace) -> int:
 
 
 def benchmark(given: Namespace) -> None:
-    """Measure error against run time of integrators and other tools, in seven minutes."""
+    """Measure error against run time of integrators and other tools, in four minutes."""
     from mjbeer.studies.benchmark import benchmark_tables, timing
 
     names = [require.choice("scene", name, CASES) for name in given.scenes or CASES]
