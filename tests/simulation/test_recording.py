@@ -44,4 +44,4 @@ def test_the_compiled_record_is_the_same(scene: Scene, friction: float) -> None:
 
 
 def test_what_does_not_move_may_be_looked_at_seldom() -> None:
-    assert _longest(sliding(gravity=0.0), 1.0, 0.0, 1.0, 1e-9) == 1 / 8
+    assert _longest(sliding(gravity=0.0), 1.0, 0.0, 1.0, 1e-9) == (1 / 8, 0.0)

@@ -29,7 +29,6 @@ from mjbeer.integrators.dynamics import (
     NOT_FINITE,
     Dynamics,
     compiled,
-    copy,
     derivative,
     inline,
     inner,
@@ -41,10 +40,10 @@ from mjbeer.integrators.uneven_time import (
     COUNT,
     END_PLACE,
     END_RATE,
+    FARTHEST,
     LAG,
     Line,
     OwnTime,
-    count_points,
     dt_ds,
     duration,
     find,
@@ -62,8 +61,6 @@ _ITERATIONS = 30
 """Largest number of iterations of the first steps; a timestep that is not too long takes five to eight."""
 _STARTED = 1e-9
 """Largest change of the first accelerations in the last iteration, over the largest of them."""
-_FARTHEST = 4.0
-"""Angle [rad] by which a load may turn in a step. What turns farther needs shorter steps."""
 _PREDICT_RATE, _PREDICT = weights(1, -1), weights(2, -1)
 _CORRECT_RATE, _CORRECT = weights(1, 0), weights(2, 0)
 _FIRST_RATE, _FIRST_PLACE = (np.stack([weights(power, back) for back in range(COUNT - 1, -1, -1)]) for power in (1, 2))
@@ -122,7 +119,7 @@ class GaussJackson:
             slide = float(start[0]) - own.share * math.sin(phi)
             speed = float(start[size]) - own.share * math.cos(phi) * phi_dot
         none, sums = (0.0, 0.0), ((slide, 0.0), (speed, 0.0))
-        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 14), np.empty(2 * size), np.empty(2 * size)
+        work = *np.empty((2, COUNT + BLOCK)), np.empty(COUNT + 2), np.empty(2 * size), np.empty(2 * size)
         fixed = *self._dynamics.kernel, own, forcing, timestep, work, times, samples, kept
         place = 0.0, _MIDDLE, sample, (phi, phi_dot * pace, pace), (none, none, none, *sums)
         self.evaluations, _ = run_blocks("GaussJackson", _advance, fixed, place, limit, observer)
@@ -171,7 +168,10 @@ def _begin(pointers, views, own, start, step, gains, pulls, state, change):
                 turning = rate + step * weighted(_FIRST_RATE[k], gains, end)
                 gain, pulls[k] = _accelerations(pointers, views, own, angle, turning, state, change)
                 evaluations += 1
-            error, largest = max(error, abs(gain - gains[k])), max(largest, abs(gain))
+            if not abs(gain - gains[k]) <= error:
+                error = abs(gain - gains[k])
+            if abs(gain) > largest:
+                largest = abs(gain)
             gains[k] = gain
         if not error < np.inf:
             break
@@ -188,17 +188,17 @@ def _begin(pointers, views, own, start, step, gains, pulls, state, change):
 
 
 @inner
-def _write(own, node, since, slide, speed, pulled, out):
-    """Write the state at a node, `since` [s] after the begin of its step, to `out`.
+def _write(own, node, since, slide, speed, pulled, states, row):
+    """Write the state at a node, `since` [s] after the begin of its step, to a row of `states`.
 
     There the slide less its share of sin(phi) was `slide` [m] with its `speed` [m/s]; it is `pulled` [m/s^2] evenly.
     """
     small()
-    phi, rate, last = node[0], node[1] / node[2], out.size // 2 - 1
-    out[last], out[2 * last + 1] = phi, rate
+    phi, rate, last = node[0], node[1] / node[2], states.shape[1] // 2 - 1
+    states[row, last], states[row, 2 * last + 1] = phi, rate
     if last > 0:
-        out[0] = slide + since * (speed + since * pulled / 2) + own.share * math.sin(phi)
-        out[1 + last] = speed + since * pulled + own.share * math.cos(phi) * rate
+        states[row, 0] = slide + since * (speed + since * pulled / 2) + own.share * math.sin(phi)
+        states[row, 1 + last] = speed + since * pulled + own.share * math.cos(phi) * rate
 
 
 @compiled()
@@ -220,7 +220,7 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
     status, end, evaluations, row = BLOCK_END, COUNT, 0, 0
     if back == _MIDDLE:
         evaluations, total, double = _begin(pointers, views, own, before, step, gains, pulls, state, change)
-        first, second, row = (total, 0.0), (double, 0.0), min(1, kept_times.size)
+        first, second, row = (total, 0.0), (double, 0.0), 1 if kept_times.size > 0 else 0
         if evaluations == 0:
             status = NOT_FINITE
         elif sample == times.size:
@@ -247,40 +247,34 @@ def _advance(pointers, views, own, forcing, step, work, times, samples, kept, pl
             gains[end - 1] = gain
             first = kahan_add(first, gain)
             second = kahan_add(second, first[0])
-            if not (abs(gain) < np.inf and abs(phi) < LARGEST and abs(rate) * step < _FARTHEST):
+            if not (abs(gain) < np.inf and abs(phi) < LARGEST and abs(rate) * step < FARTHEST):
                 status = NOT_FINITE
                 break
         line = Line(curve, first[0], second[0], step, back + 1.0)
         if back == LAG:
             phi = step * step * (line.second - line.back * line.first + weighted(END_PLACE, gains, end))
             after = phi, step * (line.first + weighted(END_RATE, gains, end)), dt_ds(own, phi)
-            count = count_points(own, before, after, step)
-            span = whole(own, gains, end, line, count)
+            span = whole(own, gains, end, line)
         else:
             fit_phi(line, gains, end)
             after = node(own, line, 1.0)
-            count = count_points(own, before, after, step)
-            span = duration(own, line, 1.0, count)
+            span = duration(own, line, 1.0)
         # It hardly changes, but for rounding: most where the load is fastest, and so the pace is slowest.
         pulled = (before[2] * pulls[end - 2 - back] + after[2] * pulls[end - 1 - back]) / (before[2] + after[2])
-        if times[sample] <= (clock[0] + span) * (1 + 1e-14):
-            if back == LAG:
-                fit_phi(line, gains, end)
-            while sample < times.size and times[sample] <= (clock[0] + span) * (1 + 1e-14):
-                since = times[sample] - clock[0]
-                at = find(own, line, before, after, span, count, since)
-                _write(own, at, since, slide[0], speed[0], pulled, samples[sample])
-                sample += 1
+        if back == LAG and times[sample] <= (clock[0] + span) * (1 + 1e-14):
+            fit_phi(line, gains, end)
+        while sample < times.size and times[sample] <= (clock[0] + span) * (1 + 1e-14):
+            since = times[sample] - clock[0]
+            at = find(own, line, before, after, span, since)
+            _write(own, at, since, slide[0], speed[0], pulled, samples, sample)
+            sample += 1
             if sample == times.size:
-                status = DONE
-        if row < kept_times.size:
-            kept_times[row] = clock[0] + span
-            _write(own, after, span, slide[0], speed[0], pulled, kept_states[row])
-            if status == DONE:  # the run ends within this step
-                kept_times[row] = times[-1]
-                copy(samples[-1], kept_states[row])
-            row += 1
+                status, after, span = DONE, at, since  # the run ends within this step
         clock = kahan_add(clock, span)
+        if row < kept_times.size:
+            kept_times[row] = clock[0]
+            _write(own, after, span, slide[0], speed[0], pulled, kept_states, row)
+            row += 1
         slide = kahan_add(slide, span * (speed[0] + span * pulled / 2))
         speed = kahan_add(speed, span * pulled)
         before = after

@@ -1,9 +1,7 @@
 """The time that a multistep method with uneven steps has passed, and the states at times that are asked for.
 
-Steps are even in a time s of the method's own, whose pace, dt/ds, is any positive function of phi. What passes of t in
-a step is integrated by Gauss's formula, with as many points as the pace needs there and no evaluation of the dynamics.
-In a step as a whole the points are at the same shares of each, where phi is a sum of accelerations with fixed weights.
-In a step with samples phi is a polynomial.
+Steps are even in a time s of the method's own, whose pace, dt/ds, is any positive function of phi. In a step phi is a
+polynomial, and what passes of t is integrated by Gauss's formula, without an evaluation of the dynamics.
 
 The weights with which accelerations are added up come from rational arithmetic. With the backward difference z
 (z a_n = a_n - a_(n-1)) and a step h, the time derivative is -ln(1 - z)/h, so that the velocity is h/(-ln(1 - z)) and
@@ -32,19 +30,18 @@ BLOCK = 1024
 """Steps between two returns to Python, so that a long run can be interrupted."""
 LAG = 2
 """Steps after which a state is read off; with more of them only the evaluations grow."""
-_MOST_POINTS = 12
-"""Largest number of points over which the time is integrated."""
+_MOST_POINTS, FARTHEST = 12, 4.0
+"""Largest number of points over which the time is integrated, and the angle [rad] that phi turns in a step at most."""
 _ROUNDEST = 20.0
-"""Largest size of the ellipse of `_bounds`: with a larger one, points are too few where phi is no line in the step."""
-_HIGHEST = 3.0
-"""Largest height [rad] of the complex angle at which the pace vanishes that makes a difference."""
+"""Largest size of the ellipse of `own_time`: with a larger one, points are too few where phi is no line in the step."""
 _PUNCTUAL, _ATTEMPTS = 3e-5, 5
 """Distance of a sample from its time, over a step's, which one more attempt cubes; and the most attempts."""
 
-OwnTime = namedtuple("OwnTime", "even uneven turns share lawful law height period bounds")
+OwnTime = namedtuple("OwnTime", "even uneven turns share lawful law points weights within")
 OwnTime.__doc__ = """The pace is dt/ds = sqrt(even + uneven sin^2(turns phi)); see `own_time` for `share` and `law`.
 
-It vanishes at a complex angle of some `height` [rad] in each `period` [rad]. `bounds` are those of `_bounds`.
+`points` between 0 and 1 and their `weights` are those of Gauss's formula for the time that passes in a step. `within`
+has `weights` of places at these points of the step that ends `LAG` steps before the last one.
 """
 Line = namedtuple("Line", "curve first second step back")
 Line.__doc__ = """Coefficients of phi in a step, both sums, the step [s], and how many steps back it begins."""
@@ -54,32 +51,32 @@ def own_time(
     even: float,
     uneven: float,
     turns: float,
-    precision: float,
+    precision: float = 1e-15,
+    turned: float = FARTHEST,
     share: float = 0.0,
     law: tuple[float, float, float] | None = None,
 ) -> OwnTime:
     """Return a method's own time s with dt/ds = sqrt(even + uneven sin^2(turns phi)), which must be positive.
 
-    The time that passes in a step is known to some `precision`, a share of it. If there is a `law`, phi'' is nearly the
-    sum of 1, cos(phi) and sin(phi) with its coefficients in that time. Whatever the pace, the motion is the same; the
-    nearer its square is to that of the load's inertia, the longer the steps may be. The slide less a `share` [m] of
-    sin(phi) must be evenly accelerated: it is integrated to second order only.
+    Whatever the pace, the motion is the same; the nearer its square is to that of the load's inertia, the longer the
+    steps may be. If there is a `law`, phi'' is nearly the sum of 1, cos(phi) and sin(phi) with its coefficients in that
+    time. The slide less a `share` [m] of sin(phi) must be evenly accelerated: it is integrated to second order only.
+
+    The time that passes in a step in which phi has `turned` by an angle [rad] is known to some `precision`, a share of
+    it: the error of Gauss's formula is the size of an ellipse to the power of minus twice the number of points. It has
+    both ends of the step as foci, and the complex angle at which the pace vanishes is on it, or farther out.
     """
-    height = math.asinh(math.sqrt(even / uneven)) / turns if uneven > 0 else _HIGHEST
-    lawful, law = law is not None, law or (0.0, 0.0, 0.0)
-    return OwnTime(even, uneven, turns, share, lawful, law, min(height, _HIGHEST), math.pi / turns, _bounds(precision))
+    height = math.asinh(math.sqrt(even / uneven)) / turns if uneven > 0 else math.inf
+    size = min(math.asinh(2 * height / turned) if turned > 0 else math.inf, math.log(_ROUNDEST))
+    points = _points(min(_MOST_POINTS, math.ceil(-math.log(precision) / (2 * size))))
+    return OwnTime(even, uneven, turns, share, law is not None, law or (0.0, 0.0, 0.0), *points)
 
 
-@functools.lru_cache(maxsize=32)
-def _bounds(precision: float) -> np.ndarray:
-    """Return how far away the pace must vanish for each number of points, from 0, to have a `precision`.
-
-    That is the square of a complex angle's distance from the middle, over half of the angle between the ends. The error
-    of Gauss's formula is the size of an ellipse to the power of minus twice the number of points. It has both ends as
-    foci, and the pace vanishes at an angle on it.
-    """
-    size = precision ** (-1 / (2 * np.arange(1, _MOST_POINTS + 1)))
-    return np.append(np.inf, np.where(size > _ROUNDEST, np.inf, (size + 1 / size) ** 2 / 4))
+@functools.cache
+def _points(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return so many points of Gauss's formula, their weights, and those of places there, for an `OwnTime`."""
+    points, weights = leggauss(count)
+    return (points + 1) / 2, weights / 2, np.vander(-points / 2, COUNT + 2) @ _BETWEEN.T
 
 
 def series(power: int, back: int, terms: int) -> list[Fraction]:
@@ -131,14 +128,6 @@ def _between() -> np.ndarray:
 
 
 _BETWEEN = _between()
-_POINTS, _WEIGHTS = np.zeros((2, _MOST_POINTS + 1, _MOST_POINTS))
-"""Points between 0 and 1, and their weights, in Gauss's formula with so many points, in a row for each number."""
-for _number in range(1, _MOST_POINTS + 1):
-    _POINTS[_number, :_number], _WEIGHTS[_number, :_number] = leggauss(_number)
-    _POINTS[_number, :_number] += 1
-_POINTS, _WEIGHTS = _POINTS / 2, _WEIGHTS / 2
-_WITHIN = (np.vander(0.5 - _POINTS.ravel(), COUNT + 2) @ _BETWEEN.T).reshape(*_POINTS.shape, COUNT)
-"""`weights` of places at these points of the step that ends `LAG` steps before the last one."""
 END_RATE, END_PLACE = weights(1, LAG), weights(2, LAG)
 
 
@@ -187,43 +176,30 @@ def node(own, line, passed):
 
 
 @inner
-def count_points(own, before, after, step):
-    """Return how many points a step between two nodes needs, or the most if these are too few."""
-    middle, half = (before[0] + after[0]) / 2, max(abs(before[1]), abs(after[1])) * step / 2
-    nearest = middle - own.period * np.rint(middle / own.period)
-    away = nearest * nearest + own.height * own.height
-    count = 1
-    while count < _MOST_POINTS and away < own.bounds[count] * half * half:
-        count += 1
-    return count
-
-
-@inner
-def whole(own, gains, end, line, count):
-    """Return the time [s] that passes in the step that ends `LAG` steps before the last one, by so many points."""
+def whole(own, gains, end, line):
+    """Return the time [s] that passes in the step that ends `LAG` steps before the last one."""
     passed = 0.0
-    for k in range(count):
-        place = line.second - (LAG + 2 - _POINTS[count, k]) * line.first + weighted(_WITHIN[count, k], gains, end)
-        passed += _WEIGHTS[count, k] * dt_ds(own, line.step * line.step * place)
+    for k in range(own.points.size):
+        place = line.second - (LAG + 2 - own.points[k]) * line.first + weighted(own.within[k], gains, end)
+        passed += own.weights[k] * dt_ds(own, line.step * line.step * place)
     return line.step * passed
 
 
 @inner
-def duration(own, line, share, count):
-    """Return the time [s] that passes in the first `share` of a step, by so many points."""
+def duration(own, line, share):
+    """Return the time [s] that passes in the first `share` of a step."""
     passed = 0.0
-    for k in range(count):
-        x, place = line.back - share * _POINTS[count, k] - LAG - 0.5, 0.0
+    for k in range(own.points.size):
+        x, place = line.back - share * own.points[k] - LAG - 0.5, 0.0
         for row in range(COUNT + 2):
             place = place * x + line.curve[row]
-        line.curve[COUNT + 2 + k] = line.second + place - (LAG + 1.5 + x) * line.first
-    for k in range(count):
-        passed += _WEIGHTS[count, k] * dt_ds(own, line.step * line.step * line.curve[COUNT + 2 + k])
+        phi = line.step * line.step * (place + line.second - (LAG + 1.5 + x) * line.first)
+        passed += own.weights[k] * dt_ds(own, phi)
     return line.step * share * passed
 
 
 @inner
-def find(own, line, before, after, span, count, since):
+def find(own, line, before, after, span, since):
     """Return the node `since` [s] after the beginning of a step of some `span` [s] from one node to another.
 
     The first guess is a cubic; an attempt takes the change of the pace into account.
@@ -235,7 +211,7 @@ def find(own, line, before, after, span, count, since):
         phi, rate, pace = node(own, line, passed)
         if attempt == _ATTEMPTS or share < 0:
             break
-        late = since - duration(own, line, passed, count)
+        late = since - duration(own, line, passed)
         grows = own.uneven * own.turns * math.sin(2 * own.turns * phi) * rate / (2 * pace * pace)
         ahead = late / pace
         passed += ahead * (1 - grows * ahead / 2) / line.step

@@ -5,7 +5,7 @@ import math
 import mujoco
 import numpy as np
 
-from mjbeer.integrators.dynamics import compiled, inner, small
+from mjbeer.integrators.dynamics import compiled, small
 from mjbeer.model.joints import to_coordinates
 from mjbeer.simulation.fixed_step import Recorder
 from mjbeer.theory.scene import Scene
@@ -15,7 +15,7 @@ _NAMES = (
     "_kinetic", "needed_friction", "lowest_normal", "angle_covered", "_swing_drift", "_largest_swing_drift",
 )  # fmt: skip
 """What `_update` finds, by the names of `Record`: first those that count from the start, then other largest sizes."""
-_CHANGES, _SIZES, _LOWEST, _COVERED, _DRIFT, _LARGEST_DRIFT = 5, 9, 9, 10, 11, 12
+_CHANGES, _SIZES, _NEEDED, _LOWEST, _COVERED, _DRIFT, _LARGEST_DRIFT = 5, 8, 8, 9, 10, 11, 12
 
 
 class SmoothRecorder(Recorder):
@@ -60,63 +60,57 @@ class SmoothRecorder(Recorder):
 def _update(numbers, times, states, found, start, now, last):
     """Add states at `times` [s] to what was `found`, as `Record.add` does, and return the first row that cannot roll.
 
-    The forces are the less favourable ones of a state and of the middle since the one before. `now` is space for what
-    a state has, `start` for what the first one had, and `last` for phi0, the speed of the axis at the start less its
-    swing, and time, phi and its rate at the last state.
+    The forces are those of a state and of the middle since the one before. `now` is space for what a state has, `start`
+    for what the first one had, and `last` for phi0, the speed of the axis at the start less its swing, and time, phi
+    and its rate at the last state.
     """
     small()
     base, chord, coupling, ramp, lean, weight, radius, can_mass, load_mass, offset, load_inertia = numbers[:11]
-    down, normally, all_mass, arm, _, steady = numbers[11:17]
+    down, normally, all_mass, arm, drive, steady, friction, by_drive, by_swing, by_turning = numbers[11:]
     size, moment, slips = states.shape[1] // 2, load_mass * offset, times.size
     for row in range(times.size):
         time, phi, rate = times[row], states[row, size - 1], states[row, 2 * size - 1]
         u, speed = (states[row, 0], states[row, 2]) if size > 1 else (radius * phi, radius * rate)
-        sin, cos, square = math.sin(phi), math.cos(phi), rate * rate
         if time == 0.0:
-            last[0], last[1], last[2], last[3], last[4] = phi, speed - arm * cos * rate, time, phi, rate
+            last[0], last[1], last[2], last[3], last[4] = phi, speed - arm * math.cos(phi) * rate, time, phi, rate
+        sin = cos = square = inertia = 0.0
+        for part in range(2):  # in the middle since the last state, and at this one
+            angle, turning = phi, rate
+            if part == 0 and time > last[2]:
+                step, turned = time - last[2], phi - last[3]
+                angle, turning = phi - turned / 2 + step * (last[4] - rate) / 8, 1.5 * turned / step
+                turning -= (rate + last[4]) / 4
+            sin, cos, square = math.sin(angle), math.cos(angle), turning * turning
+            inertia = base + chord * (1 - cos) / 2 + coupling * sin * sin
+            torque = ramp - weight * sin + lean * cos - sin * (chord / 4 + coupling * cos) * square
+            gain = torque / inertia
+            normal = all_mass * normally + moment * (sin * gain + cos * square)
+            pull = abs(by_drive * drive + by_swing * moment * (cos * gain - sin * square) + by_turning * gain)
+            if normal < found[_LOWEST]:
+                found[_LOWEST] = normal
+            if pull > found[_NEEDED] * normal:
+                found[_NEEDED] = pull / normal if normal > 0 else np.inf
+            if slips == times.size and (normal < 0 or pull > friction * normal):
+                slips = row
         along, across = speed - offset * cos * rate, offset * sin * rate
         kinetic = (can_mass * speed * speed + load_mass * (along * along + across * across) + load_inertia * square) / 2
-        swing = (base + chord * (1 - cos) / 2 + coupling * sin * sin) * square / 2
         middle, half = (phi + last[0]) / 2, (phi - last[0]) / 2
         torque = weight * math.sin(middle) - lean * math.cos(middle)
-        normal, needed, margin = _forces(numbers, phi, rate)
-        if time > last[2]:
-            step, turned = time - last[2], phi - last[3]
-            middle_phi, middle_rate = phi - turned / 2 + step * (last[4] - rate) / 8, 1.5 * turned / step
-            other = _forces(numbers, middle_phi, middle_rate - (rate + last[4]) / 4)
-            normal, needed, margin = min(normal, other[0]), max(needed, other[1]), min(margin, other[2])
-        now[0], now[1], now[5], now[6], now[7], now[8] = phi, u, rate, swing, kinetic, needed
+        now[0], now[1], now[5], now[6], now[7] = phi, u, rate, inertia * square / 2, kinetic
         now[2] = kinetic - all_mass * u * down - moment * (normally * cos - down * sin)
-        now[3] = swing - 2 * ramp * half + 2 * torque * math.sin(half)
+        now[3] = now[6] - 2 * ramp * half + 2 * torque * math.sin(half)
         now[4] = u - arm * sin - time * (last[1] + steady * time / 2) if size > 1 else 0.0
         for k in range(now.size):
             if k < start.size:
                 if time == 0.0:
                     start[k] = now[k]
                 now[k] -= start[k]
-            found[k] = max(found[k], abs(now[k]))
+            if abs(now[k]) > found[k]:
+                found[k] = abs(now[k])
         covered = abs(phi - last[3])
-        found[_LOWEST] = min(found[_LOWEST], normal)
         found[_COVERED] += covered
         found[_DRIFT] += now[3] * covered
-        found[_LARGEST_DRIFT] = max(found[_LARGEST_DRIFT], abs(found[_DRIFT]))
-        if margin < 0 and slips == times.size:
-            slips = row
+        if abs(found[_DRIFT]) > found[_LARGEST_DRIFT]:
+            found[_LARGEST_DRIFT] = abs(found[_DRIFT])
         last[2], last[3], last[4] = time, phi, rate
     return slips
-
-
-@inner
-def _forces(numbers, phi, rate):
-    """Return N [N], |F|/N, and the lesser of N and what F leaves until the can would slip [N]."""
-    small()
-    base, chord, coupling, ramp, lean, weight = numbers[:6]
-    moment, normally, all_mass, drive = numbers[8] * numbers[9], numbers[12], numbers[13], numbers[15]
-    friction, by_drive, by_swing, by_turning = numbers[17:]
-    sin, cos, square = math.sin(phi), math.cos(phi), rate * rate
-    torque = ramp - weight * sin + lean * cos - sin * (chord / 4 + coupling * cos) * square
-    gain = torque / (base + chord * (1 - cos) / 2 + coupling * sin * sin)
-    normal = all_mass * normally + moment * (sin * gain + cos * square)
-    pull = abs(by_drive * drive + by_swing * moment * (cos * gain - sin * square) + by_turning * gain)
-    margin = friction * normal - pull if friction < math.inf else normal
-    return normal, pull / normal if normal > 0 else math.inf, min(normal, margin)

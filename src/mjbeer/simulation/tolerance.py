@@ -159,8 +159,8 @@ class ToleranceLoop:
         some_times = np.ascontiguousarray(times[compared])
         safety = _BRIEF if self._light else 1.0
         phi0, phi_dot0 = float(start[method.size - 1]), float(start[-1])
-        timestep = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
-        own = pendulum_time(self._scene, phi0, 1e-3 * tolerance)
+        timestep, fastest = _longest(self._scene, phi0, phi_dot0, times[-1], tolerance / safety)
+        own = pendulum_time(self._scene, phi0, 1e-3 * tolerance, timestep * fastest)
         try:
             for _ in range(_TRIES):
                 coarse = method.run(start + self._nudge, some_times, timestep, own, None, self._push, self._left / 2)
@@ -266,28 +266,30 @@ def _stiffest(scene: Scene) -> float:
     return float(relaxation_rate(scene, angles, np.full_like(angles, slip), np.zeros_like(angles)).max())
 
 
-def pendulum_time(scene: Scene, phi0: float, precision: float) -> OwnTime:
+def pendulum_time(scene: Scene, phi0: float, *precision: float) -> OwnTime:
     """Return a time that passes as fast as time at `phi0` [rad], in which the load is a pendulum; see `own_time`."""
-    return _in_units_of(scene, float(scene.oscillator.inertia(phi0)), precision)
+    return _in_units_of(scene, float(scene.oscillator.inertia(phi0)), *precision)
 
 
 def even_at_most(scene: Scene) -> OwnTime:
     """Return the same time in a unit in which no step is longer than a timestep."""
     shape = scene.oscillator
-    return _in_units_of(scene, shape.base + shape.chord + shape.coupling, 1e-15)
+    return _in_units_of(scene, shape.base + shape.chord + shape.coupling)
 
 
-def _in_units_of(scene: Scene, inertia: float, precision: float) -> OwnTime:
+def _in_units_of(scene: Scene, inertia: float, *precision: float) -> OwnTime:
     """Return the time whose pace is sqrt(J / `inertia`)."""
     shape, arm = scene.oscillator, scene.load.moment / scene.effective_mass
     uneven, turns = (shape.coupling, 1.0) if shape.coupling > 0 else (shape.chord, 0.5)
     swing = shape.depth / inertia
     law = shape.ramp / inertia, swing * math.sin(shape.bottom), -swing * math.cos(shape.bottom)
-    return own_time(shape.base / inertia, uneven / inertia, turns, precision, arm, law)
+    return own_time(shape.base / inertia, uneven / inertia, turns, *precision, share=arm, law=law)
 
 
-def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> float:
+def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolerance: float) -> tuple[float, float]:
     """Return a timestep [s] with which runs of Gauss-Jackson of some `duration` [s] should keep a tolerance [rad].
+
+    The second number is the largest rate of the load in the time of its uneven steps [rad/s].
 
     In the time of its uneven steps the load moves as a pendulum, whose inertia is that at the start. Without a slope
     its motion is an elliptic function, the nearest pole of which is at an imaginary time: K'(k) over the rate of small
@@ -308,7 +310,7 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
         # It turns over and over, and a turn takes 2 pi mean(sqrt(J)) / sqrt(2 E), while E grows by 2 pi slope.
         most = (math.sqrt(2 * (most + 2 * depth)) + abs(slope) * duration / mean) ** 2 / 2
     if not depth > 0:
-        return duration / 8  # as for any motion that hardly moves
+        return duration / 8, math.sqrt(2 * most / inertia)  # as for any motion that hardly moves
     one, modulus = 1.0, max(math.sqrt(most / (2 * depth)), 1e-3)  # smaller swings are as even
     turned = math.sqrt(2 * most) * duration / mean if turns else 4 * modulus
     while abs(one - modulus) > 1e-3 * one:  # their arithmetic-geometric mean is pi/2 over K'
@@ -317,7 +319,7 @@ def _longest(scene: Scene, phi0: float, phi_dot0: float, duration: float, tolera
     cycles = math.sqrt(depth) / mean * duration / (2 * math.pi)
     slowed = max(1e-6, min(1.0, _GAP * abs(over_crest) / depth))
     allowed = tolerance / _REFERENCE * max(1.0, turned) * slowed / max(0.5, cycles) ** _ADDED
-    return min(_SHARE * pole * allowed**_POWER, duration / 8)
+    return min(_SHARE * pole * allowed**_POWER, duration / 8), math.sqrt(2 * most / inertia)
 
 
 def _distance(angles: np.ndarray, coarse: np.ndarray, fine: np.ndarray, start: np.ndarray) -> float:
