@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 import mjbeer
 from mjbeer import Can, Load, Scene, build, frozen, hoop, pendulum, simulate, sliding
 from mjbeer.exceptions import ParameterError, UnsupportedError
-from mjbeer.model.build import ReusableModel, compile_spec, rolling_spec
+from mjbeer.model.build import compile_spec, compiled_model, rolling_spec, write_numbers
 from mjbeer.model.joints import joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics
+from mjbeer.model.mjcf_file import compiled_views
 from mjbeer.model.setting import INTEGRATORS, ROLLINGS, MujocoIntegrator, Rolling, Setting, supported
 from mjbeer.theory.can import Damping
 from mjbeer.theory.equations import accelerations
@@ -74,12 +75,13 @@ def assert_theory(model: mujoco.MjModel, scene: Scene, phi: float, phi_dot: floa
 def written(scene: Scene, setting: Setting) -> mujoco.MjModel:
     """A skeleton that had the numbers of other scenes before."""
     made = Mechanics.of(scene, setting)
-    stepped = ReusableModel(made)
+    model = compiled_model(made)
+    data, views = mujoco.MjData(model), compiled_views(model, made.parameters)
     braked = replace(scene, drag=scene.drag + 1.0, gravity=5.0) if scene.dissipates else replace(scene, incline=0.1)
     for other in (scene, braked, scene):
         if (before := Mechanics.of(other, setting)).structure == made.structure:
-            stepped.write(before)
-    return stepped.model
+            write_numbers(model, data, before, views)
+    return model
 
 
 @pytest.mark.slow

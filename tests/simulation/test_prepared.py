@@ -1,4 +1,6 @@
-"""A set-up that is lent again gives the bits of a new one, and nobody gets one that is in use."""
+"""A simulator that is kept gives the bits of a new one, and no two threads have the same."""
+
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -25,43 +27,37 @@ DAMPED = [
 TIMES = np.linspace(0, 0.4, 5)
 
 
-@pytest.fixture(autouse=True)
-def none_idle(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run, "_pool", {})
-
-
 def bits(simulator: Simulator) -> bytes:
     return simulator.solve(simulator.initial_state(0.7, 2.0), TIMES).states.tobytes()
 
 
 @pytest.mark.parametrize("setting", SETTINGS, ids=repr)
 def test_what_was_done_before_leaves_no_trace(setting: Setting) -> None:
+    vars(run._kept).clear()
     for scene in (*SCENES * 2, *DAMPED * 2):  # with damping and drag, and then without
         for _ in range(2):  # the second time the model has the scene's numbers already
-            with Simulator.from_pool(scene, setting) as simulator:
-                assert bits(simulator) == bits(Simulator(scene, setting))
-    assert len(run._pool) < len(SCENES)
+            assert bits(Simulator.kept(scene, setting)) == bits(Simulator(scene, setting))
+    assert len(run._kept.simulators) < len(SCENES)
 
 
-def test_a_set_up_in_use_is_not_lent() -> None:
-    with Simulator.from_pool(SCENES[0], SETTINGS[0]) as one:
-        before = bits(one)
-        with Simulator.from_pool(SCENES[1], SETTINGS[0]) as other:
-            assert other.model is not one.model
-        assert bits(one) == before
+def test_each_thread_has_its_own() -> None:
+    one = Simulator.kept(SCENES[0], SETTINGS[0])
+    before = bits(one)
+    with ThreadPoolExecutor(1) as thread:
+        other = thread.submit(Simulator.kept, SCENES[1], SETTINGS[0]).result()
+    assert other.model is not one.model
+    assert bits(one) == before
 
 
-def test_a_set_up_comes_back_from_a_run_that_failed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_failed_leaves_no_trace(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("mjbeer.simulation.tolerance._EVALUATIONS", 100_000)  # soon, and not after millions
-    with (
-        pytest.raises(DivergenceError),
-        Simulator.from_pool(SCENES[0], Setting(integrator="Euler", timestep=1.0)) as failed,
-    ):
+    failed = Simulator.kept(SCENES[0], Setting(integrator="Euler", timestep=1.0))
+    with pytest.raises(DivergenceError):
         failed.solve(np.array([0.0, 0.7, 0.0, 1e9]), np.array([0.0, 100.0]))
-    with Simulator.from_pool(SCENES[0], Setting(tolerance=1e-13)) as simulator:
-        assert simulator.model is failed.model
-        with pytest.raises(ToleranceError):
-            simulator.solve(simulator.initial_state(0.7, 2.0), np.array([0.0, 1e5]))
-    with Simulator.from_pool(SCENES[1], SETTINGS[0]) as simulator:
-        assert simulator.model is failed.model
-        assert bits(simulator) == bits(Simulator(SCENES[1], SETTINGS[0]))
+    simulator = Simulator.kept(SCENES[0], Setting(tolerance=1e-13))
+    assert simulator is failed
+    with pytest.raises(ToleranceError):
+        simulator.solve(simulator.initial_state(0.7, 2.0), np.array([0.0, 1e5]))
+    simulator = Simulator.kept(SCENES[1], SETTINGS[0])
+    assert simulator is failed
+    assert bits(simulator) == bits(Simulator(SCENES[1], SETTINGS[0]))

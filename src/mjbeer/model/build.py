@@ -168,51 +168,40 @@ def compile_spec(spec: mujoco.MjSpec, rigid: bool = False) -> mujoco.MjModel:
     return model
 
 
-class ReusableModel:
-    """A model to be stepped and its data, for one thread at a time.
+def compiled_model(mechanics: Mechanics) -> mujoco.MjModel:
+    """Return a model to be stepped, of one's own, into which `write_numbers` then writes those of a scene.
 
-    The numbers of other scenes of the same structure are written into it in place.
+    Raises:
+      TemplateError: if the mechanics file is missing, lacks an element, or moves otherwise than theory says.
     """
+    with _compiling:
+        if (skeleton := _skeletons.get(mechanics.structure)) is None:
+            if fault := mechanics_fault(mechanics.scene, mechanics.setting):
+                raise TemplateError(fault)
+            spec = rolling_spec(mechanics.scene, mechanics.setting)
+            skeleton = _skeletons[mechanics.structure] = compile_spec(spec, mechanics.setting.rolling == "equality")
+    return copy.copy(skeleton)
 
-    def __init__(self, mechanics: Mechanics) -> None:
-        structure = mechanics.structure
-        with _compiling:
-            if (skeleton := _skeletons.get(structure)) is None:
-                if fault := mechanics_fault(mechanics.scene, mechanics.setting):
-                    raise TemplateError(fault)
-                spec = rolling_spec(mechanics.scene, mechanics.setting)
-                skeleton = _skeletons[structure] = compile_spec(spec, mechanics.setting.rolling == "equality")
-        self.model = copy.copy(skeleton)
-        self.data = mujoco.MjData(self.model)
-        self._written: Mechanics | None = None
-        self._views = mjcf_file.compiled_views(self.model, mechanics.parameters)
-        self.write(mechanics)
 
-    def write(self, mechanics: Mechanics) -> None:
-        """Write numbers of the same structure into the model, if they are new, and reset the data.
+def write_numbers(model: mujoco.MjModel, data: mujoco.MjData, mechanics: Mechanics, where: mjcf_file.Views) -> None:
+    """Write the numbers of a scene into a model of its structure, at its `compiled_views`, and reset the data.
 
-        Raises:
-          UnsupportedError: if MuJoCo cannot have such a model.
-        """
-        model, data, rolling = self.model, self.data, mechanics.setting.rolling
-        if mechanics == self._written:
-            mujoco.mj_resetData(model, data)
-            return
-        self._written = None  # until all of it is written
-        mjcf_file.write_compiled(model, mechanics.parameters, self._views)
-        data.warning.number[:] = 0  # of the scene before
-        with quiet():
-            mujoco.mj_setConst(model, data)
-        if rolling != "reduced":
-            model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
-        if rolling == "equality":
-            _make_rigid(model)
-        if min(min(body.mass, body.inertia) for body in mechanics.bodies.values()) < mujoco.mjMINVAL:
-            raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
-        if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
-            raise _refused("masses and inertias are too unequal for it to compute accelerations")
-        mujoco.mj_resetData(model, data)
-        self._written = mechanics
+    Raises:
+      UnsupportedError: if MuJoCo cannot have such a model.
+    """
+    mjcf_file.write_compiled(model, mechanics.parameters, where)
+    data.warning.number[:] = 0  # of the scene before
+    with quiet():
+        mujoco.mj_setConst(model, data)
+    if mechanics.setting.rolling != "reduced":
+        model.stat.meaninertia = model.dof_M0.mean()  # scales the solver's tolerance
+    if mechanics.setting.rolling == "equality":
+        _make_rigid(model)
+    if min(min(body.mass, body.inertia) for body in mechanics.bodies.values()) < mujoco.mjMINVAL:
+        raise _refused("mass and inertia of moving bodies must be larger than mjMINVAL")
+    if data.warning[mujoco.mjtWarning.mjWARN_INERTIA].number:
+        raise _refused("masses and inertias are too unequal for it to compute accelerations")
+    mujoco.mj_resetData(model, data)
 
 
 def _make_rigid(model: mujoco.MjModel) -> None:

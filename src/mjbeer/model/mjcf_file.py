@@ -5,7 +5,7 @@ import functools
 import math
 import pathlib
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from typing import TypeAlias
 
 import mujoco
@@ -15,6 +15,8 @@ from mjbeer.exceptions import TemplateError
 
 Parameters: TypeAlias = dict[tuple[str, str], tuple[float, ...] | str]
 """Numbers by element and attribute, as `Mechanics.parameters`."""
+Views: TypeAlias = dict[tuple[str, str], list[np.ndarray]]
+"""Where a compiled model has such numbers."""
 
 
 def read(path: pathlib.Path) -> ET.Element:
@@ -139,7 +141,7 @@ def _coefficient(model: mujoco.MjModel, tendon: str, joint: str) -> np.ndarray:
     return model.wrap_prm[place : place + 1]
 
 
-def compiled_views(model: mujoco.MjModel, values: Parameters) -> dict[tuple[str, str], list[np.ndarray]]:
+def compiled_views(model: mujoco.MjModel, values: Parameters) -> Views:
     """Return where a compiled model has those numbers that differ from scene to scene, except options."""
     found = {}
     for element, attribute in values:
@@ -152,9 +154,7 @@ def compiled_views(model: mujoco.MjModel, values: Parameters) -> dict[tuple[str,
     return found
 
 
-def write_compiled(
-    model: mujoco.MjModel, values: Parameters, where: Mapping[tuple[str, str], list[np.ndarray]]
-) -> None:
+def write_compiled(model: mujoco.MjModel, values: Parameters, where: Views) -> None:
     """Write numbers into a compiled model, at its `compiled_views`."""
     for key, value in values.items():
         if isinstance(value, str):

@@ -1,19 +1,20 @@
 """A scene set up to be stepped, a simulated motion with the record of all its steps, and its error by a second run."""
 
 import math
-from collections.abc import Generator
-from contextlib import contextmanager
+import threading
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+import mujoco
 import numpy as np
 
 from mjbeer import require
 from mjbeer.exceptions import DivergenceError
-from mjbeer.model.build import ReusableModel
+from mjbeer.model.build import compiled_model, write_numbers
 from mjbeer.model.joints import initial_state, joint_addresses, to_coordinates
 from mjbeer.model.mechanics import Mechanics, Structure
+from mjbeer.model.mjcf_file import compiled_views
 from mjbeer.model.setting import DOP853, OWN, Setting
 from mjbeer.simulation.fixed_step import Recorder, Solution, states_after
 from mjbeer.theory.equations import Coordinates
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 _GOLDEN_SECTION = (math.sqrt(5) - 1) / 2
 """The greater part of a timestep in an uneven run. None of its multiples is near a whole number, so that no rate of
 rotation has the same phase at the ends of both parts."""
-_pool: dict[Structure, list["Simulator"]] = {}
-"""Simulators that nobody uses, at most as many of a structure as there were threads."""
+_kept = threading.local()
+"""The simulators of a thread by the structure of their models: to make one takes longer than most runs."""
 _OVER_DISTANCE = 3.2
 """Error estimate over the distance to an uneven run. A contact is 0.62 times as soft in that run, so that its distance
 is 1/2.6 of the error; 3.2 allows for an order that has not settled."""
@@ -45,8 +46,8 @@ _MAX_TURN_PER_STEP = 2.0
 same at every step of pi, but not to the stages of DOP853."""
 
 
-class Simulator(ReusableModel):
-    """A scene set up to be stepped in a setting; the benchmark times nothing but `solve`.
+class Simulator:
+    """A scene set up to be stepped in a setting, by one thread at a time; the benchmark times nothing but `solve`.
 
     If `uneven`, each timestep is taken as two parts of unequal length, or as one and a bit with mjbeer's own
     integrators, so that an even and an uneven run have no timestep by which both could be wrong alike.
@@ -55,41 +56,36 @@ class Simulator(ReusableModel):
       UnsupportedError: if MuJoCo cannot have such a model.
     """
 
-    scene: Scene
-    setting: Setting
-    _dynamics: "Dynamics | None" = None  # of a model that one of mjbeer's own integrators has stepped
-
-    def __init__(
-        self, scene: Scene, setting: Setting, uneven: bool = False, mechanics: Mechanics | None = None
-    ) -> None:
-        self._uneven = uneven
-        super().__init__(mechanics or _mechanics(scene, setting, uneven))
-
-    def write(self, mechanics: Mechanics) -> None:
-        super().write(mechanics)
-        self.scene, self.setting = mechanics.scene, mechanics.setting
-        if self._dynamics is not None:
-            self._dynamics.begin()
+    def __init__(self, scene: Scene, setting: Setting, uneven: bool = False) -> None:
+        mechanics = _mechanics(scene, setting, uneven)
+        self.model, self._uneven = compiled_model(mechanics), uneven
+        self.data = mujoco.MjData(self.model)
+        self._views = compiled_views(self.model, mechanics.parameters)
+        self._written: Mechanics | None = None
+        self._dynamics: Dynamics | None = None  # of a model that one of mjbeer's own integrators has stepped
+        self._write(mechanics)
 
     @classmethod
-    @contextmanager
-    def from_pool(cls, scene: Scene, setting: Setting) -> Generator["Simulator"]:
-        """Yield a simulator for the block, after which another call may write its scene into the same model.
-
-        All that was done in it before is gone: a motion has the same bits as in a new one.
-        """
+    def kept(cls, scene: Scene, setting: Setting) -> "Simulator":
+        """Return this thread's simulator of such models, in which its last scene leaves no trace."""
         mechanics = _mechanics(scene, setting)
-        idle = _pool.setdefault(mechanics.structure, [])
-        try:
-            simulator = idle.pop()  # at once, so that no two threads get it
-        except IndexError:
-            simulator = cls(scene, setting, mechanics=mechanics)
+        simulators: dict[Structure, Simulator] = vars(_kept).setdefault("simulators", {})
+        if (simulator := simulators.get(mechanics.structure)) is None:
+            simulator = simulators[mechanics.structure] = cls(scene, setting)
+        simulator._write(mechanics)
+        return simulator
+
+    def _write(self, mechanics: Mechanics) -> None:
+        """Write the numbers of a scene into the model, if they are new, and reset the data."""
+        self.scene, self.setting = mechanics.scene, mechanics.setting
+        if mechanics == self._written:
+            mujoco.mj_resetData(self.model, self.data)
         else:
-            simulator.write(mechanics)
-        try:
-            yield simulator
-        finally:
-            idle.append(simulator)
+            self._written = None  # until all of it is written
+            write_numbers(self.model, self.data, mechanics, self._views)
+            self._written = mechanics
+        if self._dynamics is not None:
+            self._dynamics.begin()
 
     def initial_state(self, phi0: float, phi_dot0: float) -> np.ndarray:
         """Return the state of a start at `phi0` [rad] with `phi_dot0` [rad/s], shape (nq + nv,)."""
@@ -104,8 +100,8 @@ class Simulator(ReusableModel):
           DivergenceError: if the motion stops being finite.
           ToleranceError: if the tolerance is not reached.
         """
-        scene, setting, model = self.scene, self.setting, self.model
-        integrator, timestep, tolerance = setting.integrator, setting.timestep, setting.tolerance
+        scene, model, integrator = self.scene, self.model, self.setting.integrator
+        timestep, tolerance = self.setting.timestep, self.setting.tolerance
         recorder: Recorder | None = None
         if tolerance is None and friction is not None:
             recorder = Recorder(model, scene, friction, within=integrator in OWN)
@@ -118,7 +114,6 @@ class Simulator(ReusableModel):
         from mjbeer.integrators.dop853 import Dop853
         from mjbeer.integrators.dynamics import Dynamics
         from mjbeer.integrators.gauss_jackson import GaussJackson
-        from mjbeer.simulation.smooth_recorder import SmoothRecorder
         from mjbeer.simulation.tolerance import ToleranceLoop, even_at_most
 
         dynamics = self._dynamics = self._dynamics or Dynamics(model, self.data)
@@ -130,7 +125,6 @@ class Simulator(ReusableModel):
         if integrator == DOP853:
             states = Dop853(model, dynamics).run(start, times, timestep, observer=recorder)
         else:
-            recorder = None if friction is None else SmoothRecorder(model, scene, friction)
             states = GaussJackson(model, dynamics).run(start, times, timestep, even_at_most(scene), recorder)
         return Solution(states, recorder.record if recorder else None, None, integrator)
 
@@ -271,9 +265,9 @@ def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, time
         along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
         if len(along) > len(times):
             samples = np.searchsorted(along, times)
-    with Simulator.from_pool(scene, setting) as simulator:
-        solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
-        motion = to_coordinates(simulator.model, scene, solution.states, along)
+    simulator = Simulator.kept(scene, setting)
+    solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
+    motion = to_coordinates(simulator.model, scene, solution.states, along)
     assert solution.record is not None
     return Run(
         **{name: array[samples] for name, array in vars(motion).items()},
