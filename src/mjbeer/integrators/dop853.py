@@ -81,7 +81,9 @@ class Dop853:
           DivergenceError: if the motion stops being finite, no step is small enough, or the limit is reached.
         """
         scale, slope = np.ones(self._size) if scale is None else scale, self._dynamics.rates(start)
-        step = timestep or min(self._first_step(start, slope, tolerance, scale), longest)  # in this order NaN stays
+        pace = float(np.abs(slope / (scale + np.abs(start))).max())
+        # It depends on the tolerance, as two runs that are compared must not have the same steps. NaN stays NaN.
+        step = timestep or min(tolerance ** (1 / 8) / max(pace, 1 / times[-1] if times[-1] else 1.0), longest)
         samples, stages, work = (np.zeros((rows, self._size)) for rows in (len(times), _ERRORS, 10))
         stages[0], work[0], sample = slope, start, int(times[0] == 0)
         samples[:sample] = start
@@ -92,21 +94,8 @@ class Dop853:
         fixed = *self._dynamics.kernel, _TABLEAU, *work[:3], stages, work[3:], times, samples, control, kept
         place = 0.0, step, sample, 0, 1.0, 0.0
         evaluations, place = run_blocks("DOP853", _advance, fixed, place, limit, observer)
-        self.evaluations, self.longest = evaluations + (1 if timestep else 2), place[-1]
+        self.evaluations, self.longest = evaluations + 1, place[-1]
         return samples
-
-    def _first_step(self, start: np.ndarray, slope: np.ndarray, tolerance: float, scale: np.ndarray) -> float:
-        """Return the first step [s], by Hairer's algorithm in section II.4.
-
-        Unlike there it always depends on the tolerance: two runs that are compared must not have the same steps.
-        """
-        weight = tolerance * (scale + np.abs(start)) * math.sqrt(self._size)
-        d0, d1 = math.hypot(*(start / weight)), math.hypot(*(slope / weight))
-        guess = 1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1
-        d2 = math.hypot(*((self._dynamics.rates(start + guess * slope) - slope) / weight)) / guess
-        if max(d1, d2) <= 1e-15:
-            return max(1e-6, guess * 1e-3)
-        return min(100 * guess * tolerance ** (1 / 8), (0.01 / max(d1, d2)) ** (1 / 8))
 
 
 def _corners(model: mujoco.MjModel) -> np.ndarray:

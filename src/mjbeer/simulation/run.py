@@ -39,8 +39,9 @@ much that matters beside a separatrix. A larger one could move the motion agains
 _DEPTH = 0.5
 """Depth at which a can in contact starts in the uneven run, over that in the run. The error of softness falls to 0.62
 or to 0.38 of itself; that of the depth falls to half, between them, as the two may be of opposite sign."""
-_COMPARED = 4096
-"""Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples."""
+_COMPARED, _PARTS = 4096, 32
+"""Number of timesteps, evenly spread over a run, at which the uneven run is compared with it besides the samples; and
+of the parts of a run to a tolerance, in each of which its runs are compared at least once."""
 _MAX_TURN_PER_STEP = 2.0
 """Largest angle that the load may turn in a timestep [rad], unless its motion hardly depends on the angle: J looks the
 same at every step of pi, but not to the stages of DOP853."""
@@ -157,8 +158,7 @@ class Run(Trajectory):
     error: float | None
     """The error that was estimated on the way to a tolerance [rad]; None without one."""
     checkpoints: Coordinates
-    """The motion at its samples and, without a tolerance, at timesteps spread over the whole run, where the uneven run
-    is compared with it."""
+    """The motion at its samples and at times that are spread over the whole run, where a second run is compared."""
 
     def __post_init__(self) -> None:
         """Check nothing: the start is checked before a run, and its samples are finite after it."""
@@ -257,14 +257,16 @@ def compare_uneven(run: Run) -> float:
 
 def integrate(scene: Scene, phi0: float, phi_dot0: float, setting: Setting, times: np.ndarray) -> Run:
     """Return the motion of a scene in a setting at increasing `times` [s], with the same errors as `simulate`."""
-    along, samples = times, slice(None)
     if setting.tolerance is None:
         last = max(1, int(times[-1] / setting.timestep))
         checkpoints = setting.timestep * np.linspace(0, last, min(last, _COMPARED) + 1).astype(np.int64)
-        along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
-        along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
-        if len(along) > len(times):
-            samples = np.searchsorted(along, times)
+    elif np.diff(times, prepend=0.0).max() > times[-1] / _PARTS:
+        checkpoints = times[-1] * np.linspace(0, 1, _PARTS + 1)
+    else:
+        checkpoints = times[:0]
+    along = np.sort(np.concatenate([times, checkpoints[checkpoints <= times[-1]]]))
+    along = along[np.diff(along, prepend=-1.0) > 0]  # unlike union1d it does not import masked arrays
+    samples = np.searchsorted(along, times) if len(along) > len(times) else slice(None)
     simulator = Simulator.kept(scene, setting)
     solution = simulator.solve(simulator.initial_state(phi0, phi_dot0), along, friction=math.inf)
     motion = to_coordinates(simulator.model, scene, solution.states, along)

@@ -1,7 +1,6 @@
 """Integration to a global tolerance, with an error estimate from the distance of two runs."""
 
 import math
-from dataclasses import replace
 
 import mujoco
 import numpy as np
@@ -19,8 +18,6 @@ from mjbeer.simulation.smooth_recorder import SmoothRecorder
 from mjbeer.theory.equations import relaxation_rate
 from mjbeer.theory.scene import Scene
 
-_PARTS = np.linspace(0, 1, 33)
-"""Times, over the last one, at which runs are compared besides the samples, unless these are as near one another."""
 _COMPARED = 256
 """Samples at which runs of Gauss-Jackson are compared, if there are more: an error changes within a part of a swing."""
 _LIGHT, _BRIEF = 10.0, 4.0
@@ -137,15 +134,12 @@ class ToleranceLoop:
         gain = float(self._scene.oscillator.acceleration(phi, phi_dot))
         self._push = math.copysign(_PUSH * (self._scale[-1] / self._scale[len(start) // 2 - 1]) ** 2, phi_dot or gain)
         self._nudge = self._size * np.repeat([math.copysign(1.0, -gain), math.copysign(1.0, phi_dot)], len(start) // 2)
-        far = (times[1:] - times[:-1]).max(initial=times[0]) > times[-1] * _PARTS[1]
-        along = np.sort(np.concatenate([times, times[-1] * _PARTS])) if far else times
-        found = None
         if self._gauss_jackson is not None:
             # What is asked for more loosely has the timestep of this tolerance, which is nearly the longest.
             tight = min(tolerance, _ASYMPTOTIC[1])
-            found = self._by_gauss_jackson(self._gauss_jackson, start, along, tight, friction)
-        found = found or self._by_dop853(start, along, tolerance, friction)
-        return replace(found, states=found.states[np.searchsorted(along, times)]) if far else found
+            if found := self._by_gauss_jackson(self._gauss_jackson, start, times, tight, friction):
+                return found
+        return self._by_dop853(start, times, tolerance, friction)
 
     def _by_gauss_jackson(
         self, method: GaussJackson, start: np.ndarray, times: np.ndarray, tolerance: float, friction: float
@@ -232,13 +226,12 @@ class ToleranceLoop:
             # tolerance of more than half of that before a run is hardly any finer.
             if ratios[-1] < 2 or stalled > 2:
                 end = "with ever smaller steps" if stalled > 2 else "at the limit of rounding"
-                if error <= tolerance:
-                    reason = f"two runs agree, but energy or momentum drift like an error of {drift:.2g} rad"
-                elif safety * distances[-1] <= tolerance:
-                    reason = f"the last two of three runs {end} agree, but the first is {distances[-2]:.2g} rad off"
-                else:
-                    reason = f"two runs {end} differ by {distances[-1]:.2g} rad, which may be a third of their error"
-                raise _not_reached(tolerance, f"{reason}; the motion is not smooth, or rounding has the upper hand")
+                raise _not_reached(
+                    tolerance,
+                    f"two runs {end} differ by {distances[-1]:.2g} rad, the two before by {distances[-2]:.2g} rad, and "
+                    f"energy or momentum drift like an error of {drift:.2g} rad; the motion is not smooth, or rounding "
+                    "has the upper hand",
+                )
             coarse, estimate, safety = fine, max(error, drift), by_chance
         rounding = _ROUNDING_OVER_NUDGE * distances[1] if distances[2:] else 0.0  # the first one includes the nudge
         if rounding > tolerance:
