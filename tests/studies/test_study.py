@@ -11,15 +11,15 @@ from typing import Any
 
 import pytest
 
-from mjbeer.checks import Check, Result
 from mjbeer.exceptions import OutputError, ParameterError
+from mjbeer.paper.checks import Check, Result
 from mjbeer.studies import study as studies
 from mjbeer.studies.study import Study
 from tests.support.processes import fall, hear, interrupt, start, where
 
 ALONE = """
 import os, pathlib, sys
-from mjbeer.checks import Check
+from mjbeer.paper.checks import Check
 from mjbeer.studies.study import run
 from tests.support.processes import work_and_sleep
 os.cpu_count = lambda: 2

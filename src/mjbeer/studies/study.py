@@ -16,10 +16,10 @@ from typing import Any
 
 from rich.console import Console
 
-from mjbeer.checks import Check, Result, to_json
 from mjbeer.exceptions import ParameterError
 from mjbeer.output import files
 from mjbeer.output.terminal import progress_bar
+from mjbeer.paper.checks import Check, Result, to_json
 
 FAILED = {True: "", False: " **FAIL**"}
 """Marks what did not pass in a table."""
