@@ -2,7 +2,6 @@
 
 import io
 import pathlib
-import re
 import textwrap
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
@@ -16,7 +15,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.lines import Line2D
 
 from mjbeer.output import files
 
@@ -51,7 +49,6 @@ _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
 _EDGE = 0.1  # distance of the title from the edge [inches]
 _LETTERS = 8.3  # letters of the title in an inch; the subtitle's are narrower
-_TOOLTIPS = "tooltips "  # begins the name of a line in an SVG whose points have tooltips
 
 
 @dataclass
@@ -96,14 +93,13 @@ def chart(
         yield panels
         # Set out here and not by `savefig`, which would draw the whole plot for it first.
         ConstrainedLayoutEngine(rect=(0, 0, 1, 1 - used / height)).execute(figure)
-        named = {"Title": title, "Description": subtitle} if used else dict.fromkeys(("Creator", "Format", "Type"))
+        named = {"Date": None, "Title": title, "Description": subtitle}
         file = io.StringIO()
-        figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata={"Date": None, **named})
-        svg = _with_tooltips(file.getvalue())
+        figure.savefig(file, format="svg", facecolor="white", dpi=150, metadata=named)
         if isinstance(path, Picture):
-            path.title, path.subtitle, path.svg = title, subtitle, svg[svg.index("<svg") :]
+            path.title, path.subtitle, path.svg = title, subtitle, file.getvalue()
         else:
-            files.write(path.with_name(path.name + ".svg"), svg)
+            files.write(path.with_name(path.name + ".svg"), file.getvalue())
 
 
 def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float, float], **style: Any) -> None:
@@ -112,26 +108,9 @@ def note(axes: Axes, text: str, place: tuple[float, float], offset: tuple[float,
     axes.annotate(text, place, offset, textcoords="offset points", **style)
 
 
-def add_tooltips(line: Line2D, texts: Sequence[str]) -> None:
-    """Let each point of a line with markers tell a text of one line where a pointer rests on it, in the SVG."""
-    line.set_gid(_TOOLTIPS + "\n".join(texts))
-
-
 def name_below(axes: Sequence[Axes], columns: int, handles: Sequence[Artist] = ()) -> None:
     """Name what the axes show in one legend below the plot: their lines with a label, each name once, or `handles`."""
     if not handles:
         shown = [zip(*panel.get_legend_handles_labels(), strict=True) for panel in axes]
         handles = list({name: handle for pairs in shown for handle, name in pairs}.values())
     axes[0].figure.legend(handles=list(handles), loc="outside lower center", ncols=columns)
-
-
-def _with_tooltips(svg: str) -> str:
-    """Return an SVG in which each point of `add_tooltips` has its text as a title."""
-
-    def line(found: re.Match[str]) -> str:
-        told = found[2]
-        for text in found[1].split("\n"):
-            told = re.sub("(<use [^>]*)/>", rf"\1><title>{text}</title></use>", told, count=1)
-        return f"<g>{told}"
-
-    return re.sub(rf'(?s)<g id="{_TOOLTIPS}([^"]*)">(.*?)(?=<g id="{_TOOLTIPS}|$)', line, svg)
