@@ -1,4 +1,4 @@
-"""What an interruption leaves: files that are whole or not there, a folder free for the next command, no process."""
+"""What an interruption leaves: files that are whole or not there, and no process."""
 
 import os
 import pathlib
@@ -54,26 +54,6 @@ def _output_errors(path: str | os.PathLike[str], folder: pathlib.Path) -> Genera
             nearest = next(each for each in folder.parents if each.is_dir())
             reason = f"there is no folder {folder}; the nearest one that exists is {nearest}"
         raise OutputError(f"cannot write {path}: {reason}") from error
-
-
-@contextmanager
-def locked(folder: pathlib.Path) -> Generator[None]:
-    """Lock a folder while the block runs, so that no other command changes the study in it meanwhile.
-
-    The system releases the lock when the process ends, even if it is killed; the hidden file of the lock stays.
-
-    Raises:
-      OutputError: if another command holds the lock, or the folder cannot be created.
-    """
-    from filelock import FileLock, Timeout  # which only studies need, and which takes long to import
-
-    make_folder(folder)
-    try:
-        held = FileLock(folder / ".lock", blocking=False).acquire()
-    except Timeout:
-        raise OutputError(f"cannot write to {folder}: another command is at work there") from None
-    with held:
-        yield
 
 
 def write(path: str | os.PathLike[str], text: str) -> None:
