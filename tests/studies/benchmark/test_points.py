@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
@@ -70,4 +71,4 @@ def test_the_diagram_is_of_run_times_in_milliseconds_and_of_errors(stored: Bench
     tables._draw(axes, stored.of("frozen"))
     (line,) = (line for line in axes.lines if line.get_label() == "MuJoCo's RK4")
     rk4 = [point for point in stored.of("frozen") if (point.model, point.method) == ("reduced", "RK4")]
-    assert line.get_xydata().tolist() == [[1e3 * point.time, point.error] for point in rk4]
+    assert np.array_equal(line.get_xydata(), [(1e3 * point.time, point.error) for point in rk4])
