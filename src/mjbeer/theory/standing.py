@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mjbeer import require
-from mjbeer.exceptions import ParameterError, warn_of_liquid
+from mjbeer.exceptions import LiquidWarning, ParameterError, warn_of_liquid
 from mjbeer.theory.can import Can
 from mjbeer.theory.liquid import LIQUIDS, NAMES
 from mjbeer.theory.scene import GRAVITY
@@ -197,7 +197,7 @@ def standing(
         layer = math.sqrt(2 * standing_can.viscosity / standing_can.frequencies(1)[0]) / can.radius
         if layer > 0.1:
             thick = f"{name} is too thick for the damping of thin layers: that on the wall has {layer:.3g} radii"
-            warn_of_liquid(f"{thick}, not 0.1 or less; give a damping_ratio", stacklevel=2)
+            warn_of_liquid.get()(f"{thick}, not 0.1 or less; give a damping_ratio", LiquidWarning, stacklevel=2)
     return standing_can
 
 
