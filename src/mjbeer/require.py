@@ -121,11 +121,6 @@ def instance(name: str, value: Any, kind: type[T]) -> T:
     return value
 
 
-def set_fields(instance: object, **values: object) -> None:
-    """Set fields of a frozen dataclass to their checked values."""
-    vars(instance).update(values)
-
-
 def format_value(value: object) -> str:
     """Return a value as messages show it: in one short line, NumPy's numbers as plain ones."""
     text = _SHORT.repr(value.tolist() if isinstance(value, (np.generic, np.ndarray)) else value)

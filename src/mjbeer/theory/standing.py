@@ -66,8 +66,7 @@ class Standing:
         # In thinner films viscosity is everywhere.
         require.within("height of the liquid over the radius", fill * self.can.length / self.can.radius, 0.05, 50.0)
         ratio = self.damping_ratio
-        require.set_fields(
-            self,
+        vars(self).update(
             fill=fill,
             density=require.positive("density", self.density, "kg/m^3"),
             viscosity=require.non_negative("viscosity", self.viscosity, "m^2/s"),
