@@ -101,7 +101,7 @@ class Trajectory(Coordinates):
         Raises:
           ParameterError: if `friction` is negative or no number.
         """
-        return Record.of(self, self.scene, require.friction(friction)).rolling_ends_at
+        return Record.of(self, self.scene, require.non_negative("friction", friction, finite=False)).rolling_ends_at
 
     def takeoff(self) -> float | None:
         """Return the angle of the load from the top [rad] when the can leaves the incline; None if it stays.
