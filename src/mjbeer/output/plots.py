@@ -21,11 +21,10 @@ from mjbeer.output import files
 # M. Okabe and K. Ito's palette for colour-blind readers, without its yellow, which is hard to see on white.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 GREY = "#666666"  # of notes, and of lines that something is compared with: dark enough to be read on white
-# Lines: a motion by exact theory is wide and pale, so that the simulation's lies on it; then a motion by MuJoCo, an
-# equation as it is printed in the paper where that is wrong, what cannot happen, and a level or a time to compare with.
+# Lines: a motion by exact theory is wide and pale, so that the simulation's lies on it; then a motion by MuJoCo, what
+# cannot happen, and a level or a time to compare with.
 THEORY: dict[str, Any] = {"color": "#C4C4C4", "linewidth": 5, "zorder": 1.5}
 SIMULATED: dict[str, Any] = {"color": COLOURS[0]}
-PRINTED: dict[str, Any] = {"color": COLOURS[1], "linestyle": "--"}
 UNPHYSICAL: dict[str, Any] = {"color": "#8C8C8C", "linestyle": ":"}
 REFERENCE: dict[str, Any] = {"color": GREY, "linewidth": 0.8, "zorder": 1.2}
 
@@ -38,16 +37,13 @@ STYLE: Any = {
     "axes.titlelocation": "left",
     "axes.titlesize": 11,
     "font.sans-serif": ["DejaVu Sans", "Verdana"],  # where there is no DejaVu Sans, Verdana has the same widths
-    "font.size": 10.0,
     "grid.alpha": 0.3,
-    "legend.fontsize": 10,
     "legend.frameon": False,
     "svg.fonttype": "none",
     "svg.hashsalt": "mjbeer",  # with this and no date, equal plots are equal files
 }
 _TITLE: dict[str, Any] = {"fontsize": 13.5, "weight": "bold"}
 _SUBTITLE: dict[str, Any] = {"fontsize": 10.5, "color": GREY}
-_EDGE = 0.1  # distance of the title from the edge [inches]
 _LETTERS = 8.3  # letters of the title in an inch; the subtitle's are narrower
 
 
@@ -87,7 +83,7 @@ def chart(
         figure = FigureCanvasSVG(Figure(figsize=(width, height), dpi=72)).figure
         used = 0.0  # height of title and subtitle at the top left [inches]
         for text, line, look in heads:
-            figure.text(_EDGE / width, 1 - (_EDGE / 2 + used) / height, text, ha="left", va="top", **look)
+            figure.text(0.1 / width, 1 - (0.05 + used) / height, text, ha="left", va="top", **look)
             used += line
         panels = list(figure.subplots(rows, columns, squeeze=False).flat)
         yield panels
