@@ -83,7 +83,7 @@ def times(name: str, value: Any, increasing: bool = False) -> np.ndarray:
     """Return times [s], none before 0, or a single one, as a new array of shape (samples,)."""
     array = samples(name, np.atleast_1d(value), "s").copy()
     non_negative(f"{name}[{array.argmin()}]", array.min(), "s")
-    if increasing and (steps := np.diff(array, prepend=-1)).min() <= 0:
+    if increasing and (steps := np.diff(array, prepend=-1)).min() <= 0:  # the first step is no fall
         at = steps.argmin()
         raise ParameterError(f"{name} must increase, but {name}[{at}] is {array[at]} s after {array[at - 1]} s")
     return array
